@@ -1,1 +1,10 @@
-"""meshes."""
+"""Curved second-order meshes of gears with named boundaries, and files of results for ParaView.
+
+gmsh and meshio are imported only when something is meshed or written.
+"""
+
+from meshes.errors import Fault, MeshError
+from meshes.outline import Sizes
+from meshes.sector import SectorMesh, mesh_sector, refined
+
+__all__ = ["Fault", "MeshError", "SectorMesh", "Sizes", "mesh_sector", "refined"]

@@ -1,0 +1,176 @@
+"""Plane elasticity on curved second-order triangles: constants, stiffness matrix, strain at points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.errors import Fault, FemError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+    from gears import Material
+
+__all__ = ["PlaneElasticity", "shape", "shape_gradients", "stiffness_matrix", "stress_at"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class PlaneElasticity:
+    """Constants of an isotropic body in plane strain or plane stress.
+
+    Attributes
+    ----------
+    plane : {"strain", "stress"}
+    E : float
+        Young's modulus [Pa]
+    nu : float
+        Poisson's ratio [-]
+    """
+
+    plane: str
+    E: float
+    nu: float
+
+    def __post_init__(self) -> None:
+        if self.plane not in ("strain", "stress"):
+            raise FemError(
+                Fault("plane", repr(self.plane), '"strain" or "stress"', "wide gears are nearer plane strain")
+            )
+
+    @classmethod
+    def of(cls, material: Material, plane: str) -> PlaneElasticity:
+        """Constants of a ``gears.Material``."""
+        return cls(plane, float(material.youngs_modulus), float(material.poisson_ratio))
+
+    @property
+    def plane_modulus(self) -> float:
+        """E* [Pa]: E/(1 - nu^2) in plane strain, E in plane stress."""
+        return self.E / (1 - self.nu**2) if self.plane == "strain" else self.E
+
+    @property
+    def plane_poisson(self) -> float:
+        """nu* [-]: nu/(1 - nu) in plane strain, nu in plane stress."""
+        return self.nu / (1 - self.nu) if self.plane == "strain" else self.nu
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E/(2(1 + nu)) [Pa]."""
+        return self.E / (2 * (1 + self.nu))
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's constants (lambda, mu) of the plane law sigma = lambda tr(eps) 1 + 2 mu eps [Pa]."""
+        mu = self.shear_modulus
+        return self.plane_modulus * self.plane_poisson / (1 - self.plane_poisson**2), mu
+
+    def out_of_plane_stress(self, stress: Array) -> Array:
+        """sigma_zz [Pa] from in-plane stresses (..., 2, 2): nu (sigma_xx + sigma_yy) in plane strain, else 0."""
+        trace: Array = stress[..., 0, 0] + stress[..., 1, 1]
+        return self.nu * trace if self.plane == "strain" else np.zeros_like(trace)
+
+
+# six points, exact to degree 4 on the triangle (Dunavant 1985, doi:10.1002/nme.1620210612)
+_A, _B = 0.445948490915965, 0.091576213509771
+_XI = np.array([_A, 1 - 2 * _A, _A, _B, 1 - 2 * _B, _B])
+_ETA = np.array([_A, _A, 1 - 2 * _A, _B, _B, 1 - 2 * _B])
+_WEIGHT = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
+
+
+def shape(xi: Array, eta: Array) -> Array:
+    """Values (..., 6) of the P2 shape functions; node order as in ``meshes.SectorMesh.triangles``."""
+    l0 = 1 - xi - eta
+    return np.stack(
+        [
+            l0 * (2 * l0 - 1),
+            xi * (2 * xi - 1),
+            eta * (2 * eta - 1),
+            4 * xi * l0,
+            4 * xi * eta,
+            4 * eta * l0,
+        ],
+        axis=-1,
+    )
+
+
+def shape_gradients(xi: Array, eta: Array) -> Array:
+    """Gradients (..., 6, 2) of the P2 shape functions with respect to the reference coordinates."""
+    l0 = 1 - xi - eta
+    zero = np.zeros_like(xi)
+    d_xi = np.stack([1 - 4 * l0, 4 * xi - 1, zero, 4 * (l0 - xi), 4 * eta, -4 * eta], axis=-1)
+    d_eta = np.stack([1 - 4 * l0, zero, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (l0 - eta)], axis=-1)
+    return np.stack([d_xi, d_eta], axis=-1)
+
+
+def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) -> tuple[Array, Array]:
+    """Gradients (m, q, 6, 2) in space and Jacobian determinants (m, q) at reference points (q,)."""
+    reference = shape_gradients(xi, eta)
+    jacobian = np.einsum("mix,qir->mqxr", points[triangles], reference)
+    determinant = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
+    inverse = np.empty_like(jacobian)
+    inverse[..., 0, 0], inverse[..., 1, 1] = jacobian[..., 1, 1], jacobian[..., 0, 0]
+    inverse[..., 0, 1], inverse[..., 1, 0] = -jacobian[..., 0, 1], -jacobian[..., 1, 0]
+    inverse /= determinant[..., None, None]
+    return np.einsum("qir,mqrx->mqix", reference, inverse), determinant
+
+
+def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:
+    """Stiffness matrix per unit thickness [Pa] of isoparametric P2 triangles.
+
+    K_(ia)(jb) = integral of lambda d_a N_i d_b N_j + mu (d_b N_i d_a N_j + delta_ab grad N_i . grad N_j).
+    Unknown 2 i + a is component a of node i.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        [m]
+    triangles : (m, 6) array
+    law : PlaneElasticity
+
+    Returns
+    -------
+    scipy.sparse.csc_array, (2n, 2n)
+    """
+    from scipy.sparse import coo_array
+
+    lam, mu = law.lame
+    gradient, determinant = _physical_gradients(points, triangles, _XI, _ETA)
+    m, q = determinant.shape
+    # (m, 12, q*2) products are far faster through matmul than through one einsum over all indices
+    weighted = (gradient * (_WEIGHT * determinant)[..., None, None]).transpose(0, 2, 3, 1).reshape(m, 12, q)
+    outer = np.matmul(weighted, gradient.transpose(0, 1, 2, 3).reshape(m, q, 12)).reshape(m, 6, 2, 6, 2)
+    element = lam * outer + mu * outer.transpose(0, 1, 4, 3, 2)
+    dot = outer[:, :, 0, :, 0] + outer[:, :, 1, :, 1]
+    element[:, :, 0, :, 0] += mu * dot
+    element[:, :, 1, :, 1] += mu * dot
+    unknown = (2 * triangles[:, :, None] + np.arange(2)).reshape(m, 12)
+    rows = np.repeat(unknown, 12, axis=1).ravel()
+    columns = np.tile(unknown, (1, 12)).ravel()
+    size = 2 * len(points)
+    return coo_array((element.reshape(m, -1).ravel(), (rows, columns)), shape=(size, size)).tocsc()
+
+
+def stress_at(
+    points: Array, triangles: Index, displacement: Array, law: PlaneElasticity, xi: Array, eta: Array
+) -> Array:
+    """In-plane stresses (m, q, 2, 2) [Pa] of each triangle at reference points (q,).
+
+    Parameters
+    ----------
+    displacement : (n, 2) array
+        [m]
+    """
+    lam, mu = law.lame
+    gradient, _ = _physical_gradients(points, triangles, xi, eta)
+    slope = np.einsum("mia,mqib->mqab", displacement[triangles], gradient)
+    trace = slope[..., 0, 0] + slope[..., 1, 1]
+    stress: Array = mu * (slope + slope.swapaxes(-1, -2))
+    stress[..., 0, 0] += lam * trace
+    stress[..., 1, 1] += lam * trace
+    return stress

@@ -1,0 +1,134 @@
+"""Line load on the edge of an elastic half-plane: displacement and stress in closed form.
+
+The load is 1 N per metre of face width along the inward normal. With r the distance from the load, theta
+measured from the load's direction and lengths taken in units of ``length``:
+
+    u_r     = -2/(pi E*) [ln(r/length) cos(theta) + (1 - nu*)/2 theta sin(theta)]
+    u_theta =  2/(pi E*) [ln(r/length) sin(theta) + (1 + nu*)/2 sin(theta) - (1 - nu*)/2 theta cos(theta)]
+    sigma_rr = -2 cos(theta)/(pi r), all other components zero
+
+(Flamant 1892; K. L. Johnson, Contact Mechanics, 1985, section 2.2). It stays a solution of elasticity beyond
+the half-plane, up to the cut theta = +-pi along the outward normal, which must not meet material.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.elasticity import PlaneElasticity
+
+__all__ = ["displacement", "hertz_half_width", "hertz_indentation", "hertz_stress", "stress", "traction"]
+
+Array = NDArray[np.float64]
+
+
+def _frame(points: Array, load: Array, inward: Array) -> tuple[Array, Array, Array]:
+    """Components along the load and across it, and the distance."""
+    away = points - load
+    along = away @ inward
+    across = away @ np.array([-inward[1], inward[0]])
+    return along, across, np.hypot(along, across)
+
+
+def displacement(
+    points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float
+) -> Array:
+    """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself."""
+    along, across, r = _frame(points, load, inward)
+    theta = np.arctan2(across, along)
+    factor = 2 / (np.pi * law.plane_modulus)
+    half_minus, half_plus = 0.5 * (1 - law.plane_poisson), 0.5 * (1 + law.plane_poisson)
+    log, cos, sin = np.log(r / length), along / r, across / r
+    radial = -factor * (log * cos + half_minus * theta * sin)
+    turning = factor * (log * sin + half_plus * sin - half_minus * theta * cos)
+    u_along, u_across = radial * cos - turning * sin, radial * sin + turning * cos
+    side = np.array([-inward[1], inward[0]])
+    return np.multiply.outer(u_along, inward) + np.multiply.outer(u_across, side)
+
+
+def stress(points: Array, load: Array, inward: Array) -> Array:
+    """In-plane stresses (n, 2, 2) per unit line load [1/m]; zero at the load itself (never used there)."""
+    along, _, r = _frame(points, load, inward)
+    away = points - load
+    with np.errstate(divide="ignore", invalid="ignore"):
+        size = np.where(r > 0, -2 * along / (np.pi * r**4), 0.0)
+    return size[:, None, None] * away[:, :, None] * away[:, None, :]
+
+
+def traction(points: Array, normal: Array, load: Array, inward: Array) -> Array:
+    """Traction sigma . n (n, 2) per unit line load [1/m] on facets with outward normals (n, 2)."""
+    along, _, r = _frame(points, load, inward)
+    away = points - load
+    with np.errstate(divide="ignore", invalid="ignore"):
+        size = np.where(r > 0, -2 * along * np.einsum("ni,ni->n", away, normal) / (np.pi * r**4), 0.0)
+    return size[:, None] * away
+
+
+def hertz_half_width(line_load: Array, radius: Array, reduced_modulus: float) -> Array:
+    """Half-width of a Hertzian line contact a = sqrt(8 w R/(pi E')) [m].
+
+    Parameters
+    ----------
+    line_load : array
+        w [N/m]
+    radius : array
+        R = R1 R2/(R1 + R2) [m]
+    reduced_modulus : float
+        E' = 2/(1/E1* + 1/E2*) [Pa]
+    """
+    width: Array = np.sqrt(8 * line_load * radius / (np.pi * reduced_modulus))
+    return width
+
+
+def hertz_indentation(half_width: Array, law: PlaneElasticity, length: float) -> Array:
+    """Normal displacement of one surface under the middle of a Hertz pressure, per unit line load [m^2/N].
+
+    The Flamant displacement of the edge averaged over the pressure,
+    2/(pi E*) [ln(2 length/a) + 1/2 - (1 + nu*)/2]: it is relative to the same zero as ``displacement``.
+    """
+    factor = 2 / (np.pi * law.plane_modulus)
+    indentation: Array = factor * (np.log(2 * length / half_width) + 0.5 - 0.5 * (1 + law.plane_poisson))
+    return indentation
+
+
+def hertz_stress(points: Array, centre: Array, inward: Array, half_width: float, peak: float) -> Array:
+    """In-plane stresses (n, 2, 2) [Pa] under a Hertz pressure of the given peak on a half-plane.
+
+    McEwen's closed form (K. L. Johnson, Contact Mechanics, 1985, equations 4.49):
+    with x along the edge and z into the body, a the half-width,
+    m^2 = (sqrt(q) + s)/2 and n^2 = (sqrt(q) - s)/2, s = a^2 - x^2 + z^2, q = s^2 + 4 x^2 z^2,
+    sigma_x = -(p/a)[m (1 + (z^2 + n^2)/(m^2 + n^2)) - 2 z],
+    sigma_z = -(p/a) m (1 - (z^2 + n^2)/(m^2 + n^2)), tau_xz = (p/a) n (m^2 - z^2)/(m^2 + n^2),
+    m with the sign of z and n with the sign of x (the sign of tau follows from the force balance of a half).
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        [m]
+    centre, inward : (2,) arrays
+        Middle of the contact and the unit normal into the body.
+    half_width : float
+        a [m]
+    peak : float
+        p [Pa]
+    """
+    z, x, _ = _frame(points, centre, inward)
+    z = np.maximum(z, 0.0)
+    a = half_width
+    s = a**2 - x**2 + z**2
+    root = np.sqrt(s**2 + 4 * x**2 * z**2)
+    m = np.sqrt(np.maximum(0.5 * (root + s), 0.0))
+    n = np.sqrt(np.maximum(0.5 * (root - s), 0.0)) * np.sign(x)
+    total = np.maximum(root, 1e-300)  # m^2 + n^2
+    share = (z**2 + n**2) / total
+    sigma_x = -peak / a * (m * (1 + share) - 2 * z)
+    sigma_z = -peak / a * m * (1 - share)
+    tau = -peak / a * n * (m**2 - z**2) / total
+    side = np.array([-inward[1], inward[0]])
+    tensor: Array = (
+        np.multiply.outer(sigma_x, np.outer(side, side))
+        + np.multiply.outer(sigma_z, np.outer(inward, inward))
+        + np.multiply.outer(tau, np.outer(side, inward) + np.outer(inward, side))
+    )
+    return tensor

@@ -1,0 +1,209 @@
+"""The whole annulus by one sector: static condensation and the discrete Fourier transform over the teeth.
+
+All sectors of a gear are copies of one another. The sector's stiffness matrix is factorised once, its inner
+unknowns are condensed onto the two cuts to its neighbours, and the ring of z such sectors, whose matrix is
+block-circulant in polar components, is solved harmonic by harmonic. The result is that of the whole annulus
+with the same elements in every sector, to rounding.
+
+Notation: sector j (counted anticlockwise) lies between interface j on its right and interface j + 1 on its
+left; q_j are the displacements of interface j in polar components; the hub (bore) is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.elasticity import PlaneElasticity, stiffness_matrix
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+    from meshes import SectorMesh
+
+__all__ = ["Ring", "ring_of"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A gear's annulus, factorised.
+
+    Attributes
+    ----------
+    mesh : SectorMesh
+    law : PlaneElasticity
+    inner, cut, hub : index arrays
+        Unknowns (2 node + component) inside the sector, on the cuts (right ones first) and on the bore.
+    factor : scipy.sparse.linalg.SuperLU
+        Of the stiffness of the inner unknowns.
+    K_ic, K_ih, K_cc, K_ch : sparse matrices
+        Blocks of the sector's stiffness matrix.
+    inner_by_cut : (inner, cut) array
+        K_ii^-1 K_ic: minus the inner displacements that unit displacements of the cuts cause.
+    polar : (cut, cut) sparse matrix
+        From polar to Cartesian components on the cuts.
+    schur : (cut, cut) array
+        Stiffness of the sector as seen from its cuts, polar components.
+    green : mapping of int to (b, b) array
+        Displacements of interface j by unit forces on interface 0, for the few j that teeth near the load need.
+    seconds : mapping of str to float
+        Time of assembly, factorisation and condensation.
+    """
+
+    mesh: SectorMesh
+    law: PlaneElasticity
+    inner: Index
+    cut: Index
+    hub: Index
+    factor: Any
+    K_ic: csc_array
+    K_ih: csc_array
+    K_cc: csc_array
+    K_ch: csc_array
+    inner_by_cut: Array
+    polar: csc_array
+    schur: Array
+    green: Mapping[int, Array]
+    seconds: Mapping[str, float]
+
+    @property
+    def unknowns(self) -> int:
+        """Unknowns of the whole annulus that this ring stands for."""
+        return self.mesh.teeth * (len(self.inner) + len(self.cut) // 2)
+
+    def interfaces(self, force: Array, sectors: range) -> Array:
+        """Displacements of both cuts of some sectors when forces act on the cuts of sector 0.
+
+        Parameters
+        ----------
+        force : (cut, loads) array
+            Forces on the cuts of sector 0, polar components, right cut first [per unit thickness].
+        sectors : range
+            Sectors whose cuts are wanted; ``self.green`` must reach one interface further on either side.
+
+        Returns
+        -------
+        (sectors, cut, loads) array
+            Polar components, right cut first.
+        """
+        half = len(self.cut) // 2
+        on_right, on_left = force[:half], force[half:]
+        q = {
+            j: self.green[j] @ on_right + self.green[j - 1] @ on_left
+            for j in range(sectors.start, sectors.stop + 1)
+        }
+        return np.stack([np.concatenate([q[j], q[j + 1]]) for j in sectors])
+
+    def all_interfaces(self, force: Array) -> Array:
+        """As ``interfaces`` for every sector 0..z-1 and one load: (z, cut)."""
+        half, z = len(self.cut) // 2, self.mesh.teeth
+        right, left = force[:half], force[half:]
+        q = np.empty((z, half))
+        spectrum = np.empty((z // 2 + 1, half), dtype=complex)
+        for start in range(0, z // 2 + 1, 64):
+            n = np.arange(start, min(start + 64, z // 2 + 1))
+            turn = np.exp(-2j * np.pi * n / z)
+            load = right + turn[:, None] * left
+            spectrum[n] = np.linalg.solve(_harmonics(self.schur, n, z), load[..., None])[..., 0]
+        q = np.fft.irfft(spectrum, n=z, axis=0)
+        return np.concatenate([q, np.roll(q, -1, axis=0)], axis=1)
+
+
+def ring_of(mesh: SectorMesh, law: PlaneElasticity, reach: int = 1) -> Ring:
+    """Assemble, factorise and condense the sector, and solve the ring.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+    law : PlaneElasticity
+    reach : int
+        Teeth on either side of the loaded one whose displacements will be asked for.
+    """
+    from time import perf_counter
+
+    from scipy.sparse import block_diag, csc_array
+    from scipy.sparse.linalg import splu
+
+    began = perf_counter()
+    stiffness = stiffness_matrix(mesh.points, mesh.triangles, law)
+    assembled = perf_counter()
+    hub_nodes = np.unique(mesh.facets["bore"])
+    right = np.setdiff1d(mesh.side_nodes("right"), hub_nodes, assume_unique=True)
+    left = np.setdiff1d(mesh.side_nodes("left"), hub_nodes, assume_unique=True)
+    by_radius = [side[np.argsort(np.linalg.norm(mesh.points[side], axis=1))] for side in (right, left)]
+    cut, hub = _unknowns(np.concatenate(by_radius)), _unknowns(hub_nodes)
+    inner = np.setdiff1d(np.arange(mesh.unknowns), np.concatenate([cut, hub]))
+    rows = stiffness[inner]
+    # symmetric and definite: no pivoting, and an ordering for symmetric patterns
+    factor = splu(
+        csc_array(rows[:, inner]),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    factored = perf_counter()
+    K_ic, K_cc = csc_array(rows[:, cut]), csc_array(stiffness[cut][:, cut])
+    inner_by_cut = factor.solve(K_ic.toarray())
+    outward = mesh.points[np.concatenate(by_radius)]
+    outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+    turns = np.stack([outward, np.stack([-outward[:, 1], outward[:, 0]], axis=1)], axis=2)
+    polar = csc_array(block_diag(list(turns)))
+    schur = polar.T @ (polar.T @ (K_cc.toarray() - K_ic.T @ inner_by_cut)).T
+    schur = 0.5 * (schur + schur.T)
+    green = _green(schur, mesh.teeth, reach)
+    condensed = perf_counter()
+    return Ring(
+        mesh,
+        law,
+        inner,
+        cut,
+        hub,
+        factor,
+        K_ic,
+        csc_array(rows[:, hub]),
+        K_cc,
+        csc_array(stiffness[cut][:, hub]),
+        inner_by_cut,
+        polar,
+        schur,
+        MappingProxyType(green),
+        MappingProxyType(
+            {"assemble": assembled - began, "factor": factored - assembled, "condense": condensed - factored}
+        ),
+    )
+
+
+def _unknowns(nodes: Index) -> Index:
+    unknowns: Index = (2 * nodes[:, None] + np.arange(2)).ravel()
+    return unknowns
+
+
+def _harmonics(schur: Array, n: Index, teeth: int) -> NDArray[np.complex128]:
+    """Ring stiffness of the harmonics n: S_RR + S_LL + S_RL e^(i n phi) + S_LR e^(-i n phi)."""
+    half = len(schur) // 2
+    turn = np.exp(2j * np.pi * n / teeth)[:, None, None]
+    both = schur[:half, :half] + schur[half:, half:]
+    ring: NDArray[np.complex128] = both + schur[:half, half:] * turn + schur[half:, :half] / turn
+    return ring
+
+
+def _green(schur: Array, teeth: int, reach: int) -> dict[int, Array]:
+    """Displacement of interface j by a unit force on interface 0, |j| <= reach + 2."""
+    half = len(schur) // 2
+    j = np.arange(-reach - 2, reach + 3)
+    total = np.zeros((len(j), half, half))
+    for start in range(0, teeth // 2 + 1, 64):
+        n = np.arange(start, min(start + 64, teeth // 2 + 1))
+        inverse = np.linalg.inv(_harmonics(schur, n, teeth))
+        twice = np.where((n == 0) | (2 * n == teeth), 1.0, 2.0) / teeth
+        phase = np.exp(2j * np.pi * np.outer(j, n) / teeth) * twice
+        total += np.real(np.tensordot(phase, inverse, axes=1))
+    return dict(zip(j.tolist(), total, strict=True))

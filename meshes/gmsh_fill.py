@@ -1,0 +1,116 @@
+"""gmsh fills a polygon with triangles, without touching the polygon's own nodes."""
+
+from __future__ import annotations
+
+import threading
+from itertools import count
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.errors import Fault, MeshError
+from meshes.outline import crossing
+
+__all__ = ["triangulate"]
+
+_one_at_a_time = threading.Lock()  # gmsh keeps one state per process
+_names = count()
+
+
+def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangles inside a simple closed polygon, graded by the lengths of its edges.
+
+    Parameters
+    ----------
+    polygon : (n, 2) array
+        Corners in anticlockwise order [any length unit].
+
+    Returns
+    -------
+    points : (k, 2) array
+        The first n are the polygon's corners, unchanged.
+    triangles : (m, 3) array
+        Anticlockwise.
+
+    Raises
+    ------
+    MeshError
+        When the polygon cuts itself (gmsh could then run for ever), or gmsh does not keep its edges.
+    """
+    if not np.all(np.isfinite(polygon)):
+        raise MeshError(Fault("outline", "nan or inf", "finite coordinates", "check the tooth's profile"))
+    cut = crossing(polygon)
+    if cut is not None:
+        where = polygon[cut[0]]
+        raise MeshError(
+            Fault(
+                "outline",
+                f"edges {cut[0]} and {cut[1]} cross near ({where[0]:g}, {where[1]:g})",
+                "an outline that does not cut itself",
+                "use smaller elements, or check the tooth's profile and the bore",
+            )
+        )
+    scale = float(np.max(np.ptp(polygon, axis=0)))
+    with _one_at_a_time:
+        points, triangles = _fill(polygon / scale)
+    if not np.allclose(points[: len(polygon)], polygon / scale, rtol=0, atol=1e-13):
+        raise MeshError(Fault("outline", "moved by gmsh", "nodes kept in place", "use smaller elements"))
+    points *= scale
+    points[: len(polygon)] = polygon
+    a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    triangles[area < 0] = triangles[area < 0][:, [0, 2, 1]]
+    return points, triangles
+
+
+def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    import gmsh
+
+    began = not gmsh.isInitialized()
+    if began:
+        # interruptible=False: gmsh otherwise sets a signal handler, which only the main thread may do
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.option.setNumber("Mesh.Algorithm", 6)
+        gmsh.option.setNumber("Mesh.ElementOrder", 1)
+        gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
+        gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
+        name = f"sector {next(_names)}"
+        gmsh.model.add(name)
+        try:
+            return _mesh_polygon(gmsh, polygon)
+        finally:
+            gmsh.model.setCurrent(name)
+            gmsh.model.remove()
+    finally:
+        if began:
+            gmsh.finalize()
+
+
+def _mesh_polygon(
+    gmsh: object, polygon: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    model = gmsh.model  # type: ignore[attr-defined]
+    geo, n = model.geo, len(polygon)
+    corners = [geo.addPoint(float(x), float(y), 0.0) for x, y in polygon]
+    lines = [geo.addLine(corners[i], corners[(i + 1) % n]) for i in range(n)]
+    surface = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+    for line in lines:
+        geo.mesh.setTransfiniteCurve(line, 2)  # two nodes: the edge is kept whole
+    geo.synchronize()
+    model.mesh.generate(2)
+    tags, coordinates, _ = model.mesh.getNodes()
+    order = {int(model.mesh.getNodes(0, corner)[0][0]): i for i, corner in enumerate(corners)}
+    index = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    new = n
+    points = np.empty((len(tags), 2))
+    for tag, xyz in zip(tags, np.reshape(coordinates, (-1, 3)), strict=True):
+        place = order.get(int(tag))
+        if place is None:
+            place, new = new, new + 1
+        index[int(tag)] = place
+        points[place] = xyz[:2]
+    _, nodes = model.mesh.getElementsByType(2, surface)
+    return points, index[np.reshape(nodes, (-1, 3)).astype(np.int64)]

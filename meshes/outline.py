@@ -1,0 +1,215 @@
+"""Outline of one tooth sector: exact curves, each cut into edges of the wished length.
+
+A sector is one pitch of the gear, its tooth along +y and the gear's axis at the origin. The outline is run
+through anticlockwise, with the material on the left hand: up the right side (x > 0), over the tooth, down the
+left side and back along the bottom arc. Every edge keeps the parameters of its ends on its curve, so that
+mid-side nodes and nodes of refined meshes can be put on the exact curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.errors import Fault, MeshError
+
+if TYPE_CHECKING:
+    from gears import ToothProfile
+
+__all__ = ["Curve", "Sizes", "cut", "sector_curves"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Wished lengths of element edges, in modules, and how fast they may grow.
+
+    Attributes
+    ----------
+    flank, fillet, root, top : float
+        Edge lengths on the flanks, fillets, root arcs and the top land.
+    corner : float
+        Edge length at the tip corner of the working flank: the displacement under a load near the corner
+        changes over the load's distance from it.
+    rim : float
+        Edge length at the bottom of the part that gmsh meshes.
+    growth : float
+        Growth of the edge length per length away from the corner.
+    layer_growth : float
+        Ratio of the heights of successive layers between the rim and the bore.
+    """
+
+    flank: float = 0.35
+    fillet: float = 0.25
+    root: float = 0.35
+    top: float = 0.35
+    corner: float = 0.01
+    rim: float = 0.8
+    growth: float = 0.7
+    layer_growth: float = 1.35
+
+    def __post_init__(self) -> None:
+        faults = [
+            Fault(f"sizes.{name}", f"{value:g}", "finite and > 0 (modules)", "give a positive edge length")
+            for name, value in vars(self).items()
+            if not (np.isfinite(value) and value > 0)
+        ]
+        if np.isfinite(self.layer_growth) and self.layer_growth < 1:
+            faults.append(
+                Fault("sizes.layer_growth", f"{self.layer_growth:g}", ">= 1", "layers grow towards the bore")
+            )
+        if faults:
+            raise MeshError(*faults)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One named piece of the outline.
+
+    Attributes
+    ----------
+    name : str
+        ``side_right``, ``root_right``, ``fillet_right``, ``flank_right``, ``chamfer_right``, ``top`` and so
+        on down the left; ``bottom`` is the arc under the sector.
+    start, end : float
+        Parameters where the anticlockwise run enters and leaves the curve: curvature radius rho [m] on
+        flanks, t on fillets and chamfers, polar angle from the centre line [rad] on arcs, radius [m] on sides.
+    at : callable
+        Points (n, 2) [m] at parameters (n,).
+    size : callable
+        Wished edge length [m] at points (n, 2).
+    """
+
+    name: str
+    start: float
+    end: float
+    at: Callable[[Array], Array]
+    size: Callable[[Array], Array]
+
+
+def polar(radius: float | Array, angle: float | Array) -> Array:
+    """Point(s) at a polar angle from the tooth's centre line, positive to the right (x > 0)."""
+    return np.stack(np.broadcast_arrays(radius * np.sin(angle), radius * np.cos(angle)), axis=-1)
+
+
+def cut(curve: Curve, samples: int = 400) -> Array:
+    """Parameters of the nodes on a curve: the edge length follows ``curve.size``.
+
+    The number of edges is the integral of ds/size, rounded up, and each edge gets an equal part of it.
+    """
+    # the ends sampled densely: the size may fall by two decades towards the tip corner
+    s = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, samples))
+    t = curve.start + (curve.end - curve.start) * s
+    points = curve.at(t)
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    wished = curve.size(0.5 * (points[1:] + points[:-1]))
+    count = np.concatenate([[0.0], np.cumsum(step / wished)])
+    edges = max(1, int(np.ceil(count[-1] - 1e-9)))
+    cuts = np.interp(np.linspace(0.0, count[-1], edges + 1), count, t)
+    cuts[0], cuts[-1] = curve.start, curve.end
+    return cuts
+
+
+def sector_curves(
+    profile: ToothProfile, sizes: Sizes, bottom_radius: float, working: str = "left"
+) -> tuple[Curve, ...]:
+    """Curves of the outline in anticlockwise order, from ``bottom_radius`` up over the tooth.
+
+    Parameters
+    ----------
+    profile : gears.ToothProfile
+    sizes : Sizes
+    bottom_radius : float
+        Radius of the arc under the sector [m]: the bore, or the rim's bottom where layers follow.
+    working : {"left", "right"}
+        The loaded flank, whose tip corner is meshed finely.
+
+    Returns
+    -------
+    tuple of Curve
+    """
+    m, half_pitch = profile.module, 0.5 * profile.pitch_angle
+    mirror = np.array([-1.0, 1.0])
+    corner = profile.involute(np.array([profile.flank_rho[1]]))[0]
+    corner = corner if working == "right" else corner * mirror
+
+    def constant(length: float) -> Callable[[Array], Array]:
+        def size(points: Array) -> Array:
+            away = np.linalg.norm(points - corner, axis=-1)
+            return np.minimum(length * m, sizes.corner * m + sizes.growth * away)
+
+        return size
+
+    def bent(points: Array) -> Array:
+        # a fillet edge turns by no more than about half a radian at its tightest place
+        tangent = np.gradient(points, axis=0)
+        turn = np.abs(np.gradient(np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0]))))
+        radius = np.linalg.norm(tangent, axis=1) / np.maximum(turn, 1e-12)
+        limit: Array = np.minimum(sizes.fillet * m, 0.5 * sizes.fillet / 0.25 * np.maximum(radius, 0.02 * m))
+        return limit
+
+    def side(points: Array) -> Array:
+        deep = (profile.root_radius - np.linalg.norm(points, axis=-1)) / m
+        edge: Array = m * np.minimum(sizes.root + 0.45 * np.maximum(deep, 0.0), sizes.rim)
+        return edge
+
+    rho_form, rho_end = profile.flank_rho
+    right: list[Curve] = [
+        Curve("side_right", bottom_radius, profile.root_radius, lambda r: polar(r, half_pitch), side)
+    ]
+    if (half_pitch - profile.root_half_angle) * profile.root_radius > 1e-6 * m:
+        right.append(
+            Curve(
+                "root_right",
+                half_pitch,
+                profile.root_half_angle,
+                lambda angle: polar(profile.root_radius, angle),
+                constant(sizes.root),
+            )
+        )
+    right.append(Curve("fillet_right", 0.0, 1.0, profile.fillet, bent))
+    right.append(Curve("flank_right", rho_form, rho_end, profile.involute, constant(sizes.flank)))
+    if profile.flank_end_radius < profile.tip_radius * (1 - 1e-12):
+        right.append(Curve("chamfer_right", 0.0, 1.0, profile.chamfer, constant(sizes.top)))
+
+    def mirrored(curve: Curve) -> Curve:
+        def at(t: Array, original: Callable[[Array], Array] = curve.at) -> Array:
+            return original(t) * mirror
+
+        return Curve(curve.name.replace("right", "left"), curve.end, curve.start, at, curve.size)
+
+    top = Curve(
+        "top",
+        profile.tip_half_angle,
+        -profile.tip_half_angle,
+        lambda angle: polar(profile.tip_radius, angle),
+        constant(sizes.top),
+    )
+    bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m))))
+    bottom = Curve(
+        "bottom",
+        -half_pitch,
+        half_pitch,
+        lambda angle: polar(bottom_radius, angle),
+        lambda points: np.full(len(points), profile.pitch_angle * bottom_radius / bottom_edges),
+    )
+    return (*right, top, *(mirrored(curve) for curve in reversed(right)), bottom)
+
+
+def crossing(points: Array) -> tuple[int, int] | None:
+    """First pair of edges of a closed polygon that cut each other; None when it is simple."""
+    a, b = points, np.roll(points, -1, axis=0)
+
+    def turn(p: Array, q: Array, r: Array) -> Any:
+        d, e = q - p, r - p
+        return d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
+
+    a1, b1, a2, b2 = a[:, None], b[:, None], a[None], b[None]
+    cuts = (turn(a1, b1, a2) * turn(a1, b1, b2) < 0) & (turn(a2, b2, a1) * turn(a2, b2, b1) < 0)
+    hits = np.argwhere(cuts)
+    return None if len(hits) == 0 else (int(hits[0, 0]), int(hits[0, 1]))

@@ -1,0 +1,260 @@
+"""Curved second-order mesh of one tooth sector, its refinement, and the whole annulus made of copies of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.errors import Fault, MeshError
+from meshes.gmsh_fill import triangulate
+from meshes.outline import Curve, Sizes, cut, polar, sector_curves
+
+if TYPE_CHECKING:
+    from gears import ToothProfile
+
+__all__ = ["SectorMesh", "mesh_sector", "refined"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SectorMesh:
+    """One pitch of a gear in second-order triangles; tooth along +y, gear axis at the origin.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Nodes [m], corners and mid-side nodes.
+    triangles : (m, 6) array
+        Anticlockwise corners 0 1 2, then the middles of 01, 12 and 20 (VTK's order).
+    facets : mapping of str to (k, 3) array
+        Edges of each named boundary, material on the left: first node, last node, middle. The names are
+        ``flank_left``, ``flank_right``, ``fillet_*``, ``root_*``, ``chamfer_*``, ``top``, ``bore`` and the
+        cuts to the neighbouring sectors ``side_left``, ``side_right``.
+    parameters : mapping of str to (k, 2) array
+        The curve's parameter at both ends of each edge; its mean belongs to the middle node.
+    curves : mapping of str to Curve
+    teeth : int
+    module : float
+        [m]
+    """
+
+    points: Array
+    triangles: Index
+    facets: Mapping[str, Index]
+    parameters: Mapping[str, Array]
+    curves: Mapping[str, Curve]
+    teeth: int
+    module: float
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement components of the sector."""
+        return 2 * len(self.points)
+
+    def side_nodes(self, side: str) -> Index:
+        """Nodes of a cut to the neighbour (``"left"`` or ``"right"``) from the bore outwards."""
+        nodes = np.unique(self.facets[f"side_{side}"])
+        ordered: Index = nodes[np.argsort(np.linalg.norm(self.points[nodes], axis=1))]
+        return ordered
+
+
+def mesh_sector(
+    profile: ToothProfile, sizes: Sizes | None = None, refinements: int = 0, working: str = "left"
+) -> SectorMesh:
+    """Mesh one sector: gmsh fills tooth and rim, structured layers go down to the bore.
+
+    Parameters
+    ----------
+    profile : gears.ToothProfile
+        Checked geometry; one tooth along +y.
+    sizes : Sizes, optional
+        Edge lengths in modules.
+    refinements : int
+        How often every triangle is split in four, new boundary nodes on the exact curves.
+    working : {"left", "right"}
+        The loaded flank, whose tip corner is meshed finely. The working flanks of both gears are the left
+        ones when the pinion drives anticlockwise.
+
+    Returns
+    -------
+    SectorMesh
+
+    Raises
+    ------
+    MeshError
+        Outline that cuts itself, or an element turned inside out.
+    """
+    sizes = sizes or Sizes()
+    m, pitch = profile.module, profile.pitch_angle
+    rim = profile.root_radius - 0.8 * np.pi * m
+    layered = rim - profile.bore_radius > 0.6 * sizes.rim * m
+    bottom = rim if layered else profile.bore_radius
+    curves = list(sector_curves(profile, sizes, bottom, working))
+    cuts = [cut(curve) for curve in curves]
+    polygon = np.concatenate([curve.at(t[:-1]) for curve, t in zip(curves, cuts, strict=True)])
+    points, triangles = triangulate(polygon)
+    ends: dict[str, tuple[Index, Array]] = {}
+    first = 0
+    for curve, t in zip(curves, cuts, strict=True):
+        nodes = np.arange(first, first + len(t)) % len(polygon)
+        ends[curve.name] = (np.stack([nodes[:-1], nodes[1:]], axis=1), np.stack([t[:-1], t[1:]], axis=1))
+        first += len(t) - 1
+    named = {curve.name: curve for curve in curves}
+    if layered:
+        radii = _layer_radii(rim, profile.bore_radius, sizes, m)
+        points, triangles = _add_layers(points, triangles, ends, cuts[-1], radii)
+        named["bottom"] = Curve(
+            "bore",
+            -0.5 * pitch,
+            0.5 * pitch,
+            lambda angle: polar(profile.bore_radius, angle),
+            curves[-1].size,
+        )
+    ends["bore"], named["bore"] = ends.pop("bottom"), named.pop("bottom")
+    mesh = _second_order(points, triangles, ends, named, profile.teeth, m)
+    for _ in range(refinements):
+        mesh = refined(mesh)
+    return mesh
+
+
+def _layer_radii(rim: float, bore: float, sizes: Sizes, module: float) -> Array:
+    """Radii from the rim to the bore, heights in geometric growth."""
+    depth, g = rim - bore, sizes.layer_growth
+    first = sizes.rim * module
+    if g == 1.0:
+        layers = max(1, round(depth / first))
+    else:
+        layers = max(1, round(np.log1p(depth * (g - 1) / first) / np.log(g)))
+    heights = g ** np.arange(layers)
+    radii: Array = rim - depth * np.concatenate([[0.0], np.cumsum(heights) / np.sum(heights)])
+    radii[-1] = bore
+    return radii
+
+
+def _add_layers(
+    points: Array,
+    triangles: Index,
+    ends: dict[str, tuple[Index, Array]],
+    angles: Array,
+    radii: Array,
+) -> tuple[Array, Index]:
+    """Rings of split quadrilaterals under the rim; the cuts and the bottom are continued."""
+    columns = len(angles) - 1
+    above = np.append(ends["bottom"][0][:, 0], ends["bottom"][0][-1, 1])
+    rows = [above]
+    fresh = [points]
+    start = len(points)
+    for radius in radii[1:]:
+        fresh.append(polar(float(radius), angles))
+        rows.append(np.arange(start, start + columns + 1))
+        start += columns + 1
+    quads = []
+    for upper, lower in zip(rows[:-1], rows[1:], strict=True):
+        a, b, c, d = upper[:-1], upper[1:], lower[1:], lower[:-1]  # angles grow to the right
+        leaning = np.arange(columns) < columns / 2
+        quads.append(np.where(leaning[:, None], np.stack([a, d, c], 1), np.stack([a, d, b], 1)))
+        quads.append(np.where(leaning[:, None], np.stack([a, c, b], 1), np.stack([b, d, c], 1)))
+    down = np.array(rows)
+    left = np.stack([down[:-1, 0], down[1:, 0]], axis=1)
+    right = np.stack([down[:0:-1, -1], down[-2::-1, -1]], axis=1)
+    outward, inward = np.stack([radii[:0:-1], radii[-2::-1]], 1), np.stack([radii[:-1], radii[1:]], 1)
+    ends["side_left"] = tuple(  # type: ignore[assignment]
+        np.concatenate(both) for both in zip(ends["side_left"], (left, inward), strict=True)
+    )
+    ends["side_right"] = tuple(  # type: ignore[assignment]
+        np.concatenate(both) for both in zip((right, outward), ends["side_right"], strict=True)
+    )
+    ends["bottom"] = (np.stack([rows[-1][:-1], rows[-1][1:]], axis=1), ends["bottom"][1])
+    return np.concatenate(fresh), np.concatenate([triangles, *quads])
+
+
+def _second_order(
+    corners: Array,
+    triangles: Index,
+    ends: Mapping[str, tuple[Index, Array]],
+    curves: Mapping[str, Curve],
+    teeth: int,
+    module: float,
+) -> SectorMesh:
+    """Mid-side nodes: half-way on inner edges, at the mean parameter on the curves."""
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
+    keys = edges[:, 0] * len(corners) + edges[:, 1]
+    unique, inverse = np.unique(keys, return_inverse=True)
+    middle = np.stack(np.divmod(unique, len(corners)), axis=1)
+    points = np.concatenate([corners, corners[middle].mean(axis=1)])
+    facets, parameters = {}, {}
+    for name, (nodes, t) in ends.items():
+        low, high = np.sort(nodes, axis=1).T
+        found = np.searchsorted(unique, low * len(corners) + high)
+        if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
+            raise MeshError(Fault(name, "edges lost", "every edge of the outline kept", "use smaller elements"))
+        points[len(corners) + found] = curves[name].at(t.mean(axis=1))
+        facets[name] = np.column_stack([nodes, len(corners) + found])
+        parameters[name] = t
+    six = np.concatenate([triangles, len(corners) + inverse.reshape(-1, 3)], axis=1)
+    _refuse_inverted(points, six)
+    return SectorMesh(
+        points,
+        six,
+        MappingProxyType(facets),
+        MappingProxyType(parameters),
+        MappingProxyType(dict(curves)),
+        teeth,
+        module,
+    )
+
+
+# derivatives of the six shape functions at the six nodes (xi, eta of the corners and the middles)
+_NODES = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+
+
+def shape_gradients(xi: Array, eta: Array) -> Array:
+    """Gradients (..., 6, 2) of the P2 shape functions with respect to the reference coordinates."""
+    l0 = 1 - xi - eta
+    zero = np.zeros_like(xi)
+    d_xi = np.stack([1 - 4 * l0, 4 * xi - 1, zero, 4 * (l0 - xi), 4 * eta, -4 * eta], axis=-1)
+    d_eta = np.stack([1 - 4 * l0, zero, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (l0 - eta)], axis=-1)
+    return np.stack([d_xi, d_eta], axis=-1)
+
+
+def _refuse_inverted(points: Array, triangles: Index) -> None:
+    gradients = shape_gradients(_NODES[:, 0], _NODES[:, 1])
+    jacobian = np.einsum("mix,qir->mqxr", points[triangles], gradients)
+    determinant = np.linalg.det(jacobian)
+    bad = np.flatnonzero(determinant.min(axis=1) <= 0)
+    if len(bad):
+        x, y = points[triangles[bad[0], :3]].mean(axis=0)
+        raise MeshError(
+            Fault(
+                "elements",
+                f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})",
+                "positive Jacobian",
+                "use smaller elements on curved boundaries",
+            )
+        )
+
+
+def refined(mesh: SectorMesh) -> SectorMesh:
+    """Split every triangle in four; the middles become corners, new middles lie on the exact curves."""
+    a, b, c, ab, bc, ca = mesh.triangles.T
+    children = np.concatenate(
+        [
+            np.stack(three, axis=1)
+            for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        ]
+    )
+    ends = {}
+    for name, facets in mesh.facets.items():
+        first, last, middle = facets.T
+        t = mesh.parameters[name]
+        half = t.mean(axis=1)
+        nodes = np.stack([first, middle, middle, last], axis=1).reshape(-1, 2)
+        ends[name] = (nodes, np.stack([t[:, 0], half, half, t[:, 1]], axis=1).reshape(-1, 2))
+    return _second_order(mesh.points, children, ends, mesh.curves, mesh.teeth, mesh.module)
