@@ -1,0 +1,160 @@
+"""The command line: run, check and new."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from flankfilm.faults import Fault, InputError, SolverError
+
+USER_FAULT = 2
+SOLVER_FAULT = 3
+INTERRUPTED = 130
+
+app = App(
+    name="flankfilm",
+    help="Stiffness, oil film and motion of spur-gear pairs, each number with its error estimate and its cost.",
+    version_flags=["--version"],
+)
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("flankfilm")
+
+
+app.version = _version
+
+
+@app.command
+def run(
+    scene: Path,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="Folder for the results; SCENE-results beside you if left out.")] = None,
+    tolerance: Annotated[
+        str | None, Parameter(help="Relative, such as 0.5% or 0.005; overrules the scene's tolerance.")
+    ] = None,
+    cache: Annotated[bool, Parameter(help="Use results of earlier runs whose inputs and code are the same.")] = True,
+) -> int:
+    """Compute what SCENE wants and write the results and a report.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML).
+    """
+    from flankfilm.cache import keep_compiled_code
+
+    keep_compiled_code()
+    from flankfilm.progress import console_progress
+    from flankfilm.run import run_scene
+    from flankfilm.scene import read_scene
+
+    wanted = read_scene(scene)
+    if tolerance is not None:
+        wanted = wanted.model_copy(update={"tolerance": parse_tolerance(tolerance)})
+    folder = out if out is not None else Path(f"{scene.stem}-results")
+    with console_progress() as progress:
+        results = run_scene(wanted, folder, use_cache=cache, progress=progress)
+    for line in results.summary():
+        print(line)
+    return 0
+
+
+@app.command
+def check(scene: Path, /) -> int:
+    """Check SCENE, its geometry included, and list every fault; compute nothing.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML).
+    """
+    from flankfilm.build import check_scene
+    from flankfilm.scene import read_scene
+
+    wanted = read_scene(scene)
+    for line in check_scene(wanted):
+        print(line)
+    return 0
+
+
+@app.command
+def new(scene: Path, /) -> int:
+    """Write a commented scene to start from to SCENE, which must not exist yet.
+
+    Parameters
+    ----------
+    scene : Path
+        The file to write.
+    """
+    from flankfilm.scene import template
+
+    if scene.suffix != ".toml":
+        raise InputError([Fault(str(scene), "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")])
+    try:
+        with scene.open("x", encoding="utf-8") as file:
+            file.write(template())
+    except FileExistsError as fault:
+        raise InputError([Fault(str(scene), "", "exists already and is kept", "Name another file")]) from fault
+    print(f"{scene} is written. Next: flankfilm run {scene}")
+    return 0
+
+
+def parse_tolerance(text: str) -> float:
+    """Read a tolerance such as ``0.5%`` or ``0.005``.
+
+    Raises
+    ------
+    InputError
+        Where it is no number or out of range.
+    """
+    from flankfilm.scene import Scene
+
+    number, percent, rest = text.strip().partition("%")
+    try:
+        value = float(number) * (0.01 if percent else 1.0)
+    except ValueError:
+        value = float("nan")
+    low, high = (getattr(m, n) for m, n in zip(Scene.model_fields["tolerance"].metadata, ("ge", "le"), strict=True))
+    if rest or not low <= value <= high:
+        allowed = f"must be from {low:g} to {high:g}, or the same in per cent"
+        raise InputError([Fault("--tolerance", text, allowed, "Such as --tolerance 0.5%")])
+    return value
+
+
+def guarded(command: Callable[[], int]) -> int:
+    """Run a command; turn what it raises for the user's sake into messages and exit statuses."""
+    try:
+        return command()
+    except InputError as error:
+        count = len(error.faults)
+        print(f"flankfilm: {count} fault{'s' if count > 1 else ''}", file=sys.stderr)
+        for fault in error.faults:
+            print(f"  {fault}", file=sys.stderr)
+        return USER_FAULT
+    except SolverError as error:
+        print(f"flankfilm: {error}", file=sys.stderr)
+        return SOLVER_FAULT
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 0
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        print(f"flankfilm: {where}{error.strerror or error}", file=sys.stderr)
+        return USER_FAULT
+    except KeyboardInterrupt:
+        print("flankfilm: interrupted; files written so far are whole, and the next run takes up from the cache",
+              file=sys.stderr)
+        return INTERRUPTED
+
+
+def main() -> None:
+    """Entry point of the ``flankfilm`` script."""
+    sys.exit(guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0)))

@@ -1,0 +1,1 @@
+"""One plot function for each kind of result; each returns a matplotlib figure."""

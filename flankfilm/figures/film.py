@@ -1,0 +1,68 @@
+"""Film thickness and pressure, along the path of contact and through the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flankfilm.figures.style import COLOURS, DASHES, figure, legend_above, styled
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ehl import Film
+
+Array = NDArray[np.float64]
+
+
+def film_along_path(position: Array, central: Array, minimum: Array, pressure: Array, marks: Mapping[str, float]) -> Figure:
+    """Draw central and minimum film and the Hertz pressure against the travel of a pair from A.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n,)
+        Travel from A [m], rising.
+    central, minimum : ndarray, shape (n,)
+        Film thickness [m].
+    pressure : ndarray, shape (n,)
+        Peak Hertz pressure [Pa].
+    marks : mapping
+        Name of a point of the path to its travel from A [m].
+    """
+    with styled():
+        drawn = figure(height=4.2)
+        upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        upper.plot(1e3 * position, 1e6 * central, color=COLOURS[0], label="central film")
+        upper.plot(1e3 * position, 1e6 * minimum, color=COLOURS[1], linestyle="--", label="minimum film")
+        upper.set(ylabel="film thickness [µm]", ylim=(0, None))
+        legend_above(upper)
+        lower.plot(1e3 * position, 1e-9 * pressure, color=COLOURS[2])
+        lower.set(xlabel="travel along the path of contact from A [mm]", ylabel="Hertz pressure [GPa]", ylim=(0, None))
+        for axes in (upper, lower):
+            for at in marks.values():
+                axes.axvline(1e3 * at, color="#999999", linewidth=0.8)
+        for name, at in marks.items():
+            lower.annotate(
+                name, (1e3 * at, 0.04), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points"
+            )
+    return drawn
+
+
+def film_profiles(films: Mapping[str, Film]) -> Figure:
+    """Draw pressure and film thickness through the contact, one curve for each labelled film."""
+    with styled():
+        drawn = figure(height=4.4)
+        upper, lower = drawn.subplots(2, 1, sharex=True)
+        for (label, film), colour, dash in zip(films.items(), COLOURS, DASHES, strict=False):
+            x = film.x / film.contact.half_width
+            upper.plot(x, 1e-9 * film.pressure, color=colour, linestyle=dash, label=label)
+            lower.plot(x, 1e6 * film.thickness, color=colour, linestyle=dash)
+        upper.set(ylabel="pressure [GPa]")
+        legend_above(upper, columns=5)
+        thickest = max(film.central_thickness for film in films.values())
+        lower.set(xlabel="distance from the line of centres [half-widths]", ylabel="film thickness [µm]")
+        lower.set(xlim=(-2.0, 1.5), ylim=(0, 3e6 * thickest))
+    return drawn

@@ -1,0 +1,116 @@
+"""Turns the validator's findings into faults that name the key, what is allowed and the remedy."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from types import UnionType
+from typing import Any, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from flankfilm.faults import Fault, shorten
+
+_ALLOWED = {
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "finite_number": "must be a finite number",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "bool_type": "must be true or false",
+    "string_type": "must be text in quotes",
+    "string_too_long": "must have at most {max_length} characters",
+    "literal_error": "must be {expected}",
+    "missing": "is required",
+    "model_type": "must be a table, such as {{ key = value }}",
+    "tuple_type": "must be a list, such as [1, 2]",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
+    "value_error": "{error}",
+}
+
+
+def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> list[Fault]:
+    """Faults for all findings, those of one key (a union's members) joined by "or"."""
+    joined: dict[str, Fault] = {}
+    for fault in (explain(item, model) for item in items):
+        same = joined.get(fault.where)
+        if same is None:
+            joined[fault.where] = fault
+        else:
+            also = fault.allowed.removeprefix("must be ")
+            joined[fault.where] = replace(same, allowed=f"{same.allowed}, or {also}")
+    return list(joined.values())
+
+
+def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Fault:
+    """One fault for one finding of the validator.
+
+    Parameters
+    ----------
+    item : Mapping
+        An entry of ``ValidationError.errors()``.
+    model : type of BaseModel
+        The model of the whole file, to suggest keys from.
+    """
+    location = tuple(item["loc"])
+    where = ".".join(str(part) for part in location if not _names_a_type(part)) or "the scene"
+    if item["type"] == "extra_forbidden":
+        return _unknown_key(where, location, model)
+    allowed = _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
+    value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
+    return Fault(where, value, allowed, _remedy(item))
+
+
+def _names_a_type(part: object) -> bool:
+    # A union adds the name of the tried member to the path; the user never wrote it.
+    return isinstance(part, str) and (part.endswith("Section") or part.startswith("literal["))
+
+
+def _unknown_key(where: str, location: tuple[Any, ...], model: type[BaseModel]) -> Fault:
+    key = str(location[-1])
+    keys = _keys_at(location[:-1], model)
+    near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
+        k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
+    ]
+    remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(keys)}"
+    if near and _unit(near[0]) != _unit(key):
+        remedy += " The unit is part of the key"
+    return Fault(where, "", "is not a key of the scene", remedy)
+
+
+def _unit(key: str) -> str:
+    return key.partition("_")[2]
+
+
+def _keys_at(location: tuple[Any, ...], model: type[BaseModel]) -> list[str]:
+    here = model
+    for part in location:
+        field = here.model_fields.get(str(part))
+        if field is not None:
+            nested = _model_in(field.annotation)
+            if nested is not None:
+                here = nested
+    return list(here.model_fields)
+
+
+def _model_in(annotation: Any) -> type[BaseModel] | None:
+    if get_origin(annotation) in (Union, UnionType):
+        return next((m for m in map(_model_in, get_args(annotation)) if m is not None), None)
+    return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
+
+
+def _remedy(item: Mapping[str, Any]) -> str:
+    kind, value = item["type"], item["input"]
+    if kind in ("float_type", "int_type") and isinstance(value, str):
+        return "Write it without quotes; the unit is part of the key"
+    if kind in ("greater_than_equal", "less_than_equal") and item["loc"] and "_" in str(item["loc"][-1]):
+        return f"Check the unit: the key {item['loc'][-1]} names it"
+    if kind == "literal_error" and isinstance(value, str):
+        words = [w.strip("' ") for w in str(item["ctx"]["expected"]).replace(" or ", ", ").split(",")]
+        near = difflib.get_close_matches(value, words, n=1)
+        return f"Did you mean {near[0]!r}?" if near else ""
+    return ""

@@ -1,0 +1,87 @@
+"""Which sections the wanted outputs need."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flankfilm.faults import Fault
+
+
+def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
+    """Faults for sections that the wants of `raw` need and that are not there.
+
+    Works on the unchecked file, so that missing sections are listed beside faulty keys.
+    """
+    wants = raw.get("wants")
+    listed = {w for w in wants if isinstance(w, str)} if isinstance(wants, list) else set()
+    needed: dict[str, str] = {}
+
+    def need(section: str, reason: str) -> None:
+        needed.setdefault(section, reason)
+
+    stiffness, film, dynamics = (_table(raw, n) for n in ("stiffness", "film", "dynamics"))
+    given = stiffness.get("model") == "given"
+    own_units = "mean_force" in dynamics
+    if listed & {"geometry", "closed-forms", "vtk", "film"}:
+        need("pair", f"wants = [{_quoted(listed & {'geometry', 'closed-forms', 'vtk', 'film'})}]")
+    if listed & {"stiffness", "fourier", "sweep"} and not given:
+        need("pair", f'stiffness.model = "{stiffness.get("model", "fem")}"')
+    if "sweep" in listed:
+        need("dynamics", 'wants = ["sweep"]')
+        if not own_units:
+            need("pair", "a [dynamics] in physical units")
+            need("material", "a [dynamics] in physical units")
+            need("operating", "a [dynamics] in physical units")
+    if "film" in listed or (film and film.get("model", "auto") not in ("none", "auto")):
+        need("lubricant", 'the film' if "film" in listed else f'film.model = "{film["model"]}"')
+    if "pair" in needed and listed != {"geometry"}:
+        need("material", f"wants = [{_quoted(listed)}]")
+        need("operating", f"wants = [{_quoted(listed)}]")
+    faults = [
+        Fault(f"[{section}]", "", f"is required by {reason}", f"Add the section [{section}]")
+        for section, reason in needed.items()
+        if section not in raw
+    ]
+    return faults + _deeper(raw, listed, stiffness, film)
+
+
+def _deeper(
+    raw: Mapping[str, Any], listed: set[str], stiffness: Mapping[str, Any], film: Mapping[str, Any]
+) -> list[Fault]:
+    faults = []
+    operating = _table(raw, "operating")
+    lubricated = "film" in listed or ("lubricant" in raw and film and film.get("model", "auto") != "none")
+    if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
+        faults.append(Fault("operating.pinion_speed_rpm", "", "is required by the film", "Give the pinion's speed"))
+    if "film" in listed and film.get("model") == "none":
+        faults.append(Fault("film.model", "'none'", "excludes the wanted film", 'Take film.model = "ehl"'))
+    if "vtk" in listed and stiffness.get("model", "fem") != "fem":
+        faults.append(
+            Fault("stiffness.model", repr(stiffness.get("model")), 'must be "fem" for the wanted vtk', "Or drop vtk")
+        )
+    dynamics = _table(raw, "dynamics")
+    if "sweep" in listed and "dynamics" in raw and "sweep" not in dynamics:
+        faults.append(
+            Fault("dynamics.sweep", "", "is required by the wanted sweep", "Add sweep = { speed_rpm = [500, 30000] }")
+        )
+    given = stiffness.get("model") == "given"
+    if "sweep" in listed and given and "mean_force" not in dynamics and "mean_N_per_m" not in stiffness:
+        faults.append(
+            Fault("stiffness.mean_N_per_m", "", "is required by a [dynamics] in physical units", "Give the mean")
+        )
+    pair = _table(raw, "pair")
+    if "centre_distance_mm" in pair and "backlash_um" in pair:
+        faults.append(
+            Fault("pair.backlash_um", str(pair["backlash_um"]), "follows from centre_distance_mm", "Give one of them")
+        )
+    return faults
+
+
+def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    section = raw.get(name)
+    return section if isinstance(section, dict) else {}
+
+
+def _quoted(words: set[str]) -> str:
+    return ", ".join(f'"{w}"' for w in sorted(words))

@@ -1,0 +1,82 @@
+"""Reads a scene file and lists everything that is wrong with it at once."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from flankfilm.faults import Fault, InputError
+from flankfilm.scene.explain import explain_all
+from flankfilm.scene.needs import missing_sections
+from flankfilm.scene.schema import Scene
+
+LARGEST_FILE = 1_000_000
+"""Bytes; a scene is a few kilobytes, and a larger file is something else."""
+
+
+def template() -> str:
+    """Text of a commented scene that runs as it is."""
+    return resources.files("flankfilm.scene").joinpath("template.toml").read_text(encoding="utf-8")
+
+
+def read_scene(path: Path) -> Scene:
+    """Read and check a scene file.
+
+    Parameters
+    ----------
+    path : Path
+        The TOML file.
+
+    Returns
+    -------
+    Scene
+        Checked key by key and section by section; the geometry is checked by `flankfilm.build`.
+
+    Raises
+    ------
+    InputError
+        With every fault of the file.
+    """
+    return parse_scene(_text(path), name=str(path))
+
+
+def parse_scene(text: str, name: str = "scene") -> Scene:
+    """Check the text of a scene file; see `read_scene`."""
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as fault:
+        raise InputError(
+            [Fault(name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from")]
+        ) from fault
+    except RecursionError as fault:
+        raise InputError([Fault(name, "", "is nested too deeply", "a scene has two levels")]) from fault
+    return _validated(raw)
+
+
+def _text(path: Path) -> str:
+    try:
+        if not path.is_file():
+            what = "is a folder" if path.is_dir() else "does not exist"
+            raise InputError([Fault(str(path), "", what, "name a scene file, or write one: flankfilm new FILE")])
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError([Fault(str(path), "", f"is larger than {LARGEST_FILE:,} bytes, so not a scene")])
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as fault:
+        raise InputError([Fault(str(path), "", "is not a text file (TOML in UTF-8)")]) from fault
+    except OSError as fault:
+        raise InputError([Fault(str(path), "", f"cannot be read: {fault.strerror}")]) from fault
+
+
+def _validated(raw: dict[str, Any]) -> Scene:
+    try:
+        scene = Scene.model_validate(raw)
+    except ValidationError as error:
+        listed = explain_all(error.errors(), Scene)
+        raise InputError([*listed, *missing_sections(raw)]) from error
+    if missing := missing_sections(raw):
+        raise InputError(missing)
+    return scene

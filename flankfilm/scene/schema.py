@@ -1,0 +1,220 @@
+"""The scene file: sections and keys with their units, ranges and defaults.
+
+A key carries its unit (`module_mm`); values become SI in `flankfilm.build`. Ranges are wide
+enough for every gear that is made and narrow enough to catch a wrong unit.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Want = Literal["geometry", "closed-forms", "stiffness", "film", "fourier", "sweep", "vtk", "report"]
+Positive = Annotated[float, Field(gt=0)]
+TwoNumbers = Annotated[tuple[float, float], Field(strict=False)]
+
+
+class Section(BaseModel):
+    """Common rules: unknown keys refused, no silent conversion, no NaN or infinity, frozen."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class RackSection(Section):
+    """Basic rack in modules, for racks outside ISO 53."""
+
+    h_aP: float = Field(gt=0, le=3, description="addendum, times the module")
+    h_fP: float = Field(gt=0, le=3, description="dedendum, times the module")
+    rho_fP: float = Field(gt=0, le=3, description="tip radius of the rack, times the module")
+    alpha_deg: float = Field(default=20.0, ge=10, le=35, description="pressure angle")
+
+
+class ReliefSection(Section):
+    """Tip relief: material removed normal to the flank."""
+
+    amount_um: float = Field(ge=0, le=5000, description="at the tip")
+    length_mm: float = Field(gt=0, le=500, description="along the path of contact, from the tip")
+    form: Literal["linear", "parabolic"] = "linear"
+
+
+class GearSection(Section):
+    """One gear."""
+
+    teeth: int = Field(ge=5, le=10_000)
+    profile_shift: float = Field(default=0.0, ge=-0.8, le=1.5, description="times the module")
+    bore_mm: float | None = Field(default=None, gt=0, le=1e6, description="diameter; half the root diameter")
+    tip_alteration: float = Field(default=0.0, ge=-1, le=1, description="times the module")
+    thickness_allowance_um: float = Field(default=0.0, ge=0, le=50_000, description="thins the tooth")
+    tip_relief: ReliefSection | None = None
+    tip_chamfer_mm: float = Field(default=0.0, ge=0, le=100)
+
+
+class PairSection(Section):
+    """Geometry of the pair."""
+
+    module_mm: float = Field(ge=0.01, le=100)
+    face_width_mm: float = Field(ge=0.01, le=10_000)
+    rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = "ISO 53 A"
+    pinion: GearSection
+    wheel: GearSection
+    centre_distance_mm: float | None = Field(default=None, gt=0, le=1e6)
+    backlash_um: float | None = Field(default=None, ge=0, le=50_000, description="normal backlash")
+
+
+class ElasticSection(Section):
+    """Elastic constants and density of one material."""
+
+    youngs_modulus_GPa: float = Field(ge=0.01, le=2000)
+    poisson_ratio: float = Field(ge=0, lt=0.5)
+    density_kg_per_m3: float = Field(default=7850.0, ge=100, le=30_000)
+
+
+class MaterialSection(Section):
+    """One material for both gears, or one each in `pinion` and `wheel`."""
+
+    youngs_modulus_GPa: float | None = Field(default=None, ge=0.01, le=2000)
+    poisson_ratio: float | None = Field(default=None, ge=0, lt=0.5)
+    density_kg_per_m3: float | None = Field(default=None, ge=100, le=30_000)
+    pinion: ElasticSection | None = None
+    wheel: ElasticSection | None = None
+
+    @model_validator(mode="after")
+    def _one_way_of_saying_it(self) -> MaterialSection:
+        common = self.youngs_modulus_GPa is not None and self.poisson_ratio is not None
+        partly = any(v is not None for v in (self.youngs_modulus_GPa, self.poisson_ratio, self.density_kg_per_m3))
+        each = self.pinion is not None and self.wheel is not None
+        if not common and not each:
+            raise ValueError(
+                "give youngs_modulus_GPa and poisson_ratio for both gears, or both [material.pinion] and [material.wheel]"
+            )
+        if partly and (self.pinion is not None or self.wheel is not None):
+            raise ValueError("give one material for both gears or one each, not both ways at once")
+        return self
+
+
+class OperatingSection(Section):
+    """Load and speed; the pinion drives, anticlockwise."""
+
+    pinion_torque_Nm: float = Field(ge=1e-9, le=1e9)
+    pinion_speed_rpm: float | None = Field(default=None, ge=1e-6, le=1e6)
+
+
+class LubricantSection(Section):
+    """Oil at the temperature of the contact's inlet."""
+
+    viscosity_Pa_s: float = Field(ge=1e-5, le=1e3)
+    pressure_viscosity_per_GPa: float = Field(ge=0, le=100)
+    density_kg_per_m3: float = Field(default=870.0, ge=100, le=5000)
+    roelands_z: float | None = Field(default=None, gt=0, le=2)
+    compressible: bool = True
+
+
+class StiffnessSection(Section):
+    """Where the mesh stiffness comes from."""
+
+    model: Literal["fem", "ishikawa", "weber-banaschek", "potential-energy", "given"] = "fem"
+    pairs: Literal["coupled", "independent"] = "coupled"
+    plane: Literal["strain", "stress"] = "strain"
+    contact_beyond_path: bool = True
+    mean_N_per_m: float | None = Field(default=None, ge=1.0, le=1e15)
+    amplitudes: Annotated[tuple[float, ...], Field(strict=False)] | None = None
+    phases_deg: Annotated[tuple[float, ...], Field(strict=False)] | None = None
+
+    @model_validator(mode="after")
+    def _given_means_given(self) -> StiffnessSection:
+        listed = [n for n in ("mean_N_per_m", "amplitudes", "phases_deg") if getattr(self, n) is not None]
+        if self.model != "given" and listed:
+            raise ValueError(f'{", ".join(listed)} belong to model = "given" alone; leave them out')
+        if self.model == "given":
+            if self.amplitudes is None:
+                raise ValueError('model = "given" needs amplitudes, each over the mean, such as [0.18]')
+            if self.phases_deg is not None and len(self.phases_deg) != len(self.amplitudes):
+                raise ValueError(f"{len(self.amplitudes)} amplitudes but {len(self.phases_deg)} phases_deg; give as many of each")
+        return self
+
+
+class FilmSection(Section):
+    """The oil film."""
+
+    model: Literal["ehl", "dowson", "none", "auto"] = "auto"
+    stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] = "approach"
+    supply: Literal["flooded"] = "flooded"
+
+
+class ExtraInertia(Section):
+    """Moments of inertia that turn with the gears."""
+
+    pinion: float = Field(default=0.0, ge=0, le=1e9)
+    wheel: float = Field(default=0.0, ge=0, le=1e9)
+
+
+class SweepSection(Section):
+    """Sweep over pinion speed, or over the dimensionless mesh frequency."""
+
+    speed_rpm: TwoNumbers | None = None
+    frequency: TwoNumbers | None = None
+    points: int = Field(default=400, ge=2, le=100_000)
+
+    @model_validator(mode="after")
+    def _one_range(self) -> SweepSection:
+        given = [r for r in (self.speed_rpm, self.frequency) if r is not None]
+        if len(given) != 1:
+            raise ValueError("give either speed_rpm = [from, to] or frequency = [from, to]")
+        low, high = given[0]
+        if not 0 < low < high <= 1e7:
+            raise ValueError(f"the range [{low:g}, {high:g}] must rise from above 0, to at most 1e7")
+        return self
+
+
+class DynamicsSection(Section):
+    """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
+
+    fourier_order: int = Field(default=1, ge=1, le=50)
+    damping_ratio: float = Field(default=0.05, ge=0, le=5)
+    stiffness: Literal["secant", "tangent"] = "secant"
+    error_amplitude_um: float | None = Field(default=None, ge=0, le=10_000)
+    error_phase_deg: float = Field(default=0.0, ge=-360, le=360)
+    extra_inertia_kg_m2: ExtraInertia = ExtraInertia()
+    length_scale_um: float | None = Field(default=None, gt=0, le=1e6)
+    mean_force: float | None = Field(default=None, ge=0, le=1e6)
+    error_amplitude: float | None = Field(default=None, ge=0, le=1e6)
+    half_backlash: float | None = Field(default=None, ge=0, le=1e6)
+    sweep: SweepSection | None = None
+    portraits_rpm: Annotated[tuple[Positive, ...], Field(strict=False, max_length=12)] = ()
+    portraits_frequency: Annotated[tuple[Positive, ...], Field(strict=False, max_length=12)] = ()
+
+    @property
+    def dimensionless(self) -> bool:
+        """Whether force, error and backlash are given in the oscillator's own units."""
+        return self.mean_force is not None
+
+    @model_validator(mode="after")
+    def _one_set_of_units(self) -> DynamicsSection:
+        own = {n: getattr(self, n) for n in ("mean_force", "error_amplitude", "half_backlash")}
+        missing = [n for n, v in own.items() if v is None]
+        if len(missing) not in (0, len(own)):
+            raise ValueError(f"the dimensionless form also needs {', '.join(missing)}")
+        physical = [n for n in ("error_amplitude_um", "length_scale_um") if getattr(self, n) is not None]
+        if physical and not missing:
+            raise ValueError(f"{', '.join(physical)} and the dimensionless {', '.join(own)} exclude each other")
+        if not missing and self.sweep is not None and self.sweep.speed_rpm is not None:
+            raise ValueError("the dimensionless form needs sweep = { frequency = [from, to] }, not speed_rpm")
+        if not missing and self.portraits_rpm:
+            raise ValueError("the dimensionless form needs portraits_frequency, not portraits_rpm")
+        return self
+
+
+class Scene(Section):
+    """A whole scene file."""
+
+    title: str = Field(default="", max_length=200)
+    wants: Annotated[tuple[Want, ...], Field(strict=False, min_length=1, max_length=20)]
+    tolerance: float = Field(default=0.005, ge=1e-5, le=0.1)
+    pair: PairSection | None = None
+    material: MaterialSection | None = None
+    operating: OperatingSection | None = None
+    lubricant: LubricantSection | None = None
+    stiffness: StiffnessSection = StiffnessSection()
+    film: FilmSection = FilmSection(model="none")
+    dynamics: DynamicsSection | None = None

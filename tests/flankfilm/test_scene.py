@@ -1,0 +1,136 @@
+"""A faulty scene yields every fault at once, each with key, value, what is allowed and a remedy."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pydantic import BaseModel
+
+from flankfilm.faults import InputError
+from flankfilm.scene import Scene, parse_scene, read_scene, template
+from flankfilm.scene.explain import _model_in
+
+
+def faults(text: str) -> dict[str, str]:
+    with pytest.raises(InputError) as caught:
+        parse_scene(text)
+    return {fault.where: str(fault) for fault in caught.value.faults}
+
+
+def changed(old: str, new: str) -> str:
+    text = template()
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def test_the_template_is_a_valid_scene_with_every_section():
+    scene = parse_scene(template())
+    assert all(getattr(scene, name) is not None for name in Scene.model_fields)
+
+
+def keys(model: type[BaseModel]) -> set[str]:
+    found = set(model.model_fields)
+    for field in model.model_fields.values():
+        nested = _model_in(field.annotation)
+        if nested is not None:
+            found |= keys(nested)
+    return found
+
+
+def test_the_template_mentions_every_key():
+    unmentioned = {key for key in keys(Scene) if not re.search(rf"\b{key}\b", template())}
+    assert unmentioned == set()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where", "said"),
+    [
+        ("module_mm = 2.0", "module = 2.0", "pair.module", "Did you mean module_mm"),
+        ("module_mm = 2.0", "module_m = 0.002", "pair.module_m", "unit is part of the key"),
+        ("module_mm = 2.0", "module_mm = -2.0", "pair.module_mm", "at least 0.01"),
+        ("module_mm = 2.0", "module_mm = nan", "pair.module_mm", "finite"),
+        ("module_mm = 2.0", "module_mm = inf", "pair.module_mm", "finite"),
+        ("module_mm = 2.0", 'module_mm = "2 mm"', "pair.module_mm", "without quotes"),
+        ("module_mm = 2.0", "module_mm = 2000", "pair.module_mm", "Check the unit"),
+        ("youngs_modulus_GPa = 206", "youngs_modulus_GPa = 206e9", "material.youngs_modulus_GPa", "Check the unit"),
+        ("teeth = 36", "teeth = 3", "pair.pinion.teeth", "at least 5"),
+        ("teeth = 36", "teeth = 36.5", "pair.pinion.teeth", "whole number"),
+        ("teeth = 36", "teeth = true", "pair.pinion.teeth", "whole number"),
+        ("teeth = 40", "teeth = 100000000", "pair.wheel.teeth", "at most 10000"),
+        ("pinion_torque_Nm = 600", "pinion_torque_Nm = 0", "operating.pinion_torque_Nm", "at least"),
+        ("pinion_speed_rpm = 2000", "pinion_speed_rpm = 0", "operating.pinion_speed_rpm", "at least"),
+        ('model = "ehl"', 'model = "ehd"', "film.model", "Did you mean 'ehl'"),
+        ("tolerance = 0.005", "tolerance = 0", "tolerance", "at least"),
+        ('"report"]', '"reprot"]', "wants.4", "Did you mean 'report'"),
+        ("points = 400", "points = 1", "dynamics.sweep.points", "at least 2"),
+        ("[500, 30000]", "[30000, 500]", "dynamics.sweep", "must rise"),
+        ("[operating]", "[operatin]", "[operating]", "is required"),
+        ('rack = "ISO 53 A"', "rack = { h_aP = 1.0 }", "pair.rack.h_fP", "is required"),
+    ],
+)
+def test_a_fault_names_key_and_remedy(old: str, new: str, where: str, said: str):
+    found = faults(changed(old, new))
+    assert where in found
+    assert said in found[where]
+
+
+def test_all_faults_come_at_once():
+    text = template()
+    for old, new in (("teeth = 36", "teeth = 3"), ("module_mm = 2.0", "module_mm = -1"), ("[lubricant]", "[lubricants]")):
+        text = text.replace(old, new, 1)
+    assert {"pair.pinion.teeth", "pair.module_mm", "lubricants", "[lubricant]"} <= set(faults(text))
+
+
+def test_dynamics_alone_is_a_complete_scene():
+    scene = parse_scene(
+        'wants = ["sweep"]\n[stiffness]\nmodel = "given"\namplitudes = [0.18]\n'
+        "[dynamics]\nmean_force = 0.1\nerror_amplitude = 0.2\nhalf_backlash = 0.2\n"
+        "sweep = { frequency = [0.5, 0.7], points = 10 }\n"
+    )
+    assert scene.dynamics is not None
+    assert scene.dynamics.dimensionless
+    assert scene.pair is None
+
+
+def test_mixed_units_of_the_oscillator_are_refused():
+    found = faults(changed("error_amplitude_um = 10", "error_amplitude_um = 10\nmean_force = 0.1"))
+    assert "half_backlash" in found["dynamics"]
+
+
+def test_binary_missing_and_folder(tmp_path):
+    binary = tmp_path / "binary.toml"
+    binary.write_bytes(bytes(range(256)))
+    for path, said in ((binary, "not a text file"), (tmp_path / "none.toml", "does not exist"), (tmp_path, "folder")):
+        with pytest.raises(InputError, match=said):
+            read_scene(path)
+
+
+VALUES = st.one_of(
+    st.none().map(lambda _: "nan"),
+    st.integers(-(10**12), 10**12).map(str),
+    st.floats(allow_nan=False, allow_infinity=False).map(repr),
+    st.sampled_from(["true", "[]", "{}", "[1, 2]", '"x"', "inf", "-inf", "1979-05-27", "[[]]", '{ a = 1 }']),
+)
+LINES = [line for line in template().splitlines() if re.match(r"\w+ = ", line)]
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(LINES), VALUES), min_size=1, max_size=4))
+def test_any_value_at_any_key_is_accepted_or_explained(changes: list[tuple[str, str]]):
+    text = template()
+    for line, value in changes:
+        text = text.replace(line, f"{line.split(' = ')[0]} = {value}", 1)
+    try:
+        parse_scene(text)
+    except InputError as error:
+        assert all(fault.where and fault.allowed for fault in error.faults)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(max_size=200))
+def test_any_text_is_refused_with_a_reason(text: str):
+    with pytest.raises(InputError):
+        parse_scene(text)

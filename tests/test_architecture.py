@@ -1,0 +1,66 @@
+"""The house: who may import whom, and which libraries load only where they are needed."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MAY_IMPORT = {
+    "gears": set(),
+    "ehl": set(),
+    "dynamics": set(),
+    "meshes": {"gears"},
+    "fem": {"gears", "meshes"},
+    "flankfilm": {"gears", "meshes", "fem", "ehl", "dynamics"},
+}
+
+
+def imported(source: Path) -> set[str]:
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names.add(node.module.partition(".")[0])
+    return names
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_imports_only_go_downwards(package: str):
+    sources = sorted((ROOT / package).rglob("*.py"))
+    assert sources
+    climbing = {
+        str(source.relative_to(ROOT)): found
+        for source in sources
+        if (found := imported(source) & (MAY_IMPORT.keys() - MAY_IMPORT[package] - {package}))
+    }
+    assert climbing == {}
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_no_file_holds_too_much(package: str):
+    long = {s.name: n for s in (ROOT / package).rglob("*.py") if (n := len(s.read_text().splitlines())) > 500}
+    assert long == {}
+
+
+def loaded_by(code: str) -> set[str]:
+    report = "import sys; print(' '.join({n.partition('.')[0] for n in sys.modules}))"
+    done = subprocess.run([sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+HEAVY = {"gmsh", "skfem", "meshio", "pyvista", "vtkmodules", "numba", "matplotlib", "xarray"}
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_importing_a_package_loads_nothing_heavy(package: str):
+    assert loaded_by(f"import {package}") & HEAVY == set()
+
+
+def test_gears_needs_numpy_alone():
+    assert loaded_by("import gears") & (HEAVY | {"scipy", "pydantic"}) == set()
