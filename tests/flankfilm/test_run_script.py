@@ -17,12 +17,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TOOLS = (
-    "cat chmod cmp cp date dirname env find flock getconf grep id ls mkdir mv nproc readlink rm sed sh sleep tail touch"
-).split()
-LIBRARIES = (
-    "libGL.so.1 libEGL.so.1 libGLU.so.1 libXcursor.so.1 libXft.so.2 libXinerama.so.1 libgomp.so.1".split()
-)
+TOOLS = """cat chmod cmp cp date dirname env find flock getconf grep id ls mkdir mv nproc readlink rm sed sh
+sleep tail touch"""
+LIBRARIES = """libGL.so.1 libEGL.so.1 libGLU.so.1 libXcursor.so.1 libXft.so.2 libXinerama.so.1
+libgomp.so.1"""
 
 PYTHON = r"""#!/bin/sh
 echo "$*" >>"$CALLS"
@@ -60,7 +58,7 @@ case "$*" in *install*) touch "$LIBRARIES_THERE" ;; esac
 
 LDCONFIG = f"""#!/bin/sh
 [ -e "$LIBRARIES_THERE" ] || exit 0
-for file in {" ".join(LIBRARIES)}; do echo "	$file (libc6,x86-64) => /lib/$file"; done
+for file in {" ".join(LIBRARIES.split())}; do echo "	$file (libc6,x86-64) => /lib/$file"; done
 """
 
 
@@ -115,8 +113,8 @@ def sandbox(tmp_path: Path) -> Sandbox:
         folder.mkdir(parents=True)
     for name in ("run", "constraints.txt", "pyproject.toml"):
         shutil.copy(ROOT / name, root / name)
-    os.chmod(root / "constraints.txt", 0o644)
-    for tool in TOOLS:
+    (root / "constraints.txt").chmod(0o644)
+    for tool in TOOLS.split():
         found = shutil.which(tool)
         if found is None:
             pytest.skip(f"this system has no {tool}")
