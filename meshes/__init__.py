@@ -3,8 +3,9 @@
 gmsh and meshio are imported only when something is meshed or written.
 """
 
+from meshes.annulus import GearMesh, gear_mesh
 from meshes.errors import Fault, MeshError
 from meshes.outline import Sizes
 from meshes.sector import SectorMesh, mesh_sector, refined
 
-__all__ = ["Fault", "MeshError", "SectorMesh", "Sizes", "mesh_sector", "refined"]
+__all__ = ["Fault", "GearMesh", "MeshError", "SectorMesh", "Sizes", "gear_mesh", "mesh_sector", "refined"]

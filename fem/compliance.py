@@ -1,0 +1,346 @@
+"""Everything of a pair's elasticity that does not depend on the load, with its error and cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import ceil
+from time import perf_counter
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.elasticity import PlaneElasticity
+from fem.errors import Fault, FemError
+from fem.flamant import hertz_half_width, hertz_indentation
+from fem.flexibility import GearFlexibility, flexibility
+from fem.ring import Ring, ring_of
+
+if TYPE_CHECKING:
+    from gears import GearPair
+    from meshes import Sizes
+
+__all__ = ["Compliance", "Cost", "HertzApproach", "compliance", "mesh_and_factor", "single_pair_stiffness"]
+
+Array = NDArray[np.float64]
+
+FINEST = 3
+"""Most refinements that a tolerance may ask for."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a result cost.
+
+    Attributes
+    ----------
+    seconds : float
+        Wall time of the whole.
+    unknowns : int
+        Displacement components of both annuli on the finest mesh.
+    iterations : int
+        Newton iterations of the load sharing, all positions together; 0 for a compliance.
+    parts : mapping of str to float
+        Seconds by stage: mesh, assemble, factor, condense, solve, contact.
+    """
+
+    seconds: float
+    unknowns: int
+    iterations: int = 0
+    parts: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True)
+class HertzApproach:
+    """Local indentation of both flanks of some pairs under their forces; see ``fem.flamant``.
+
+    approach = F [constant - (slope_of_log) ln F], the half-width growing as sqrt(F).
+
+    Attributes
+    ----------
+    constant : (n,) array
+        [m/N]
+    per_log : float
+        [m/N]
+    """
+
+    constant: Array
+    per_log: float
+
+    def approach(self, force: Array) -> Array:
+        """Indentation of both flanks together [m] under forces (n,) [N]; zero without force."""
+        loaded = np.maximum(force, _LEAST_FORCE)
+        return np.asarray(force * (self.constant - self.per_log * np.log(loaded)))
+
+    def slope(self, force: Array) -> Array:
+        """Derivative of the indentation by the force [m/N]."""
+        loaded = np.maximum(force, _LEAST_FORCE)
+        inside = np.where(np.asarray(force) > _LEAST_FORCE, self.per_log, 0.0)
+        return np.asarray(self.constant - self.per_log * np.log(loaded) - inside)
+
+
+_LEAST_FORCE = 1e-9  # N: below it the indentation is taken as linear, where ln F would be infinite
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Flexibility of both gears of a pair as functions of the contact's place.
+
+    Attributes
+    ----------
+    pair : gears.GearPair
+    plane : {"strain", "stress"}
+    pinion, wheel : GearFlexibility
+    refinements : int
+        Of the mesh in use.
+    sizes : meshes.Sizes
+        Of the coarsest mesh.
+    reach : int
+        Neighbours with cross terms on either side of a tooth.
+    error : float
+        Estimated relative error of the single-pair deflection, from two nested meshes.
+    cost : Cost
+    converged : bool
+        Whether ``error`` meets the tolerance asked for.
+    message : str
+    """
+
+    pair: GearPair
+    plane: str
+    pinion: GearFlexibility
+    wheel: GearFlexibility
+    refinements: int
+    sizes: Sizes
+    reach: int
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+    @property
+    def hub_windup(self) -> tuple[float, float]:
+        """Turning of pinion's and wheel's body, along the line of action [m/N at the pair's face width]."""
+        width = self.pair.face_width
+        return self.pinion.hub_windup / width, self.wheel.hub_windup / width
+
+    def own(self, rho1: Array) -> Array:
+        """Deflection of a pair per force without the local indentation [m/N], at rho1 [m]."""
+        rho1 = np.asarray(rho1, dtype=float)
+        total = self.pinion.own(rho1) + self.wheel.own(self.pair.line_of_action - rho1)
+        return np.asarray(total / self.pair.face_width)
+
+    def cross(self, behind: Array, ahead: Array, teeth: int) -> Array:
+        """Approach of a pair by a force on the pair ``teeth`` pitches away [m/N].
+
+        Parameters
+        ----------
+        behind, ahead : arrays
+            rho1 of the two pairs [m], ``ahead`` being the one nearer to E. The term is symmetric
+            (Maxwell and Betti).
+        teeth : int
+        """
+        on_pinion = self.pinion.cross(teeth, behind, ahead)
+        total = self.pair.line_of_action
+        on_wheel = self.wheel.cross(teeth, total - ahead, total - behind)
+        return np.asarray((on_pinion + on_wheel) / self.pair.face_width)
+
+    def bulk(self, rho1: Array) -> Array:
+        """Bulk flexibility (..., n, n) [m/N] of pairs at rho1 (..., n) [m], one base pitch apart in order."""
+        n = rho1.shape[-1]
+        matrix = np.zeros((*rho1.shape, n))
+        for i in range(n):
+            matrix[..., i, i] = self.own(rho1[..., i])
+            for j in range(i + 1, n):
+                if j - i <= self.reach:
+                    matrix[..., i, j] = self.cross(rho1[..., i], rho1[..., j], j - i)
+                    matrix[..., j, i] = matrix[..., i, j]
+        return matrix
+
+    def hertz(self, rho1: Array) -> HertzApproach:
+        """Local indentation of pairs at rho1 [m] as a function of their forces."""
+        path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
+        width = self.pair.face_width
+        first, second = self.pinion.law, self.wheel.law
+        reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
+        half_width = hertz_half_width(1.0 / width, path.radius, reduced)  # of 1 N
+        length = self.pair.module
+        constant = (
+            hertz_indentation(half_width, first, length) + hertz_indentation(half_width, second, length)
+        ) / width
+        per_log = (1 / first.plane_modulus + 1 / second.plane_modulus) / (np.pi * width)
+        return HertzApproach(constant, per_log)
+
+
+def mesh_and_factor(
+    pair: GearPair, plane: str, sizes: Sizes, refinements: int, reach: int
+) -> tuple[tuple[Ring, Ring], dict[str, float]]:
+    """Mesh, assemble, factorise and condense both gears; seconds by stage."""
+    from meshes import mesh_sector
+
+    rings, seconds = [], {"mesh": 0.0}
+    for profile, material in zip(pair.teeth_profiles, pair.materials, strict=True):
+        began = perf_counter()
+        mesh = mesh_sector(profile, sizes, refinements)
+        seconds["mesh"] += perf_counter() - began
+        ring = ring_of(mesh, PlaneElasticity.of(material, plane), reach)
+        for stage, duration in ring.seconds.items():
+            seconds[stage] = seconds.get(stage, 0.0) + duration
+        rings.append(ring)
+    return (rings[0], rings[1]), seconds
+
+
+def _both_flexibilities(
+    pair: GearPair, rings: tuple[Ring, Ring], reach: int
+) -> tuple[GearFlexibility, GearFlexibility]:
+    first, second = pair.teeth_profiles
+    points = pair.points
+    # a little beyond the path at either end, for contact of the tip edges
+    margin = 0.1 * pair.base_pitch
+    pinion = flexibility(rings[0], first, points.A - margin, reach)
+    wheel = flexibility(rings[1], second, pair.line_of_action - points.E - margin, reach)
+    return pinion, wheel
+
+
+def compliance(
+    pair: GearPair,
+    tolerance: float = 0.001,
+    plane: str = "strain",
+    sizes: Sizes | None = None,
+    refinements: int | None = None,
+) -> Compliance:
+    """Flexibility of both gears, on the coarsest mesh that meets a tolerance.
+
+    Two nested meshes are solved; the finer one is used, and its error is taken as a third of the difference
+    (second order; the observed order is above two). The mesh is refined until that meets the tolerance.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    tolerance : float
+        Relative, on the deflection of a pair.
+    plane : {"strain", "stress"}
+        Plane strain for gears wider than a few modules.
+    sizes : meshes.Sizes, optional
+        Of the coarsest mesh.
+    refinements : int, optional
+        Fixes the mesh instead of the tolerance; at least 1.
+
+    Returns
+    -------
+    Compliance
+
+    Raises
+    ------
+    FemError
+        Tolerance or plane that make no sense.
+    """
+    from meshes import Sizes
+
+    faults = []
+    if not (np.isfinite(tolerance) and tolerance > 0):
+        faults.append(Fault("tolerance", f"{tolerance!r}", "finite and > 0", "0.001 is 0.1 %"))
+    if plane not in ("strain", "stress"):
+        faults.append(Fault("plane", f"{plane!r}", '"strain" or "stress"', "wide gears: strain"))
+    if refinements is not None and not 1 <= refinements <= FINEST + 1:
+        faults.append(Fault("refinements", f"{refinements!r}", f"1 to {FINEST + 1}", "leave it out"))
+    if faults:
+        raise FemError(*faults)
+    began = perf_counter()
+    sizes = sizes or Sizes()
+    # every tooth that can carry load together with another one
+    reach = max(1, ceil(pair.contact_ratio) - 1)
+    parts: dict[str, float] = {}
+    level = 0 if refinements is None else refinements - 1
+    error, coarse = np.inf, None
+    while True:
+        rings, seconds = mesh_and_factor(pair, plane, sizes, level, reach)
+        started = perf_counter()
+        fine = _both_flexibilities(pair, rings, reach)
+        seconds["solve"] = perf_counter() - started
+        parts = {name: parts.get(name, 0.0) + value for name, value in seconds.items()}
+        if coarse is not None:
+            error = _difference(pair, coarse, fine, reach) / 3
+            if refinements is not None or error <= tolerance or level >= FINEST:
+                break
+        coarse, level = fine, level + 1
+    converged = bool(error <= tolerance) or refinements is not None
+    message = (
+        f"mesh refined {level} times, error {error:.1e}"
+        if converged
+        else f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
+    )
+    unknowns = sum(ring.unknowns for ring in rings)
+    cost = Cost(perf_counter() - began, unknowns, 0, MappingProxyType(parts))
+    return Compliance(pair, plane, *fine, level, sizes, reach, error, cost, converged, message)
+
+
+def _difference(
+    pair: GearPair,
+    coarse: tuple[GearFlexibility, GearFlexibility],
+    fine: tuple[GearFlexibility, GearFlexibility],
+    reach: int,
+) -> float:
+    """Largest difference of own and cross deflection along the path, relative to a pair's deflection."""
+    points, total = pair.points, pair.line_of_action
+    rho1 = np.linspace(points.A, points.E, 60)
+    own, change = np.zeros_like(rho1), np.zeros_like(rho1)
+    crossed = 0.0
+    for one, other, rho in zip(coarse, fine, (rho1, total - rho1), strict=True):
+        own += other.own(rho) + hertz_indentation(0.1 * pair.module, other.law, pair.module)
+        change += other.own(rho) - one.own(rho)
+        for k in range(1, reach + 1):
+            grid = np.meshgrid(rho, rho)
+            crossed = max(crossed, float(np.max(np.abs(other.cross(k, *grid) - one.cross(k, *grid)))))
+    return max(float(np.max(np.abs(change / own))), crossed / float(np.min(own)))
+
+
+def single_pair_stiffness(
+    pair: GearPair,
+    force: float,
+    rho1: Array,
+    compliance: Compliance | None = None,
+    tolerance: float = 0.001,
+    plane: str = "strain",
+) -> Array:
+    """Secant stiffness F/deflection of one tooth pair alone, hub and bodies included [N/m].
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    force : float
+        Normal force [N] at the pair's face width.
+    rho1 : (n,) array
+        Curvature radii on the pinion [m]. Within ``0.01`` modules of a tip corner, A and E included, the
+        load stands at that distance: a line load on the corner itself would have no finite displacement.
+    compliance : Compliance, optional
+        Of this pair.
+
+    Returns
+    -------
+    (n,) array
+
+    Raises
+    ------
+    FemError
+        Force not positive and finite, or a place off the path of contact.
+    """
+    bodies = compliance or _compliance(pair, tolerance, plane)
+    rho1 = np.atleast_1d(np.asarray(rho1, dtype=float))
+    points = pair.points
+    faults = []
+    if not (np.isfinite(force) and force > 0):
+        faults.append(Fault("force", f"{force!r}", "finite and > 0 (N)", "give the force along the line of action"))
+    slack = 1e-9 * points.E
+    if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):
+        allowed = f"{points.A:g} to {points.E:g} m, the path of contact"
+        faults.append(Fault("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E"))
+    if faults:
+        raise FemError(*faults)
+    approach = bodies.own(rho1) * force + bodies.hertz(rho1).approach(np.full(len(rho1), float(force)))
+    stiffness: Array = force / approach
+    return stiffness
+
+
+_compliance = compliance  # single_pair_stiffness has an argument of that name

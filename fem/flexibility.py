@@ -1,0 +1,189 @@
+"""Flexibility of one gear's flank: own tooth and neighbouring teeth, as smooth functions of the load's place.
+
+Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear, root,
+body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a wedge
+yields more than a half-plane. With the interior angle 2 beta of the corner and gamma = pi/2 - beta between
+load and bisector, Michell's wedge under a force at its apex gives
+
+    u_r ~ c ln d,   c = [2/pi - cos^2 gamma/(beta + sin(2 beta)/2) - sin^2 gamma/(beta - sin(2 beta)/2)]/E*
+
+(S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, 1970, article 38). That part is taken out before
+the rest is fitted by Chebyshev polynomials in the curvature radius rho.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from fem.elasticity import PlaneElasticity
+from fem.line_load import flank_points, line_loads
+from fem.ring import Ring
+
+if TYPE_CHECKING:
+    from gears import ToothProfile
+    from meshes import SectorMesh
+
+__all__ = ["GearFlexibility", "corner_logarithm", "flexibility", "hub_windup"]
+
+Array = NDArray[np.float64]
+
+CORNER_CLEARANCE = 0.01
+"""Loads nearer to the tip corner than this (in modules of rho) are placed at this distance."""
+
+SAMPLES, DEGREE, CROSS_DEGREE = 28, 11, 8
+
+
+@dataclass(frozen=True)
+class GearFlexibility:
+    """What a gear's flank yields per unit line load, without the local indentation.
+
+    Attributes
+    ----------
+    rho_range : (float, float)
+        Curvature radii covered [m].
+    rho_end : float
+        Curvature radius of the tip corner [m].
+    base_radius, module : float
+        [m]
+    law : PlaneElasticity
+    logarithm : float
+        Coefficient c of ln(d/module) [m per N/m].
+    own_series : (n,) array
+        Chebyshev coefficients of u_r - c ln(d/module) over ``rho_range``.
+    cross_series : mapping of int to (k, k) array
+        For the k-th tooth on the side of growing rho: coefficients over (load's rho, point's rho).
+    hub_windup : float
+        Part of ``own`` and of every cross term that is the body's turning [m per N/m].
+    noise : float
+        Largest distance of a sample from its fit [m per N/m].
+    """
+
+    rho_range: tuple[float, float]
+    rho_end: float
+    base_radius: float
+    module: float
+    law: PlaneElasticity
+    logarithm: float
+    own_series: Array
+    cross_series: Mapping[int, Array]
+    hub_windup: float
+    noise: float
+
+    def _unit(self, rho: Array) -> Array:
+        low, high = self.rho_range
+        return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
+
+    def own(self, rho: Array) -> Array:
+        """u_r at the load along the load [m per N/m]; rho [m] beyond the range is moved to its end."""
+        rho = np.clip(rho, *self.rho_range)
+        away = (self.rho_end**2 - rho**2) / (2 * self.base_radius)
+        own: Array = chebyshev.chebval(self._unit(rho), self.own_series)
+        return own + self.logarithm * np.log(away / self.module)
+
+    def cross(self, tooth: int, load: Array, point: Array) -> Array:
+        """Displacement along its inward normal at ``point`` of another tooth by a load at ``load`` of tooth 0.
+
+        Parameters
+        ----------
+        tooth : int
+            1, 2, ...: counted towards the teeth whose contacts have larger rho.
+        load, point : arrays
+            Curvature radii [m].
+
+        Returns
+        -------
+        array
+            [m per N/m]
+        """
+        value: Array = chebyshev.chebval2d(self._unit(load), self._unit(point), self.cross_series[tooth])
+        return value
+
+
+def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left") -> tuple[float, float]:
+    """Interior angle of the tip corner [rad] and the coefficient c of ln d [m per N/m]."""
+    points = mesh.points
+    facets = mesh.facets[f"flank_{flank}"]
+    last = facets[np.argmax(mesh.parameters[f"flank_{flank}"].max(axis=1))]
+    at_end = 1 if flank == "right" else 0  # the outline runs up the right flank and down the left one
+    corner = last[at_end]
+    beyond = next(
+        edge
+        for name, edges in mesh.facets.items()
+        if name.startswith(("top", "chamfer"))
+        for edge in edges
+        if corner in edge[:2]
+    )
+    arms = []
+    for edge in (last, beyond):
+        other = edge[0] if edge[1] == corner else edge[1]
+        slope = -3 * points[corner] + 4 * points[edge[2]] - points[other]
+        arms.append(slope / np.linalg.norm(slope))
+    half = 0.5 * float(np.arccos(np.clip(arms[0] @ arms[1], -1.0, 1.0)))
+    lean = 0.5 * np.pi - half
+    wedge = np.cos(lean) ** 2 / (half + 0.5 * np.sin(2 * half)) + np.sin(lean) ** 2 / (
+        half - 0.5 * np.sin(2 * half)
+    )
+    return 2 * half, float((2 / np.pi - wedge) / law.plane_modulus)
+
+
+def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: PlaneElasticity) -> float:
+    """Turning of the body on its held bore, along the line of action [m per N/m].
+
+    delta = r_b^2/(4 pi G) (1/r_h^2 - 1/r_f^2) per N/m: a ring in shear by a torque (Lame), exact for a ring
+    of outer radius r_f. Closed forms of tooth deflection leave it out.
+    """
+    return base_radius**2 / (4 * np.pi * law.shear_modulus) * (1 / bore_radius**2 - 1 / root_radius**2)
+
+
+def flexibility(
+    ring: Ring, profile: ToothProfile, rho_low: float, reach: int = 1, flank: str = "left"
+) -> GearFlexibility:
+    """Sample the flank with unit line loads and fit.
+
+    Parameters
+    ----------
+    ring : Ring
+    profile : gears.ToothProfile
+    rho_low : float
+        Smallest curvature radius that contact reaches [m].
+    reach : int
+        Neighbouring teeth for which cross terms are wanted.
+    flank : {"left", "right"}
+    """
+    rho_form, rho_end = profile.flank_rho
+    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
+    unit = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+    unit /= unit[0]  # Chebyshev points stretched to include both ends
+    rho = 0.5 * (low + high) + 0.5 * (high - low) * unit
+    at = flank_points(ring.mesh, rho, flank)
+    loads = line_loads(ring, at)
+    _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
+    away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
+    smooth = loads.regular_at_load() - logarithm * np.log(away / profile.module)
+    # least squares of low degree: u_r is smooth, what is left is the mesh's own small ripple
+    own = chebyshev.chebfit(unit, smooth, DEGREE)
+    noise = float(np.max(np.abs(chebyshev.chebval(unit, own) - smooth)))
+    fit = np.linalg.pinv(chebyshev.chebvander(unit, CROSS_DEGREE))
+    forward = 1 if flank == "left" else -1
+    cross = {
+        tooth: fit @ loads.on_tooth(forward * tooth, at).T @ fit.T for tooth in range(1, reach + 1)
+    }
+    return GearFlexibility(
+        (low, high),
+        rho_end,
+        profile.base_radius,
+        profile.module,
+        ring.law,
+        logarithm,
+        own,
+        MappingProxyType(cross),
+        hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
+        noise,
+    )
