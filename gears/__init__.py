@@ -1,1 +1,38 @@
-"""gears."""
+"""Spur-gear geometry, path of contact, load sharing and closed-form tooth deflection; loads numpy only."""
+
+from gears.errors import (
+    Fault,
+    GearsError,
+    GeometryError,
+    GeometryWarning,
+    LoadSharingError,
+    ModelRangeWarning,
+)
+from gears.gear import Gear, TipRelief
+from gears.material import STEEL, Material, reduced_modulus
+from gears.pair import GearPair
+from gears.path import PathOfContact, PathPoints
+from gears.placement import Placement
+from gears.profile import ToothProfile
+from gears.rack import ISO_53_A, BasicRack
+
+__all__ = [
+    "ISO_53_A",
+    "STEEL",
+    "BasicRack",
+    "Fault",
+    "Gear",
+    "GearPair",
+    "GearsError",
+    "GeometryError",
+    "GeometryWarning",
+    "LoadSharingError",
+    "Material",
+    "ModelRangeWarning",
+    "PathOfContact",
+    "PathPoints",
+    "Placement",
+    "TipRelief",
+    "ToothProfile",
+    "reduced_modulus",
+]

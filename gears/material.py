@@ -1,0 +1,74 @@
+"""Linear elastic, isotropic material of a gear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gears.errors import Fault
+from gears.limits import Limit
+
+_MODULUS = Limit(1e6, 1e13, "Pa", "give the modulus in pascals (steel 206e9)")
+_POISSON = Limit(0.0, 0.4999, "", "give Poisson's ratio of a compressible solid (steel 0.3)")
+_DENSITY = Limit(1.0, 1e5, "kg/m3", "give the density in kg/m3 (steel 7850)")
+
+
+@dataclass(frozen=True)
+class Material:
+    """Linear elastic, isotropic material.
+
+    The values are checked by the `gears.GearPair` that uses them, so that all faults of a pair come at
+    once; `faults` checks a material on its own.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        E [Pa].
+    poisson_ratio : float
+        nu [-].
+    density : float
+        Mass density [kg/m3].
+    """
+
+    youngs_modulus: float  # E, Pa
+    poisson_ratio: float  # nu, -
+    density: float  # kg/m3
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """E* = E / (1 - nu^2) [Pa]."""
+        return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
+
+    def faults(self, where: str = "material") -> tuple[Fault, ...]:
+        """All faults of the values, empty when there are none."""
+        return (
+            *_MODULUS.faults(f"{where}.youngs_modulus", self.youngs_modulus),
+            *_POISSON.faults(f"{where}.poisson_ratio", self.poisson_ratio),
+            *_DENSITY.faults(f"{where}.density", self.density),
+        )
+
+
+STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
+"""Steel with the modulus on which ISO 6336-1 bases its tooth stiffness."""
+
+
+def reduced_modulus(first: Material, second: Material) -> float:
+    """Reduced modulus of two bodies in line contact.
+
+    E' = 2 / [(1 - nu1^2)/E1 + (1 - nu2^2)/E2], which is twice the contact modulus E* of Johnson.
+
+    Parameters
+    ----------
+    first, second : Material
+        The two bodies.
+
+    Returns
+    -------
+    float
+        E' [Pa].
+    """
+    return 2.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)

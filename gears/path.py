@@ -1,0 +1,98 @@
+"""Path of contact: curvature radii, surface speeds and pressure angles along the line of action."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gears.arrays import Array
+
+
+@dataclass(frozen=True)
+class PathPoints:
+    """Points of the line of action by their curvature radius on the pinion, rho1 [m].
+
+    Parameters
+    ----------
+    A, E : float
+        Start and end of contact, at the end of the wheel's and of the pinion's flank.
+    B, D : float
+        One base pitch before E and after A; for a contact ratio below two a single pair carries between them.
+    C : float
+        Pitch point.
+    """
+
+    A: float
+    B: float
+    C: float
+    D: float
+    E: float
+
+
+@dataclass(frozen=True, eq=False)
+class PathOfContact:
+    """Points on the line of action.
+
+    Parameters
+    ----------
+    rho1, rho2 : (n,) array
+        Curvature radii of the pinion's and the wheel's flank [m]; rho1 + rho2 = a sin alpha_w.
+    start : float
+        rho1 at A [m].
+    base_radii : (float, float)
+        r_b1, r_b2 [m].
+    """
+
+    rho1: Array
+    rho2: Array
+    start: float
+    base_radii: tuple[float, float]
+
+    @property
+    def position(self) -> Array:
+        """Distance from A along the line of action, (n,) [m]."""
+        return np.asarray(self.rho1 - self.start)
+
+    @property
+    def radius(self) -> Array:
+        """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2), (n,) [m]."""
+        return np.asarray(self.rho1 * self.rho2 / (self.rho1 + self.rho2))
+
+    @property
+    def radii(self) -> tuple[Array, Array]:
+        """Distances of the contact from the axes of pinion and wheel, each (n,) [m]."""
+        first, second = self.base_radii
+        return np.hypot(first, self.rho1), np.hypot(second, self.rho2)
+
+    @property
+    def pressure_angles(self) -> tuple[Array, Array]:
+        """Pressure angles of the involutes at the contact, arctan(rho / r_b), each (n,) [rad]."""
+        first, second = self.base_radii
+        return np.arctan(self.rho1 / first), np.arctan(self.rho2 / second)
+
+    def surface_speeds(self, speed: float) -> tuple[Array, Array]:
+        """Speeds of the two flanks along their common tangent, u1 = omega1 rho1, u2 = omega2 rho2.
+
+        Parameters
+        ----------
+        speed : float
+            Speed of the pinion omega1 [rad/s].
+
+        Returns
+        -------
+        (n,) array, (n,) array
+            u1 and u2 [m/s].
+        """
+        first, second = self.base_radii
+        return np.asarray(speed * self.rho1), np.asarray(speed * first / second * self.rho2)
+
+    def entrainment(self, speed: float) -> Array:
+        """Entrainment speed, the mean (u1 + u2) / 2, (n,) [m/s]; `speed` of the pinion [rad/s]."""
+        first, second = self.surface_speeds(speed)
+        return np.asarray(0.5 * (first + second))
+
+    def sliding(self, speed: float) -> Array:
+        """Sliding speed u1 - u2, (n,) [m/s], negative before C; `speed` of the pinion [rad/s]."""
+        first, second = self.surface_speeds(speed)
+        return np.asarray(first - second)

@@ -1,0 +1,104 @@
+"""Where the gears stand when one pair of teeth touches at a given point of the path of contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gears.arrays import Array
+
+if TYPE_CHECKING:
+    from gears.pair import GearPair
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """A mesh position in the common frame.
+
+    The pinion's axis is the origin, the wheel's axis stands above it at (0, a). The pinion drives
+    anticlockwise, so on **both** gears the loaded flank is the left-hand one of the tooth's own frame, the
+    mirror image (x -> -x) of the right-hand flank that `ToothProfile` gives. Angles turn anticlockwise.
+
+    Parameters
+    ----------
+    pinion_angle, wheel_angle : float
+        Turn of a tooth's own frame (centre line +y) into the common frame [rad], for the tooth in contact;
+        the next tooth of the pinion to come into contact has pinion_angle - 2 pi / z1, that of the wheel
+        wheel_angle + 2 pi / z2.
+    wheel_centre : (2,) array
+        The wheel's axis [m].
+    contact_point : (2,) array
+        Point of contact [m].
+    normal : (2,) array
+        Unit normal of the contact, outward from the pinion, along the force on the wheel.
+    """
+
+    pinion_angle: float  # rad
+    wheel_angle: float  # rad
+    wheel_centre: Array  # m
+    contact_point: Array  # m
+    normal: Array
+
+    def pinion(self, points: Array) -> Array:
+        """Points (n, 2) of the pinion's tooth frame in the common frame [m]."""
+        return turned(points, self.pinion_angle)
+
+    def wheel(self, points: Array) -> Array:
+        """Points (n, 2) of the wheel's tooth frame in the common frame [m]."""
+        return np.asarray(turned(points, self.wheel_angle) + self.wheel_centre)
+
+    def pinion_direction(self, vectors: Array) -> Array:
+        """Vectors (n, 2) of the pinion's tooth frame, such as normals, in the common frame."""
+        return turned(vectors, self.pinion_angle)
+
+    def wheel_direction(self, vectors: Array) -> Array:
+        """Vectors (n, 2) of the wheel's tooth frame, such as normals, in the common frame."""
+        return turned(vectors, self.wheel_angle)
+
+
+def turned(points: Array, angle: float) -> Array:
+    """Points or vectors (n, 2) turned anticlockwise about the origin by `angle` [rad]."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    x, y = points[..., 0], points[..., 1]
+    return np.stack((cosine * x - sine * y, sine * x + cosine * y), axis=-1)
+
+
+def mirrored(points: Array) -> Array:
+    """Left-hand counterpart of points or vectors (n, 2) of the right-hand side of a tooth."""
+    return np.asarray(points * np.array([-1.0, 1.0]))
+
+
+def place(pair: GearPair, rho1: float) -> Placement:
+    """Placement of the gears for a contact at curvature radius `rho1` of the pinion.
+
+    The line of action leaves the pinion's base circle at r_b1 (sin alpha_w, cos alpha_w) in the direction
+    (-cos alpha_w, sin alpha_w); the tooth of the pinion is turned by rho1 / r_b1 - psi_b1 - alpha_w, that of
+    the wheel by pi + rho2 / r_b2 - psi_b2 - alpha_w.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The gears.
+    rho1 : float
+        Curvature radius of the pinion's flank at the contact [m].
+
+    Returns
+    -------
+    Placement
+        Angles, contact point and normal.
+    """
+    path = pair.path_at(rho1)
+    first, second = pair.teeth_profiles
+    alpha = pair.working_pressure_angle
+    sine, cosine = math.sin(alpha), math.cos(alpha)
+    normal = np.array([-cosine, sine])
+    return Placement(
+        pinion_angle=float(path.rho1[0]) / first.base_radius - first.base_half_angle - alpha,
+        wheel_angle=math.pi + float(path.rho2[0]) / second.base_radius - second.base_half_angle - alpha,
+        wheel_centre=np.array([0.0, pair.axis_distance]),
+        contact_point=first.base_radius * np.array([sine, cosine]) + path.rho1[0] * normal,
+        normal=normal,
+    )

@@ -1,0 +1,94 @@
+"""The basic rack that generates both gears of a pair."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gears.errors import Fault
+from gears.limits import Limit
+
+_ADDENDUM = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.0", low_open=True)
+_DEDENDUM = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.25", low_open=True)
+_FILLET = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 0.38", low_open=True)
+_ANGLE = Limit(
+    math.radians(10.0), math.radians(35.0), "rad", "give the angle in radians (20 deg is 0.349066)"
+)
+
+
+@dataclass(frozen=True)
+class BasicRack:
+    """Basic rack tooth profile; the default is profile A of ISO 53.
+
+    The rack that cuts the gear has the tooth with dedendum `h_fP` of the profile as its tip, rounded by arcs
+    of radius `rho_fP`. Where the two arcs of one rack tooth would overlap they are replaced by the single
+    arc that touches both flanks and the tip line (full-radius fillet).
+
+    Parameters
+    ----------
+    h_aP : float
+        Addendum of the profile [modules].
+    h_fP : float
+        Dedendum of the profile [modules].
+    rho_fP : float
+        Fillet radius of the profile [modules].
+    alpha : float
+        Pressure angle [rad].
+    """
+
+    h_aP: float = 1.0  # addendum, modules
+    h_fP: float = 1.25  # dedendum, modules
+    rho_fP: float = 0.38  # fillet radius, modules
+    alpha: float = math.radians(20.0)  # pressure angle, rad
+
+    @property
+    def largest_fillet_radius(self) -> float:
+        """Radius of the one arc that touches both flanks and the tip line of the rack tooth [modules].
+
+        (pi/4 - h_fP tan alpha) cos alpha / (1 - sin alpha)
+        """
+        half_tip_width = math.pi / 4.0 - self.h_fP * math.tan(self.alpha)
+        return half_tip_width * math.cos(self.alpha) / (1.0 - math.sin(self.alpha))
+
+    @property
+    def full_radius(self) -> bool:
+        """Whether the tip arcs overlap and the full-radius fillet takes their place."""
+        return self.rho_fP > self.largest_fillet_radius
+
+    @property
+    def fillet_radius(self) -> float:
+        """Radius of the tip arc that is used: `rho_fP`, or less for a full-radius fillet [modules]."""
+        return min(self.rho_fP, self.largest_fillet_radius)
+
+    @property
+    def tip_centre_offset(self) -> float:
+        """Distance of the tip arc's centre from the centre line of the rack tooth [modules]."""
+        if self.full_radius:
+            return 0.0
+        depth = self.h_fP - self.rho_fP
+        return math.pi / 4.0 - depth * math.tan(self.alpha) - self.rho_fP / math.cos(self.alpha)
+
+    def faults(self, where: str = "rack") -> tuple[Fault, ...]:
+        """All faults of the values, empty when there are none."""
+        found = (
+            *_ADDENDUM.faults(f"{where}.h_aP", self.h_aP),
+            *_DEDENDUM.faults(f"{where}.h_fP", self.h_fP),
+            *_FILLET.faults(f"{where}.rho_fP", self.rho_fP),
+            *_ANGLE.faults(f"{where}.alpha", self.alpha),
+        )
+        if not found and self.largest_fillet_radius <= 0.0:
+            deepest = math.pi / 4.0 / math.tan(self.alpha)
+            found = (
+                Fault(
+                    f"{where}.h_fP",
+                    f"{self.h_fP:g}",
+                    f"less than {deepest:.6g} modules at this pressure angle",
+                    "the rack tooth comes to a point before its tip, so not even a full-radius fillet fits: "
+                    "reduce h_fP or alpha",
+                ),
+            )
+        return found
+
+
+ISO_53_A = BasicRack()
+"""Basic rack tooth profile A of ISO 53."""
