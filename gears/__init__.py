@@ -9,6 +9,7 @@ from gears.errors import (
     ModelRangeWarning,
 )
 from gears.gear import Gear, TipRelief
+from gears.load_sharing import LoadShare, independent_pairs, share_load
 from gears.material import STEEL, Material, reduced_modulus
 from gears.pair import GearPair
 from gears.path import PathOfContact, PathPoints
@@ -26,6 +27,7 @@ __all__ = [
     "GearsError",
     "GeometryError",
     "GeometryWarning",
+    "LoadShare",
     "LoadSharingError",
     "Material",
     "ModelRangeWarning",
@@ -34,5 +36,7 @@ __all__ = [
     "Placement",
     "TipRelief",
     "ToothProfile",
+    "independent_pairs",
     "reduced_modulus",
+    "share_load",
 ]

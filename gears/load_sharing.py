@@ -1,0 +1,252 @@
+"""How the tooth pairs in mesh share the load: coupled by Newton's method, or independent in proportion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gears.arrays import Array
+from gears.errors import Fault, LoadSharingError
+
+_ITERATIONS = 200
+_STEP = 1e-11  # relative to the force; Newton's next step is of the order of its square
+_ROUNDING = 1e-14  # of deflections, relative to their size
+_START = 1e-2  # part of the force with which a pair is taken in
+_BACKOFF = 0.1  # part of a pair's force that is kept when a step would make it negative
+
+
+class DeflectionLaw(Protocol):
+    """A deflection of each pair that depends on its own force only."""
+
+    def approach(self, force: Array) -> Array:
+        """Deflection, or for a film what it props the bodies apart, (..., pairs) [m]."""
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative to the force, (..., pairs) [m/N]; infinite at zero force is allowed."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadShare:
+    """Forces of the tooth pairs at one mesh position, or at several.
+
+    Parameters
+    ----------
+    forces : (..., pairs) array
+        Normal forces F_i [N], zero where a pair does not touch.
+    approach : float or (...) array
+        Common approach D of the gears along the line of action [m].
+    tangent : float or (...) array
+        dF/dD [N/m] for the pairs in contact.
+    iterations : int
+        Newton steps.
+    """
+
+    forces: Array
+    approach: Array
+    tangent: Array
+    iterations: int
+
+
+def share_load(
+    force: float,
+    bulk: ArrayLike,
+    hertz: DeflectionLaw,
+    gaps: ArrayLike,
+    film: DeflectionLaw | None = None,
+) -> LoadShare:
+    """Share a force among coupled tooth pairs.
+
+    Find F_i >= 0 and D with sum F_i = F and, for every pair,
+
+        g_i = sum_j bulk_ij F_j + hertz(F)_i - s_i(F_i) + gap_i - D >= 0,   F_i g_i = 0.
+
+    This is the minimum of a convex energy, so the solution is unique. Newton's method runs on the pairs in
+    contact, at first the one with the smallest gap; a pair that would overlap is taken in with a small force.
+    hertz is concave, so from too small a force Newton rises monotonically; a step that would make a force
+    negative releases the pair only if it stands clear at zero force, else keeps a tenth of the force.
+    Leading dimensions are mesh positions, all solved together.
+
+    Parameters
+    ----------
+    force : float
+        F, sum of the normal forces, at least 0 [N].
+    bulk : (..., pairs, pairs) array
+        Linear compliance of teeth and bodies, symmetric and positive semidefinite [m/N].
+    hertz : DeflectionLaw
+        Local deflection of each pair, zero at zero force, with slope > 0.
+    gaps : (..., pairs) array
+        Clearances left when the gears touch unloaded, >= 0; inf for a pair that cannot touch [m].
+    film : DeflectionLaw or None
+        s_i(F_i) >= 0, what an oil film props the flanks apart, with slope <= 0; None is dry.
+
+    Returns
+    -------
+    LoadShare
+        Forces, approach and tangent stiffness, for zero force the stiffness at first touch.
+
+    Raises
+    ------
+    LoadSharingError
+        If the input is malformed or no solution was found.
+
+    Notes
+    -----
+    Differentiating g_i = 0 over the pairs in contact gives J dF/dD = 1 with J = bulk + diag(hertz' - s'), so
+    the tangent is 1^T J^-1 1.
+    """
+    stiff, clear = np.asarray(bulk, dtype=float), np.asarray(gaps, dtype=float)
+    _check(force, stiff, clear)
+    touchable = np.isfinite(clear)
+    nothing = np.zeros_like(clear)
+    at_zero = clear if film is None else clear - film.approach(nothing)
+    if force == 0.0:
+        return _first_touch(stiff, hertz, film, at_zero)
+    clear = np.where(touchable, clear, 0.0)
+    active = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
+    loads, approach = np.where(active, force, 0.0), at_zero.min(axis=-1)
+    for iteration in range(1, _ITERATIONS + 1):
+        jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
+        overlap = deflection - approach[..., None]
+        step, lift, tangent = _newton_step(jacobian, overlap, loads, active, force)
+        approach = approach + lift
+        moved = np.where(active, loads + step, 0.0)
+        negative = active & (moved <= 0.0)
+        kept = np.where(negative, 0.0, moved)
+        unloaded = _coupled(stiff, kept) + at_zero - approach[..., None]
+        size = np.abs(deflection).max(where=active, initial=0.0, axis=-1) + np.abs(approach)
+        released = negative & (unloaded >= 0.0)
+        taken = touchable & ~active & (unloaded < -_ROUNDING * size[..., None])
+        settled = np.abs(moved - loads).max(axis=-1) <= _STEP * force + _ROUNDING * size * tangent
+        loads = np.where(negative & ~released, _BACKOFF * loads, kept)
+        loads = np.where(taken, _START * force, loads)
+        active = (active & ~released) | taken
+        if settled.all() and not (negative.any() or taken.any()):
+            return LoadShare(loads, approach, tangent, iteration)
+    fault = Fault(
+        "share_load",
+        f"no solution after {_ITERATIONS} steps",
+        "deflections that grow with the force",
+        "check that bulk is positive semidefinite, hertz has a positive and film a negative slope",
+    )
+    raise LoadSharingError([fault])
+
+
+def _coupled(bulk: Array, loads: Array) -> Array:
+    return np.asarray((bulk @ loads[..., None])[..., 0])
+
+
+def _linearise(
+    bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, clear: Array, loads: Array
+) -> tuple[Array, Array]:
+    """Jacobian (..., n, n) and deflection with clearance (..., n) of all pairs."""
+    slope = hertz.slope(loads)
+    residual = _coupled(bulk, loads) + hertz.approach(loads) + clear
+    if film is not None:
+        slope = slope - film.slope(loads)
+        residual = residual - film.approach(loads)
+    # an idle pair may have an infinite slope; its row is replaced in the Newton step
+    slope = np.where(loads > 0.0, slope, 1.0)
+    return bulk + slope[..., None] * np.eye(loads.shape[-1]), residual
+
+
+def _newton_step(
+    jacobian: Array, residual: Array, loads: Array, active: NDArray[np.bool_], force: float
+) -> tuple[Array, Array, Array]:
+    """Step of the active forces, step of the approach and tangent stiffness.
+
+    Two right-hand sides, J a = 1 and J b = residual on the active pairs, give the bordered system's solution
+    dF = a dD - b with dD from the sum of the forces.
+    """
+    both = active[..., :, None] & active[..., None, :]
+    matrix = np.where(both, jacobian, np.eye(loads.shape[-1]))
+    scale = np.abs(jacobian).max()
+    sides = np.stack((np.where(active, 1.0, 0.0), np.where(active, residual / scale, 0.0)), axis=-1)
+    solved = np.linalg.solve(np.where(both, matrix / scale, matrix), sides)
+    unit, response = solved[..., 0], solved[..., 1]
+    total = unit.sum(axis=-1)
+    reduced = (force - np.where(active, loads, 0.0).sum(axis=-1) + response.sum(axis=-1)) / total
+    return unit * reduced[..., None] - response, reduced * scale, total / scale
+
+
+def _first_touch(bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, at_zero: Array) -> LoadShare:
+    """Share at zero force: the approach at which the first pair touches, and the stiffness there."""
+    approach = at_zero.min(axis=-1)
+    nothing = np.zeros_like(at_zero)
+    slope = hertz.slope(nothing) if film is None else hertz.slope(nothing) - film.slope(nothing)
+    compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + slope
+    first = np.take_along_axis(compliance, at_zero.argmin(axis=-1)[..., None], axis=-1)[..., 0]
+    return LoadShare(nothing, approach, np.asarray(1.0 / first), 0)
+
+
+def _check(force: float, bulk: Array, gaps: Array) -> None:
+    """Refuse malformed input, all faults at once."""
+    faults = []
+    if not (np.isfinite(force) and force >= 0.0):
+        faults.append(Fault("force", repr(force), "a finite force of at least 0 N", "give the force's size"))
+    if gaps.ndim < 1 or gaps.shape[-1] < 1 or bulk.shape != (*gaps.shape, gaps.shape[-1]):
+        shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
+        faults.append(
+            Fault("bulk, gaps", shapes, "(..., pairs, pairs) and (..., pairs)", "give one row for each pair")
+        )
+    if not np.all(gaps >= 0.0):
+        faults.append(
+            Fault(
+                "gaps",
+                "negative or not a number",
+                "at least 0 m, or inf",
+                "measure from the pair that touches",
+            )
+        )
+    elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
+        faults.append(Fault("gaps", "inf for all pairs", "a finite gap", "one pair at least must touch"))
+    if not np.all(np.isfinite(bulk)):
+        faults.append(Fault("bulk", "not finite", "finite compliances", "check the compliance matrix"))
+    if faults:
+        raise LoadSharingError(faults)
+
+
+def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None = None) -> LoadShare:
+    """Share a force among independent pairs in proportion to their stiffness, the article's way.
+
+    k_i = 1 / (1/k_tooth,i + 1/k_film,i); F_i = F k_i / sum k; D = F / sum k.
+
+    Parameters
+    ----------
+    force : float
+        Sum of the normal forces [N].
+    stiffness : (positions, pairs) array
+        Secant stiffness of each pair by itself, 0 for a pair that does not touch [N/m].
+    film : (positions, pairs) array or None
+        Stiffness of each pair's film [N/m]; None is dry.
+
+    Returns
+    -------
+    LoadShare
+        `tangent` holds the secant sum of the stiffness, which is all that this model knows.
+
+    Raises
+    ------
+    LoadSharingError
+        For negative stiffness, or positions where no pair carries.
+    """
+    teeth = np.asarray(stiffness, dtype=float)
+    films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
+    sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
+    if not (sound and np.isfinite(force) and force >= 0.0):
+        allowed = "finite values of at least 0 (a film may be inf)"
+        fault = Fault("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
+        raise LoadSharingError([fault])
+    carries = (teeth > 0.0) & (films > 0.0)
+    compliance = 1.0 / np.where(carries, teeth, 1.0) + 1.0 / np.where(carries, films, 1.0)
+    series = np.where(carries, 1.0 / compliance, 0.0)
+    total = series.sum(axis=-1)
+    if not np.all(total > 0.0):
+        fault = Fault(
+            "stiffness", "zero for every pair", "one pair that carries at each position", "add pairs"
+        )
+        raise LoadSharingError([fault])
+    forces = force * series / total[..., None]
+    return LoadShare(forces, np.asarray(force / total), np.asarray(total), 0)
