@@ -1,1 +1,71 @@
-"""ehl."""
+"""Elastohydrodynamic line contacts: lubricant, film and film stiffness. Knows no gears.
+
+Start with :class:`Lubricant`, :class:`LineContact` and :func:`solve`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ehl.contact import LineContact
+    from ehl.errors import EhlInputError, EhlWarning, Fault
+    from ehl.film import DEFINITIONS, Cost, Film, FilmErrors, hertz_approach
+    from ehl.lubricant import Lubricant
+    from ehl.regressions import (
+        FormulaFilm,
+        dowson,
+        dowson_higginson_minimum,
+        dowson_toyoda_central,
+        moes_central,
+    )
+    from ehl.solver import solve, solve_path
+
+__all__ = [
+    "DEFINITIONS",
+    "Cost",
+    "EhlInputError",
+    "EhlWarning",
+    "Fault",
+    "Film",
+    "FilmErrors",
+    "FormulaFilm",
+    "LineContact",
+    "Lubricant",
+    "dowson",
+    "dowson_higginson_minimum",
+    "dowson_toyoda_central",
+    "hertz_approach",
+    "moes_central",
+    "solve",
+    "solve_path",
+]
+
+_ROOMS = {
+    "contact": ("LineContact",),
+    "errors": ("EhlInputError", "EhlWarning", "Fault"),
+    "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "hertz_approach"),
+    "lubricant": ("Lubricant",),
+    "regressions": (
+        "FormulaFilm",
+        "dowson",
+        "dowson_higginson_minimum",
+        "dowson_toyoda_central",
+        "moes_central",
+    ),
+    "solver": ("solve", "solve_path"),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+
+def __getattr__(name: str) -> object:
+    """Import the room of a public name on first use (the solver needs scipy, the kernels numba)."""
+    if name in _ROOM_OF:
+        return getattr(import_module(f"ehl.{_ROOM_OF[name]}"), name)
+    raise AttributeError(f"module 'ehl' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

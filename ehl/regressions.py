@@ -1,0 +1,116 @@
+"""Film thickness by published formulas of steady, fully flooded, isothermal line contacts."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+from ehl.contact import LineContact
+from ehl.errors import EhlWarning
+
+__all__ = ["FormulaFilm", "dowson", "dowson_higginson_minimum", "dowson_toyoda_central", "moes_central"]
+
+
+def dowson_higginson_minimum(contact: LineContact) -> float:
+    """Minimum film ``h_min = 2.65 R U^0.70 G^0.54 W^-0.13`` [m], U = eta0 u/(E'R) on the mean velocity.
+
+    Range: the elastic, piezoviscous regime of steel and mineral oil (G of 2500 to 7500); at light loads,
+    where the bodies stay rigid or the viscosity constant, it is wrong by any amount.
+
+    References
+    ----------
+    D. Dowson, Elastohydrodynamics, Proc. Inst. Mech. Engrs 182 (1967-68), Part 3A, 151-167.
+    """
+    U, G, W = 0.5 * contact.U2, contact.G, contact.W
+    return 2.65 * U**0.70 * G**0.54 * W**-0.13 * contact.radius
+
+
+def dowson_toyoda_central(contact: LineContact) -> float:
+    """Central film ``h_c = 3.06 R U^0.69 G^0.56 W^-0.10`` [m], U = eta0 u/(E'R) on the mean velocity.
+
+    Range as for :func:`dowson_higginson_minimum`.
+
+    References
+    ----------
+    D. Dowson and S. Toyoda, A central film thickness formula for elastohydrodynamic line contacts, Proc. 5th
+    Leeds-Lyon Symposium on Tribology (1979), 60-65.
+    """
+    U, G, W = 0.5 * contact.U2, contact.G, contact.W
+    return 3.06 * U**0.69 * G**0.56 * W**-0.10 * contact.radius
+
+
+def moes_central(contact: LineContact) -> float:
+    """Central film [m] of an incompressible lubricant, fitted between the four asymptotes of line contacts.
+
+    In Moes units: ``h_RI = 3/M``, ``h_EI = 2.621 M^-1/5``, ``h_RP = 1.287 L^2/3``,
+    ``h_EP = 1.311 M^-1/8 L^3/4``, ``s = (7 + 8 exp(-2 h_EI/h_RI))/5``,
+    ``H = [(h_RI^(7/3) + h_EI^(7/3))^(3s/7) + (h_RP^(-7/2) + h_EP^(-7/2))^(-2s/7)]^(1/s)``.
+
+    Range: any M and L. A compressible film is thinner by about the density at the Hertz pressure.
+
+    References
+    ----------
+    H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lubrication, Wear 159 (1992)
+    57-66.
+    """
+    M, L = contact.moes_M, contact.moes_L
+    rigid = 3.0 / M
+    elastic = 2.621 * M**-0.2
+    s = (7.0 + 8.0 * math.exp(-2.0 * elastic / rigid)) / 5.0
+    isoviscous = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 * s / 7)
+    if L > 0.0:
+        rigid_piezo = 1.287 * L ** (2 / 3)
+        elastic_piezo = 1.311 * M**-0.125 * L**0.75
+        isoviscous += (rigid_piezo**-3.5 + elastic_piezo**-3.5) ** (-2 * s / 7)
+    return isoviscous ** (1 / s) * contact.moes_film
+
+
+@dataclass(frozen=True)
+class FormulaFilm:
+    """The film of one contact by Dowson's formulas, as a cheap stand-in for a solution.
+
+    Its model error is unknown until it is compared with the solver; ``error`` says so with NaN.
+    """
+
+    contact: LineContact
+    central_thickness: float  # h_c [m], Dowson and Toyoda
+    minimum_thickness: float  # h_m [m], Dowson and Higginson
+    error: float = math.nan
+
+    @property
+    def prop(self) -> float:
+        """What the film props the bodies apart [m], taken as h_c; -1/(d prop/dw) is ``stiffness()``."""
+        return self.central_thickness
+
+    def stiffness(self, definition: str = "dowson-central") -> float:
+        """Film stiffness [N/m per m of face], a tangent since the formulas are powers of the load.
+
+        ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m).
+        """
+        if definition == "dowson-central":
+            return 10.0 * self.contact.load / self.central_thickness
+        if definition == "dowson-minimum":
+            return self.contact.load / (0.13 * self.minimum_thickness)
+        raise ValueError(
+            f"definition = {definition!r}: a formula knows 'dowson-central' and 'dowson-minimum' only"
+        )
+
+
+def dowson(contact: LineContact) -> FormulaFilm:
+    """Return central and minimum film by Dowson's formulas.
+
+    Warns
+    -----
+    EhlWarning
+        Outside the elastic, piezoviscous regime, taken here as alpha p_H < 1, where the formulas do not hold.
+    """
+    if contact.lubricant.pressure_viscosity * contact.peak_pressure < 1.0:
+        warnings.warn(
+            f"Dowson's film formulas at alpha p_H = "
+            f"{contact.lubricant.pressure_viscosity * contact.peak_pressure:.2g}: the contact is not in the "
+            "elastic, piezoviscous regime; use ehl.solve",
+            EhlWarning,
+            stacklevel=2,
+        )
+    return FormulaFilm(contact, dowson_toyoda_central(contact), dowson_higginson_minimum(contact))
