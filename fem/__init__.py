@@ -1,1 +1,22 @@
-"""fem."""
+"""Elasticity of gear pairs by finite elements: flexibility of flanks, loaded tooth contact, fields.
+
+Nothing heavy is imported before something is computed.
+"""
+
+from fem.compliance import Compliance, Cost, compliance, single_pair_stiffness
+from fem.contact import MeshCycle, mesh_cycle
+from fem.errors import Fault, FemError, FemWarning
+from fem.local_law import Film
+
+__all__ = [
+    "Compliance",
+    "Cost",
+    "Fault",
+    "FemError",
+    "FemWarning",
+    "Film",
+    "MeshCycle",
+    "compliance",
+    "mesh_cycle",
+    "single_pair_stiffness",
+]

@@ -16,13 +16,15 @@ from fem.elasticity import PlaneElasticity
 from fem.errors import Fault, FemError
 from fem.flamant import hertz_half_width, hertz_indentation
 from fem.flexibility import GearFlexibility, flexibility
+from fem.local_law import HertzApproach
 from fem.ring import Ring, ring_of
+from fem.tip_contact import TipStrips, tip_strips
 
 if TYPE_CHECKING:
     from gears import GearPair
     from meshes import Sizes
 
-__all__ = ["Compliance", "Cost", "HertzApproach", "compliance", "mesh_and_factor", "single_pair_stiffness"]
+__all__ = ["Compliance", "Cost", "compliance", "mesh_and_factor", "single_pair_stiffness"]
 
 Array = NDArray[np.float64]
 
@@ -43,45 +45,13 @@ class Cost:
     iterations : int
         Newton iterations of the load sharing, all positions together; 0 for a compliance.
     parts : mapping of str to float
-        Seconds by stage: mesh, assemble, factor, condense, solve, contact.
+        Seconds by stage: mesh, assemble, factor, condense, solve, tips; contact for a mesh cycle.
     """
 
     seconds: float
     unknowns: int
     iterations: int = 0
     parts: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-
-
-@dataclass(frozen=True)
-class HertzApproach:
-    """Local indentation of both flanks of some pairs under their forces; see ``fem.flamant``.
-
-    approach = F [constant - (slope_of_log) ln F], the half-width growing as sqrt(F).
-
-    Attributes
-    ----------
-    constant : (n,) array
-        [m/N]
-    per_log : float
-        [m/N]
-    """
-
-    constant: Array
-    per_log: float
-
-    def approach(self, force: Array) -> Array:
-        """Indentation of both flanks together [m] under forces (n,) [N]; zero without force."""
-        loaded = np.maximum(force, _LEAST_FORCE)
-        return np.asarray(force * (self.constant - self.per_log * np.log(loaded)))
-
-    def slope(self, force: Array) -> Array:
-        """Derivative of the indentation by the force [m/N]."""
-        loaded = np.maximum(force, _LEAST_FORCE)
-        inside = np.where(np.asarray(force) > _LEAST_FORCE, self.per_log, 0.0)
-        return np.asarray(self.constant - self.per_log * np.log(loaded) - inside)
-
-
-_LEAST_FORCE = 1e-9  # N: below it the indentation is taken as linear, where ln F would be infinite
 
 
 @dataclass(frozen=True)
@@ -93,6 +63,8 @@ class Compliance:
     pair : gears.GearPair
     plane : {"strain", "stress"}
     pinion, wheel : GearFlexibility
+    tips : (TipStrips, TipStrips)
+        Tips of pinion and wheel, for contact of their edges outside the path.
     refinements : int
         Of the mesh in use.
     sizes : meshes.Sizes
@@ -111,6 +83,7 @@ class Compliance:
     plane: str
     pinion: GearFlexibility
     wheel: GearFlexibility
+    tips: tuple[TipStrips, TipStrips]
     refinements: int
     sizes: Sizes
     reach: int
@@ -131,32 +104,33 @@ class Compliance:
         total = self.pinion.own(rho1) + self.wheel.own(self.pair.line_of_action - rho1)
         return np.asarray(total / self.pair.face_width)
 
-    def cross(self, behind: Array, ahead: Array, teeth: int) -> Array:
-        """Approach of a pair by a force on the pair ``teeth`` pitches away [m/N].
+    def bulk(self, rho1: Array, rho2: Array | None = None) -> Array:
+        """Bulk flexibility of pairs in order of their rho1, one tooth apart.
 
         Parameters
         ----------
-        behind, ahead : arrays
-            rho1 of the two pairs [m], ``ahead`` being the one nearer to E. The term is symmetric
-            (Maxwell and Betti).
-        teeth : int
-        """
-        on_pinion = self.pinion.cross(teeth, behind, ahead)
-        total = self.pair.line_of_action
-        on_wheel = self.wheel.cross(teeth, total - ahead, total - behind)
-        return np.asarray((on_pinion + on_wheel) / self.pair.face_width)
+        rho1 : (..., n) array
+            Curvature radii on the pinion [m].
+        rho2 : (..., n) array, optional
+            On the wheel; those of the line of action unless given.
 
-    def bulk(self, rho1: Array) -> Array:
-        """Bulk flexibility (..., n, n) [m/N] of pairs at rho1 (..., n) [m], one base pitch apart in order."""
+        Returns
+        -------
+        (..., n, n) array
+            Symmetric [m/N].
+        """
+        rho1 = np.asarray(rho1, dtype=float)
+        rho2 = self.pair.line_of_action - rho1 if rho2 is None else rho2
         n = rho1.shape[-1]
         matrix = np.zeros((*rho1.shape, n))
         for i in range(n):
-            matrix[..., i, i] = self.own(rho1[..., i])
-            for j in range(i + 1, n):
-                if j - i <= self.reach:
-                    matrix[..., i, j] = self.cross(rho1[..., i], rho1[..., j], j - i)
-                    matrix[..., j, i] = matrix[..., i, j]
-        return matrix
+            matrix[..., i, i] = self.pinion.own(rho1[..., i]) + self.wheel.own(rho2[..., i])
+            for j in range(i + 1, min(n, i + self.reach + 1)):
+                matrix[..., i, j] = self.pinion.cross(j - i, rho1[..., i], rho1[..., j])
+                # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
+                matrix[..., i, j] += self.wheel.cross(j - i, rho2[..., j], rho2[..., i])
+                matrix[..., j, i] = matrix[..., i, j]
+        return np.asarray(matrix / self.pair.face_width)
 
     def hertz(self, rho1: Array) -> HertzApproach:
         """Local indentation of pairs at rho1 [m] as a function of their forces."""
@@ -249,8 +223,8 @@ def compliance(
         raise FemError(*faults)
     began = perf_counter()
     sizes = sizes or Sizes()
-    # every tooth that can carry load together with another one
-    reach = max(1, ceil(pair.contact_ratio) - 1)
+    # every tooth that can carry load together with another one, tip edges just outside the path included
+    reach = ceil(pair.contact_ratio)
     parts: dict[str, float] = {}
     level = 0 if refinements is None else refinements - 1
     error, coarse = np.inf, None
@@ -272,8 +246,13 @@ def compliance(
         else f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
     )
     unknowns = sum(ring.unknowns for ring in rings)
+    started = perf_counter()
+    first, second = (tip_strips(*both) for both in zip(rings, pair.teeth_profiles, strict=True))
+    parts["tips"] = perf_counter() - started
     cost = Cost(perf_counter() - began, unknowns, 0, MappingProxyType(parts))
-    return Compliance(pair, plane, *fine, level, sizes, reach, error, cost, converged, message)
+    return Compliance(
+        pair, plane, *fine, (first, second), level, sizes, reach, error, cost, converged, message
+    )
 
 
 def _difference(

@@ -48,6 +48,12 @@ class FlankPoints:
     nodes: Index
     weights: Array
 
+    def part(self, some: slice) -> FlankPoints:
+        """Some of the points."""
+        return FlankPoints(
+            self.rho[some], self.points[some], self.inward[some], self.nodes[some], self.weights[some]
+        )
+
     def normal_part(self, displacement: Array) -> Array:
         """Component along the inward normal of nodal displacements (nodes, 2, ...), at every point."""
         there = np.einsum("nk,nka...->na...", self.weights, displacement[self.nodes])
@@ -125,8 +131,20 @@ class LineLoads:
         return regular
 
     def on_tooth(self, tooth: int, where: FlankPoints) -> Array:
-        """Displacement along the inward normal at points of another tooth's flank: (points, loads)."""
+        """Displacement along the inward normal at points of another tooth's flank: (points, loads).
+
+        On tooth 0 itself this is the regular part u_r, to which ``singular`` has to be added.
+        """
         return where.normal_part(_nodal(self.ring, self._inner(tooth)))
+
+    def singular(self, where: FlankPoints) -> Array:
+        """u_s along the inward normal at points of tooth 0 (points, loads); zero at the loads themselves."""
+        part = np.zeros((len(where.rho), len(self.at.rho)))
+        for i, (load, inward) in enumerate(zip(self.at.points, self.at.inward, strict=True)):
+            apart = np.any(where.points != load, axis=1)
+            u = flamant.displacement(where.points[apart], load, inward, self.ring.law, self.ring.mesh.module)
+            part[apart, i] = np.einsum("na,na->n", u, where.inward[apart])
+        return part
 
     def _inner(self, tooth: int) -> Array:
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, range(tooth, tooth + 1))[0]

@@ -1,0 +1,150 @@
+"""Local deflection laws of the pairs in a load-sharing problem: Hertz on the flanks, tables at tip edges, film."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table"]
+
+Array = NDArray[np.float64]
+
+LEAST_FORCE = 1e-9
+"""Force [N] below which the Hertz indentation is taken as linear, since its slope at zero is infinite."""
+
+
+@dataclass(frozen=True, eq=False)
+class HertzApproach:
+    """Indentation of both flanks of some pairs; see ``fem.flamant``.
+
+    approach = F (constant - per_log ln F), since the half-width grows as sqrt(F).
+
+    Attributes
+    ----------
+    constant : (..., pairs) array
+        [m/N]
+    per_log : float
+        [m/N]
+    """
+
+    constant: Array
+    per_log: float
+
+    def approach(self, force: Array) -> Array:
+        """Indentation of both flanks together [m] under forces [N]; zero without force."""
+        return np.asarray(force * (self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE))))
+
+    def slope(self, force: Array) -> Array:
+        """Derivative of the indentation by the force [m/N]."""
+        inside = np.where(force > LEAST_FORCE, self.per_log, 0.0)
+        return np.asarray(self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE)) - inside)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Monotone cubic interpolation (Fritsch and Carlson's limits) of one law per row; straight beyond the end.
+
+    Attributes
+    ----------
+    force, approach, steepness : (n, k) arrays
+        Points [N], [m] and derivatives [m/N].
+    """
+
+    force: Array
+    approach: Array
+    steepness: Array
+
+    @classmethod
+    def through(cls, force: Array, approach: Array) -> Table:
+        """Table through growing points (n, k)."""
+        width, secant = np.diff(force), np.diff(approach) / np.diff(force)
+        left, right = 2 * width[:, 1:] + width[:, :-1], width[:, 1:] + 2 * width[:, :-1]
+        middle = (left + right) / (left / secant[:, :-1] + right / secant[:, 1:])
+        steepness = np.concatenate([secant[:, :1], middle, secant[:, -1:]], axis=1)
+        return cls(force, approach, steepness)
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Approach [m] and derivative [m/N] at one force (n,) [N] for each row."""
+        rows, last = np.arange(len(force)), self.force.shape[1] - 1
+        cell = np.clip((self.force <= force[:, None]).sum(axis=1) - 1, 0, last - 1)
+        f0, f1 = self.force[rows, cell], self.force[rows, cell + 1]
+        d0, d1 = self.approach[rows, cell], self.approach[rows, cell + 1]
+        s0, s1 = self.steepness[rows, cell], self.steepness[rows, cell + 1]
+        width = f1 - f0
+        beyond = np.maximum(force - f1, 0.0)
+        t = np.minimum((force - f0) / width, 1.0)
+        value = (
+            d0 * (1 + 2 * t) * (1 - t) ** 2
+            + d1 * t**2 * (3 - 2 * t)
+            + width * (s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t))
+        )
+        slope = 6 * t * (1 - t) * (d1 - d0) / width + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)
+        return value + s1 * beyond, slope
+
+
+@dataclass(frozen=True, eq=False)
+class PairLaws:
+    """Hertz on the path of contact, a table for each tip-edge contact outside it.
+
+    Attributes
+    ----------
+    hertz : HertzApproach
+        For all (positions, pairs).
+    edge : (positions, pairs) boolean array
+        Contacts of a tip edge.
+    table : Table or None
+        One row for each of them, in row-major order.
+    """
+
+    hertz: HertzApproach
+    edge: NDArray[np.bool_]
+    table: Table | None = None
+
+    def approach(self, force: Array) -> Array:
+        """Local deflection (positions, pairs) [m]."""
+        local = self.hertz.approach(force)
+        if self.table is not None:
+            local[self.edge] = self.table.value_and_slope(force[self.edge])[0]
+        return local
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative [m/N]."""
+        local = self.hertz.slope(force)
+        if self.table is not None:
+            local[self.edge] = self.table.value_and_slope(force[self.edge])[1]
+        return local
+
+
+class Film(Protocol):
+    """What an oil film props the flanks apart, as ``mesh_cycle`` asks for it."""
+
+    def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
+        """Prop s >= 0 [m] and its derivative by the force ds/dF <= 0 [m/N].
+
+        Parameters
+        ----------
+        rho1 : (positions, pairs) array
+            Curvature radii on the pinion [m]; nan where a pair cannot touch or touches with a tip edge only,
+            where any finite answer is ignored.
+        forces : (positions, pairs) array
+            Normal forces [N], zero included.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class FilmLaw:
+    """A ``Film`` at fixed places, in the form that load sharing asks for; dry at tip edges."""
+
+    film: Film
+    rho1: Array
+
+    def approach(self, force: Array) -> Array:
+        """Prop (positions, pairs) [m]."""
+        return np.where(np.isfinite(self.rho1), self.film(self.rho1, force)[0], 0.0)
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative [m/N]."""
+        return np.where(np.isfinite(self.rho1), self.film(self.rho1, force)[1], 0.0)
