@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,27 +13,9 @@ from flankfilm.figures.style import COLOURS, figure, legend_above, styled
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from flankfilm.stages.sweep import SweepStage
+
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Portrait:
-    """A settled motion at one parameter value.
-
-    Attributes
-    ----------
-    title : str
-        Parameter value and label of the motion.
-    displacement, velocity : ndarray
-        Trajectory, dimensionless.
-    section : ndarray, shape (points, 2)
-        States at tau = 0.
-    """
-
-    title: str
-    displacement: Array
-    velocity: Array
-    section: Array
 
 
 def sweeps(parameter: Array, states: Mapping[str, Array], labels: Mapping[str, Sequence[str]], name: str) -> Figure:
@@ -70,8 +51,9 @@ def sweeps(parameter: Array, states: Mapping[str, Array], labels: Mapping[str, S
     return drawn
 
 
-def portraits(motions: Sequence[Portrait], half_backlash: float) -> Figure:
+def portraits(stage: SweepStage) -> Figure:
     """Draw phase portraits with their Poincaré points and the edges of the backlash."""
+    motions = stage.portraits
     columns = min(3, max(1, len(motions)))
     rows = -(-len(motions) // columns)
     with styled():
@@ -82,9 +64,9 @@ def portraits(motions: Sequence[Portrait], half_backlash: float) -> Figure:
         for axes, motion in zip(grid.ravel(), motions, strict=False):
             axes.plot(motion.displacement, motion.velocity, color=COLOURS[0], linewidth=0.8, rasterized=True)
             axes.plot(motion.section[:, 0], motion.section[:, 1], "o", color=COLOURS[1], markersize=3.5)
-            for edge in (-half_backlash, half_backlash):
+            for edge in (-stage.half_backlash, stage.half_backlash):
                 axes.axvline(edge, color="#999999", linewidth=0.8, linestyle=":")
-            axes.set_title(motion.title, fontsize=8.5)
+            axes.set_title(f"{motion.label} at ω = {motion.frequency:.4g}, {motion.direction}", fontsize=8.5)
             axes.set(xlabel="displacement X [-]", ylabel="velocity dX/dτ [-]")
     return drawn
 

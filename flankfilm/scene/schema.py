@@ -138,8 +138,20 @@ class FilmSection(Section):
     """The oil film."""
 
     model: Literal["ehl", "dowson", "none", "auto"] = "auto"
-    stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] = "approach"
+    stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] | None = None
     supply: Literal["flooded"] = "flooded"
+
+    @model_validator(mode="after")
+    def _formulas_know_two_definitions(self) -> FilmSection:
+        if self.model == "dowson" and self.stiffness not in (None, "dowson-central", "dowson-minimum"):
+            raise ValueError(
+                f'model = "dowson" has stiffness = "dowson-central" or "dowson-minimum", not "{self.stiffness}"'
+            )
+        return self
+
+    def definition(self, model: str) -> str:
+        """Definition of the film stiffness for a film computed by `model`."""
+        return self.stiffness or ("dowson-central" if model == "dowson" else "approach")
 
 
 class ExtraInertia(Section):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import time
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -95,6 +96,10 @@ class Engine:
         stage = self.stages[name]
         return tuple(sorted({*stage.packages, *(p for n in stage.needs for p in self.packages(n))}))
 
+    def results(self) -> dict[str, Any]:
+        """Results that have been asked for so far."""
+        return dict(self._values)
+
     def _obtain(self, stage: Stage) -> Any:
         start = time.perf_counter()
         self._elsewhere.append(0.0)
@@ -113,6 +118,14 @@ class Engine:
         own = whole - self._elsewhere.pop()
         if self._elsewhere:
             self._elsewhere[-1] += whole
-        told = tuple(dict.fromkeys(str(w.message) for w in caught))
+        told = _once_each(str(w.message) for w in caught)
         self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, told)
         return value
+
+
+def _once_each(messages: Iterable[str]) -> tuple[str, ...]:
+    """Drop messages that differ from an earlier one in their numbers alone."""
+    seen: dict[str, str] = {}
+    for message in messages:
+        seen.setdefault(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", message), message)
+    return tuple(seen.values())

@@ -1,0 +1,98 @@
+"""Results as one labelled dataset: netCDF with units, and CSV for curves."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flankfilm.files import replacing
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One variable of the results.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Names of its axes.
+    values : array_like
+        SI values.
+    units : str
+        Unit as written into the file; "1" for pure numbers.
+    meaning : str
+        What it is, in words.
+    """
+
+    dims: tuple[str, ...]
+    values: ArrayLike
+    units: str
+    meaning: str
+
+
+def to_dataset(quantities: Mapping[str, Quantity], attributes: Mapping[str, str | float]) -> xr.Dataset:
+    """Gather quantities into a dataset.
+
+    Parameters
+    ----------
+    quantities : mapping
+        Name to quantity; axes of one name have one length throughout.
+    attributes : mapping
+        Of the whole file: text and numbers alone, since netCDF holds nothing else.
+    """
+    import xarray as xr
+
+    variables = {
+        name: xr.Variable(q.dims, np.asarray(q.values), {"units": q.units, "long_name": q.meaning})
+        for name, q in quantities.items()
+    }
+    return xr.Dataset(variables, attrs=dict(attributes))
+
+
+def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
+    """Replace the file `path` by the dataset."""
+    with replacing(path) as beside:
+        dataset.to_netcdf(beside, engine="h5netcdf")
+
+
+def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
+    """Replace the file `path` by columns of equal length; their names carry the units.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    columns : mapping
+        Name to values, shape (n,); numbers are written so that they read back exactly.
+    """
+    import csv
+
+    listed = {name: np.asarray(values).tolist() for name, values in columns.items()}
+    with replacing(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(listed)
+        writer.writerows(zip(*listed.values(), strict=True))
+
+
+def provenance(scene_json: str) -> dict[str, str]:
+    """Attributes that say what made a file: scene, versions, and the digest of the code."""
+    import platform
+    from importlib.metadata import version
+
+    from flankfilm.cache import code_digest
+
+    libraries = ("flankfilm", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+    return {
+        "scene_json": scene_json,
+        "versions_json": json.dumps({"python": platform.python_version(), **{n: version(n) for n in libraries}}),
+        "code_sha256": code_digest(("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")),
+    }

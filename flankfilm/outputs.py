@@ -1,0 +1,148 @@
+"""What a run writes as data: one netCDF file with everything, one CSV for each curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
+from flankfilm.mesh_stiffness import MeshStiffness
+
+if TYPE_CHECKING:
+    from flankfilm.scene import Scene
+    from flankfilm.stages.closed_forms import SinglePairs
+    from flankfilm.stages.film import FilmStage
+    from flankfilm.stages.motion import FourierStage
+    from flankfilm.stages.sweep import SweepStage
+
+
+def cycle_quantities(cycle: MeshStiffness, prefix: str) -> dict[str, Quantity]:
+    """Variables of a mesh cycle; `prefix` tells dry from lubricated."""
+    along, each = (f"{prefix}_position",), (f"{prefix}_position", f"{prefix}_pair")
+    said = "with the oil film" if prefix == "lubricated" else "without film"
+    return {
+        f"{prefix}_phase": Quantity(along, cycle.phase, "1", "travel after a pair is at A, over the base pitch"),
+        f"{prefix}_secant_stiffness": Quantity(along, cycle.secant, "N/m", f"force over deflection, {said}"),
+        f"{prefix}_tangent_stiffness": Quantity(along, cycle.tangent, "N/m", f"slope of force over deflection, {said}"),
+        f"{prefix}_transmission_error": Quantity(along, cycle.transmission_error, "m", f"deflection, {said}"),
+        f"{prefix}_rho1": Quantity(each, cycle.rho1, "m", "curvature radius of the pinion's flank at the contact"),
+        f"{prefix}_force": Quantity(each, cycle.forces, "N", f"normal force of each pair, {said}"),
+        f"{prefix}_load_share": Quantity(each, cycle.load_share, "1", f"share of the force, {said}"),
+    }
+
+
+def single_pair_quantities(single: SinglePairs) -> dict[str, Quantity]:
+    """Variables of the closed forms."""
+    curves = {
+        f"single_pair_{name}": Quantity(("path",), k, "N/m", f"stiffness of one pair: {label}")
+        for (label, k), name in zip(single.curves.items(), _identifiers(single.curves), strict=True)
+    }
+    return {"path_rho1": Quantity(("path",), single.rho1, "m", "curvature radius of the pinion's flank"), **curves}
+
+
+def film_quantities(film: FilmStage) -> dict[str, Quantity]:
+    """Variables of the film along the path."""
+    along = ("film_point",)
+    stiffness = {
+        f"film_stiffness_{name.replace('-', '_')}": Quantity(along, k, "N/m", f"film stiffness by {name}, whole face")
+        for name, k in film.stiffness.items()
+    }
+    return {
+        "film_rho1": Quantity(along, film.rho1, "m", "curvature radius of the pinion's flank at the film"),
+        "film_load": Quantity(along, film.load, "N/m", "force per length of face"),
+        "film_central_thickness": Quantity(along, film.central, "m", "film on the line of centres"),
+        "film_minimum_thickness": Quantity(along, film.minimum, "m", "least film"),
+        "film_hertz_pressure": Quantity(along, film.hertz_pressure, "Pa", "peak pressure of the dry contact"),
+        **stiffness,
+    }
+
+
+def sweep_quantities(sweep: SweepStage) -> dict[str, Quantity]:
+    """Variables of the sweeps; labels are text."""
+    found = {"sweep_frequency": Quantity(("sweep",), sweep.frequency, "1", "mesh over natural frequency")}
+    if sweep.speed_rpm is not None:
+        found["sweep_speed_rpm"] = Quantity(("sweep",), sweep.speed_rpm, "rpm", "pinion speed")
+    for direction, states in sweep.states.items():
+        dims = ("sweep", "kept", "state")
+        found[f"sweep_{direction}"] = Quantity(dims, states, "1", f"displacement and velocity at tau = 0, {direction}")
+        labels = np.asarray(sweep.labels[direction], dtype="U24")
+        found[f"sweep_{direction}_label"] = Quantity(("sweep",), labels, "1", f"motion n-p-q, {direction}")
+    return found
+
+
+def fourier_quantities(fourier: FourierStage) -> dict[str, Quantity]:
+    """Variables of the Fourier series."""
+    series = fourier.stiffness
+    along = ("harmonic",)
+    unit = "1" if fourier.kind == "given" and series.mean == 1.0 else "N/m"
+    return {
+        "fourier_mean": Quantity((), series.mean, unit, f"mean of the {fourier.kind} stiffness"),
+        "fourier_amplitude": Quantity(along, series.amplitudes, unit, "amplitude of cos(j omega tau + phase)"),
+        "fourier_phase": Quantity(along, series.phases, "rad", "phase; tau = 0 when a pair is at A"),
+    }
+
+
+def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Path]:
+    """Write ``results.nc`` and the CSV files for the stages at hand; return what was written."""
+    quantities: dict[str, Quantity] = {}
+    tables: dict[str, dict[str, Any]] = {}
+    if (single := values.get("closed forms")) is not None:
+        quantities |= single_pair_quantities(single)
+        tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.position} | {
+            f"{name}_N_per_m": k for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
+        }
+    for stage, prefix in (("dry cycle", "dry"), ("film", "lubricated")):
+        if (value := values.get(stage)) is not None:
+            cycle = value if stage == "dry cycle" else value.cycle
+            quantities |= cycle_quantities(cycle, prefix)
+            tables[f"mesh_cycle_{prefix}"] = _cycle_columns(cycle)
+    if (film := values.get("film")) is not None:
+        quantities |= film_quantities(film)
+        tables["film_along_path"] = {
+            "rho1_mm": 1e3 * film.rho1,
+            "load_N_per_mm": 1e-3 * film.load,
+            "central_film_um": 1e6 * film.central,
+            "minimum_film_um": 1e6 * film.minimum,
+            "hertz_pressure_GPa": 1e-9 * film.hertz_pressure,
+        } | {f"stiffness_{n.replace('-', '_')}_N_per_m": k for n, k in film.stiffness.items()}
+    if (fourier := values.get("fourier")) is not None:
+        quantities |= fourier_quantities(fourier)
+    if (sweep := values.get("sweep")) is not None:
+        quantities |= sweep_quantities(sweep)
+        for direction, states in sweep.states.items():
+            tables[f"sweep_{direction}"] = _sweep_columns(sweep, direction, states)
+    attributes = {"title": scene.title, **provenance(scene.model_dump_json())}
+    write_netcdf(folder / "results.nc", to_dataset(quantities, attributes))
+    for name, columns in tables.items():
+        write_csv(folder / "csv" / f"{name}.csv", columns)
+    return [folder / "results.nc", *(folder / "csv" / f"{name}.csv" for name in tables)]
+
+
+def _cycle_columns(cycle: MeshStiffness) -> dict[str, Any]:
+    shares = {f"load_share_pair_{j + 1}": cycle.load_share[:, j] for j in range(cycle.forces.shape[1])}
+    return {
+        "phase": cycle.phase,
+        "secant_stiffness_N_per_m": cycle.secant,
+        "tangent_stiffness_N_per_m": cycle.tangent,
+        "transmission_error_um": 1e6 * cycle.transmission_error,
+        **shares,
+    }
+
+
+def _sweep_columns(sweep: SweepStage, direction: str, states: Any) -> dict[str, Any]:
+    kept = states.shape[1]
+    speed = {} if sweep.speed_rpm is None else {"speed_rpm": np.repeat(sweep.speed_rpm, kept)}
+    return {
+        **speed,
+        "frequency": np.repeat(sweep.frequency, kept),
+        "displacement": states[:, :, 0].ravel(),
+        "velocity": states[:, :, 1].ravel(),
+        "motion": np.repeat(np.asarray(sweep.labels[direction]), kept),
+    }
+
+
+def _identifiers(labels: Mapping[str, Any]) -> list[str]:
+    return ["".join(c if c.isalnum() else "_" for c in label.lower()).replace("__", "_") for label in labels]

@@ -1,0 +1,129 @@
+"""Gathers a run's results into the report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flankfilm.dataset import provenance
+from flankfilm.files import write_text
+from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
+from flankfilm.report import film_parts, mesh_parts, motion_parts, run_parts
+from flankfilm.report.page import Headline, Part, render
+from flankfilm.report.run_parts import CostRow
+from flankfilm.tolerance import ToleranceSplit
+
+if TYPE_CHECKING:
+    from flankfilm.run import Results
+
+
+def headlines(results: Results) -> list[Headline]:
+    """Numbers for the page's head and for the terminal."""
+    values, told = results.values, []
+    cycle = final_cycle(results)
+    if cycle is not None:
+        told += mesh_parts.headlines(cycle, values["pair"].face_width)
+    if (film := values.get("film")) is not None:
+        told += film_parts.headlines(film)
+    if (fourier := values.get("fourier")) is not None:
+        kappa = fourier.stiffness.amplitudes[0] / fourier.stiffness.mean if fourier.stiffness.amplitudes else 0.0
+        left = "given" if fourier.fit is None else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
+        told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
+    return told
+
+
+def final_cycle(results: Results) -> MeshStiffness | None:
+    """Return the mesh cycle with the film where there is one, else the dry one."""
+    film = results.values.get("film")
+    return film.cycle if film is not None else results.values.get("dry cycle")
+
+
+def write_report(results: Results) -> Path:
+    """Write ``report.html`` and return its path."""
+    scene = results.scene
+    parts = [part for part in (*_result_parts(results), *_run_parts(results)) if part is not None]
+    path = results.folder / "report.html"
+    lead = "Stiffness, film and motion of a spur-gear pair; each number with its error estimate and its cost."
+    write_text(path, render(scene.title or "flankfilm", lead, headlines(results), parts))
+    return path
+
+
+def _result_parts(results: Results) -> list[Part | None]:
+    values, scene = results.values, results.scene
+    pair, cycle = values.get("pair"), final_cycle(results)
+    parts: list[Part | None] = []
+    if pair is not None:
+        parts.append(mesh_parts.geometry(pair))
+    if cycle is not None and pair is not None:
+        film = values.get("film")
+        cycles = [cycle]
+        if film is not None:
+            cycles.append(values["dry cycle"])
+        cycles += values.get("other cycles", ())
+        changes = {} if film is None else {"secant": film.change_secant, "tangent": film.change_tangent}
+        parts.append(mesh_parts.stiffness(pair, values.get("closed forms"), cycles, changes, _model_note(results)))
+        if film is not None:
+            parts.append(film_parts.film(pair, film, scene.tolerance))
+    if (fields := values.get("fields")) is not None:
+        parts.append(mesh_parts.fields(fields))
+    if (fourier := values.get("fourier")) is not None:
+        parts.append(motion_parts.fourier(fourier, cycle, pair.face_width if pair is not None else None))
+    if (scaling := values.get("scaling")) is not None:
+        parts.append(motion_parts.scaling(scaling))
+        if (sweep := values.get("sweep")) is not None:
+            parts.append(motion_parts.sweep(sweep))
+    return parts
+
+
+def _model_note(results: Results) -> str:
+    decision = results.values.get("film model")
+    return f"Film: {decision.reason}." if decision is not None else ""
+
+
+def _run_parts(results: Results) -> list[Part | None]:
+    scene = results.scene
+    split = ToleranceSplit.of(scene.tolerance)
+    notes = []
+    if "compliance" in results.values:
+        notes.append(
+            f"The tolerance of {100 * scene.tolerance:g} % is split: {100 * split.compliance:g} % for the tooth compliance, "
+            f"{100 * split.sampling:g} % for the sampling of the mesh cycle, {100 * split.film:g} % for film thicknesses."
+        )
+    made = provenance(scene.model_dump_json())
+    return [
+        run_parts.costs(_cost_rows(results), results.seconds, scene.tolerance),
+        run_parts.decisions(notes, results.runs),
+        run_parts.inputs(
+            json.dumps(scene.model_dump(exclude_none=True), indent=2, ensure_ascii=False),
+            json.loads(made["versions_json"]),
+        ),
+    ]
+
+
+def _cost_rows(results: Results) -> list[CostRow]:
+    """Error and work of each stage that ran, in the order of the house."""
+    split = ToleranceSplit.of(results.scene.tolerance)
+    rows = []
+    for name, run in results.runs.items():
+        value = results.values.get(name)
+        figure, allowed, error, note = "", None, None, ""
+        if name == "compliance":
+            figure, allowed, error = "tooth compliance", split.compliance, value.error
+            note = f"{value.cost.unknowns:,} unknowns"
+        elif name == "dry cycle":
+            figure, allowed, error = "mean stiffness, from sampling", split.sampling, sampling_error(value.secant)
+            note = f"{value.phase.size} positions"
+        elif name == "film" and value.model == "ehl":
+            figure, allowed, error = "film thickness", split.film, value.error
+            note = f"{value.rho1.size} films of up to {value.unknowns} unknowns, {value.rounds} rounds"
+        elif name == "fourier" and value.fit is not None:
+            figure, error = "what the series leaves out", value.fit.remainder_rms
+            note = f"order {len(value.stiffness.amplitudes)}"
+        elif name == "sweep":
+            figure, error = "settled motions", value.error
+            note = f"{value.periods:,} periods"
+        elif run.seconds < 0.01:
+            continue
+        rows.append(CostRow(run.title, figure, allowed, error, note, run.seconds, run.cached))
+    return rows

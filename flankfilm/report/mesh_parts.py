@@ -1,0 +1,157 @@
+"""Sections of the report about geometry, stiffness, load share and fields."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flankfilm.figures import gear as gear_figures
+from flankfilm.figures import stiffness as stiffness_figures
+from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.report.page import Headline, Part, Table, drawing
+from flankfilm.report.text import number, percent
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flankfilm.stages.closed_forms import SinglePairs
+    from gears import GearPair
+
+
+def path_marks(pair: GearPair) -> dict[str, float]:
+    """Points A to E as travel from A [m]."""
+    points = pair.points
+    return {name: getattr(points, name) - points.A for name in "ABCDE"}
+
+
+def geometry(pair: GearPair) -> Part:
+    """Geometry with drawing and table."""
+    rows = [
+        ("teeth", *(str(g.teeth) for g in (pair.pinion, pair.wheel))),
+        ("profile shift [modules]", *(number(g.profile_shift) for g in (pair.pinion, pair.wheel))),
+        *(
+            (name, *(number(1e3 * r, 6) for r in radii))
+            for name, radii in (
+                ("reference radius [mm]", pair.reference_radii),
+                ("base radius [mm]", pair.base_radii),
+                ("root radius [mm]", pair.root_radii),
+                ("form radius [mm]", pair.form_radii),
+                ("tip radius [mm]", pair.tip_radii),
+                ("bore radius [mm]", pair.bore_radii),
+            )
+        ),
+        ("undercut", *("yes" if tooth.undercut else "no" for tooth in pair.teeth_profiles)),
+    ]
+    common = [
+        ("module [mm]", number(1e3 * pair.module)),
+        ("face width [mm]", number(1e3 * pair.face_width)),
+        ("axis distance [mm]", number(1e3 * pair.axis_distance, 7)),
+        ("working pressure angle [deg]", number(math.degrees(pair.working_pressure_angle), 6)),
+        ("base pitch [mm]", number(1e3 * pair.base_pitch, 6)),
+        ("contact ratio", number(pair.contact_ratio, 5)),
+        ("normal backlash [µm]", number(1e6 * pair.backlash)),
+        ("path of contact A to E [mm]", number(1e3 * (pair.points.E - pair.points.A), 5)),
+    ]
+    return Part(
+        "geometry",
+        "Geometry",
+        figures=(drawing(gear_figures.mesh(pair), "mesh", "The pair in mesh at the pitch point, with the path of contact A to E."),),
+        tables=(
+            Table(("", "pinion", "wheel"), tuple(rows)),
+            Table(("pair", ""), tuple(common)),
+        ),
+    )
+
+
+def stiffness(
+    pair: GearPair, single: SinglePairs | None, cycles: list[MeshStiffness], changes: Mapping[str, float], note: str
+) -> Part:
+    """Stiffness of all models on one axis, load share and transmission error."""
+    figures = [
+        drawing(
+            stiffness_figures.mesh_cycles(cycles, pair.face_width),
+            "cycles",
+            "Mesh stiffness (secant) over two base pitches, all models on one axis.",
+        ),
+        drawing(stiffness_figures.load_share(cycles[0]), "share", f"Load share of a pair: {cycles[0].label}."),
+        drawing(stiffness_figures.transmission_error(cycles), "error", "Deflection along the line of action."),
+    ]
+    if single is not None:
+        figures.insert(
+            0,
+            drawing(
+                stiffness_figures.single_pairs(single.position, single.curves, path_marks(pair), pair.face_width),
+                "single",
+                "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up.",
+            ),
+        )
+    scale = 1e-9 / pair.face_width
+    rows = tuple(
+        (
+            cycle.label,
+            number(scale * cycle.secant.mean(), 5),
+            number(scale * cycle.tangent.mean(), 5),
+            f"{scale * cycle.secant.min():.4g} to {scale * cycle.secant.max():.4g}",
+            number(1e6 * float(np.ptp(cycle.transmission_error)), 4),
+            percent(cycle.error),
+        )
+        for cycle in cycles
+    )
+    heads = (
+        "model",
+        "mean secant [N/(mm µm)]",
+        "mean tangent [N/(mm µm)]",
+        "range of secant",
+        "transmission error, peak to peak [µm]",
+        "numerical error",
+    )
+    tables = [Table(heads, rows)]
+    if single is not None:
+        tables.append(iso_table(single.iso))
+    notes = [note] if note else []
+    notes += [f"The film changes the mean {kind} stiffness by {100 * value:+.2f} %." for kind, value in changes.items()]
+    notes.append(
+        "The error of a closed form against the real tooth is unknown until it is compared with finite elements; "
+        "the column shows numerical error alone."
+    )
+    return Part("stiffness", "Mesh stiffness", figures=tuple(figures), tables=tuple(tables), notes=tuple(notes))
+
+
+def iso_table(iso: Any) -> Table:
+    """Mean stiffnesses by ISO 6336-1."""
+    rows = (
+        ("theoretical single stiffness c'th", number(iso.c_th, 5)),
+        ("single stiffness c'", number(iso.c_prime, 5)),
+        ("mesh stiffness c_gamma", number(iso.c_gamma, 5)),
+    )
+    return Table(("ISO 6336-1", "N/(mm µm)"), rows)
+
+
+def fields(figure: Any, peak: float) -> Part:
+    """Picture of the loaded teeth."""
+    return Part(
+        "fields",
+        "Loaded teeth",
+        figures=(drawing(figure, "mises", "Von Mises stress at the pitch point, contact pressure included."),),
+        notes=(
+            f"Largest von Mises stress on the mesh: {number(1e-6 * peak)} MPa. The folder vtk holds the whole mesh cycle "
+            "for ParaView: open mesh_cycle.pvd and colour by von_mises_Pa.",
+        ),
+    )
+
+
+def headlines(cycle: MeshStiffness, face_width: float) -> list[Headline]:
+    """Numbers for the page's head."""
+    scale = 1e-9 / face_width
+    te = float(np.ptp(cycle.transmission_error))
+    return [
+        Headline(
+            "mean mesh stiffness (secant)",
+            f"{scale * cycle.secant.mean():.4g} N/(mm µm)",
+            f"error {percent(cycle.error)}, {cycle.label}",
+        ),
+        Headline("mean mesh stiffness (tangent)", f"{scale * cycle.tangent.mean():.4g} N/(mm µm)", "for small vibration"),
+        Headline("loaded transmission error", f"{1e6 * te:.3g} µm", "peak to peak"),
+    ]

@@ -1,0 +1,88 @@
+"""Sections of the report about the Fourier stiffness, the scaling and the motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.figures import motion as motion_figures
+from flankfilm.figures import stiffness as stiffness_figures
+from flankfilm.report.page import Part, Table, drawing
+from flankfilm.report.text import number, percent
+
+if TYPE_CHECKING:
+    from flankfilm.mesh_stiffness import MeshStiffness
+    from flankfilm.stages.motion import FourierStage, ScalingStage
+    from flankfilm.stages.sweep import SweepStage
+
+
+def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float | None) -> Part:
+    """Fourier stiffness with its remainder."""
+    series = stage.stiffness
+    rows = tuple(
+        (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
+        for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
+    )
+    figures = ()
+    notes: tuple[str, ...] = ("Phases refer to tau = 0, the instant when a pair is at A.",)
+    if stage.fit is not None and cycle is not None and face_width is not None:
+        harmonics = np.asarray(stage.fit.harmonics[:12])
+        fits = {f"{stage.kind}, order {len(series.amplitudes)}": stage.fit}
+        if stage.other is not None:
+            fits["tangent" if stage.kind == "secant" else "secant"] = stage.other
+        figures = (
+            drawing(
+                stiffness_figures.fourier(cycle, fits, harmonics, face_width),
+                "fourier",
+                f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples over the mean.",
+            ),
+        )
+        notes = (
+            *notes,
+            f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the mean "
+            f"(root mean square; at most {percent(stage.fit.remainder_max)}). A higher dynamics.fourier_order keeps more.",
+            "The tangent stiffness belongs to small vibration about the load, the secant to motion with separation.",
+        )
+    heads = ("harmonic", "amplitude", "over the mean", "phase [deg]")
+    return Part("fourier", "Fourier stiffness", (f"Mean {number(series.mean, 6)}.",), figures, (Table(heads, rows),), notes)
+
+
+def scaling(stage: ScalingStage) -> Part:
+    """Physical and dimensionless quantities side by side."""
+    heads = ("quantity", "physical", "dimensionless")
+    return Part("scaling", "Physical and dimensionless", tables=(Table(heads, stage.rows()),))
+
+
+def sweep(stage: SweepStage) -> Part:
+    """Draw the sweeps and portraits."""
+    if stage.speed_rpm is None:
+        parameter, name = stage.frequency, "mesh frequency over natural frequency [-]"
+    else:
+        parameter, name = stage.speed_rpm, "pinion speed [rpm]"
+    figures = [
+        drawing(
+            motion_figures.sweeps(parameter, stage.states, stage.labels, name),
+            "sweep",
+            "States at tau = 0, swept up and down; where the two differ, motions coexist. "
+            "n-p-q: n mesh periods, p losses of contact, q back-flank contacts.",
+        )
+    ]
+    if stage.portraits:
+        figures.append(
+            drawing(
+                motion_figures.portraits(stage),
+                "portraits",
+                "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash.",
+            )
+        )
+    notes = [
+        f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a period; "
+        f"{stage.periods:,} periods were followed.",
+        "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
+        *stage.messages,
+    ]
+    if stage.grazings.size:
+        at = ", ".join(f"{g:.6g}" for g in stage.grazings)
+        notes.insert(0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}.")
+    return Part("motion", "Motion", figures=tuple(figures), notes=tuple(notes))

@@ -1,0 +1,123 @@
+"""Runs a scene: its stages, then its files."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flankfilm.cache import Cache, user_cache
+from flankfilm.faults import Fault, InputError
+from flankfilm.progress import Progress, silent
+from flankfilm.scene import Scene
+from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.engine import Engine, Stage, StageRun
+
+
+@dataclass(frozen=True)
+class Results:
+    """What a run gave.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked for.
+    folder : Path
+        Where the files are.
+    values : mapping
+        Stage name to result.
+    runs : mapping
+        Stage name to how it came about.
+    files : tuple of Path
+        What was written.
+    seconds : float
+        Cost of the whole run [s].
+    """
+
+    scene: Scene
+    folder: Path
+    values: Mapping[str, Any]
+    runs: Mapping[str, StageRun]
+    files: tuple[Path, ...]
+    seconds: float
+
+    def summary(self) -> list[str]:
+        """Lines for the terminal: headline figures with errors, and the files."""
+        from flankfilm.report.contents import headlines
+
+        told = [f"{h.name}: {h.text}" + (f" ({h.note})" if h.note else "") for h in headlines(self)]
+        return [*told, f"{len(self.files)} files in {self.folder} after {self.seconds:.1f} s"]
+
+
+def run_scene(
+    scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent
+) -> Results:
+    """Compute what a scene wants and write it.
+
+    Parameters
+    ----------
+    scene : Scene
+        Checked scene.
+    folder : Path
+        Where the files go; made when it does not exist.
+    use_cache : bool
+        Whether results of earlier runs with the same inputs and code may serve.
+    progress : callable
+        Told what is being done, steps done, and steps in all.
+
+    Returns
+    -------
+    Results
+        Values, costs and files.
+
+    Raises
+    ------
+    InputError
+        Where the geometry cannot be built or the folder cannot be written.
+    SolverError
+        Where a solver did not reach a result that it believes.
+    """
+    start = time.perf_counter()
+    _claim(folder)
+    wanted = goals(scene)
+    done: list[str] = []
+
+    def announce(stage: Stage) -> None:
+        done.append(stage.name)
+        progress(stage.title, len(done) - 1, max(len(done), len(wanted) + 2))
+
+    engine = Engine(scene, STAGES, Cache(user_cache() / "results" if use_cache else None), announce)
+    for name in wanted:
+        engine[name]
+    values = engine.results()
+    progress("writing files", len(wanted), len(wanted) + 2)
+    from flankfilm.outputs import write_data
+
+    files = write_data(folder, scene, values)
+    if "vtk" in scene.wants:
+        from flankfilm.stages.fields import write_vtk
+
+        files += write_vtk(folder, engine)
+    results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start)
+    if "report" in scene.wants:
+        progress("writing the report", len(wanted) + 1, len(wanted) + 2)
+        from flankfilm.report.contents import write_report
+
+        files.append(write_report(results))
+    return Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start)
+
+
+def _claim(folder: Path) -> None:
+    """Make the folder and see that it can be written before anything is computed."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError([Fault(str(folder), "", "is a file, not a folder", "Name another with --out")])
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".flankfilm-probe"
+        probe.touch()
+        probe.unlink(missing_ok=True)
+    except OSError as fault:
+        told = f"cannot be written: {fault.strerror}"
+        raise InputError([Fault(str(folder), "", told, "Name another with --out")]) from fault

@@ -1,0 +1,122 @@
+"""All stages, and which of them the wanted outputs ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from flankfilm.scene import Scene
+from flankfilm.stages import closed_forms, decide, fields, film, motion, sweep, teeth
+from flankfilm.stages.engine import Stage
+
+
+def _sections(*names: str) -> Any:
+    def pick(scene: Scene) -> Mapping[str, Any]:
+        found = {}
+        for name in names:
+            section, _, key = name.partition(".")
+            value = getattr(scene, section)
+            value = getattr(value, key) if key else value
+            found[name] = value.model_dump() if hasattr(value, "model_dump") else value
+        return found
+
+    return pick
+
+
+_TEETH = _sections("stiffness.model", "stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance")
+
+STAGES: Mapping[str, Stage] = {
+    stage.name: stage
+    for stage in (
+        Stage("pair", "geometry", lambda e: teeth.pair(e), _sections("pair", "material"), packages=("gears",)),
+        Stage(
+            "closed forms",
+            "closed forms",
+            lambda e: closed_forms.closed_forms(e),
+            _sections("operating"),
+            needs=("pair",),
+            packages=("gears",),
+        ),
+        Stage(
+            "compliance",
+            "tooth compliance by finite elements",
+            lambda e: teeth.compliance(e),
+            _sections("stiffness.plane", "tolerance"),
+            needs=("pair",),
+            packages=("gears", "meshes", "fem"),
+            kept=True,
+        ),
+        Stage("dry cycle", "mesh cycle without film", lambda e: teeth.dry_cycle(e), _TEETH, needs=("compliance",)),
+        Stage(
+            "film model",
+            "choice of the film model",
+            lambda e: decide.film_model(e),
+            _sections("film", "wants", "lubricant", "operating", "tolerance"),
+            needs=("dry cycle",),
+            packages=("ehl",),
+        ),
+        Stage(
+            "film",
+            "oil film in series with the teeth",
+            lambda e: film.film(e),
+            _sections("film", "lubricant", "operating", "tolerance"),
+            needs=("dry cycle", "film model"),
+            packages=("gears", "meshes", "fem", "ehl", "flankfilm"),
+            kept=True,
+        ),
+        Stage(
+            "mesh",
+            "mesh stiffness of the motion",
+            lambda e: motion.mesh(e),
+            _sections(),
+            needs=("dry cycle", "film model", "film"),
+        ),
+        Stage(
+            "fourier",
+            "Fourier stiffness",
+            lambda e: motion.fourier(e),
+            _sections("stiffness", "dynamics"),
+            needs=("mesh",),
+            packages=("dynamics",),
+        ),
+        Stage(
+            "scaling",
+            "physical to dimensionless",
+            lambda e: motion.scaling(e),
+            _sections("operating", "dynamics", "pair", "material"),
+            needs=("fourier",),
+        ),
+        Stage(
+            "sweep",
+            "sweep up and down",
+            lambda e: sweep.sweep(e),
+            _sections("dynamics"),
+            needs=("fourier", "scaling"),
+            packages=("dynamics", "flankfilm"),
+            kept=True,
+        ),
+        Stage("fields", "stress and displacement fields", lambda e: fields.fields(e), _TEETH, needs=("dry cycle",)),
+    )
+}
+
+
+def goals(scene: Scene) -> tuple[str, ...]:
+    """Name the stages that the scene's wants ask for; those that these need follow by themselves."""
+    found: list[str] = []
+    wants = set(scene.wants)
+    given = scene.stiffness.model == "given"
+    if wants & {"geometry"}:
+        found.append("pair")
+    if wants & {"closed-forms"} or ("report" in wants and "stiffness" in wants and not given):
+        found.append("closed forms")
+    if wants & {"stiffness", "film"} and not given:
+        found += ["dry cycle", "film model"]
+        if scene.film.model != "none" or "film" in wants:
+            found.append("mesh")
+    if wants & {"fourier", "sweep"}:
+        found.append("fourier")
+    if "sweep" in wants:
+        found += ["scaling", "sweep"]
+    if "vtk" in wants:
+        found.append("fields")
+    return tuple(dict.fromkeys(found))

@@ -1,0 +1,60 @@
+"""Which film model a scene gets: the one it names, or the cheapest that its tolerance needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flankfilm.build import lubricant, pinion_speed, pinion_torque
+from flankfilm.stages.engine import Engine
+
+
+@dataclass(frozen=True)
+class FilmDecision:
+    """Film model of a run.
+
+    Attributes
+    ----------
+    model : str
+        ``"ehl"``, ``"dowson"`` or ``"none"``.
+    reason : str
+        Why, with its numbers, for the report.
+    """
+
+    model: str
+    reason: str
+
+
+def film_model(engine: Engine) -> FilmDecision:
+    """Decide the film model.
+
+    For ``auto`` the film's share is estimated at the pitch point with one pair carrying all: a tooth
+    stiffness k and a film stiffness 10 F/h_c (Dowson and Toyoda) in series lower k by about the
+    quotient of the two.
+    """
+    scene = engine.scene
+    asked = scene.film.model
+    if asked != "auto":
+        return FilmDecision(asked, f'the scene asks for film.model = "{asked}"')
+    if "film" in scene.wants:
+        return FilmDecision("ehl", "the film itself is wanted")
+    if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
+        return FilmDecision("none", "the scene has no lubricant or no speed")
+    from ehl import LineContact, dowson
+
+    pair = engine["pair"]
+    path = pair.path_at(pair.points.C)
+    force = pair.normal_force(pinion_torque(scene))
+    contact = LineContact(
+        load=force / pair.face_width,
+        entrainment=float(path.entrainment(pinion_speed(scene))[0]),
+        radius=float(path.radius[0]),
+        reduced_modulus=pair.reduced_modulus,
+        lubricant=lubricant(scene),
+    )
+    film = pair.face_width * dowson(contact).stiffness("dowson-central")
+    tooth = float(engine["dry cycle"].secant.mean())
+    change = tooth / (tooth + film)
+    if change < scene.tolerance:
+        told = f"it would lower the mean stiffness by about {change:.2%}, less than the tolerance of {scene.tolerance:.2%}"
+        return FilmDecision("none", f"left out: {told}")
+    return FilmDecision("ehl", f"it lowers the mean stiffness by about {change:.2%}, more than the tolerance")

@@ -1,0 +1,236 @@
+"""The oil film at every point of the mesh cycle, in series with the teeth before load sharing."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flankfilm.build import lubricant, pinion_speed
+from flankfilm.faults import SolverError
+from flankfilm.film_law import FilmLaw
+from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.teeth import cycle_at
+from flankfilm.tolerance import ToleranceSplit
+
+if TYPE_CHECKING:
+    from ehl import Film, LineContact
+
+Array = NDArray[np.float64]
+
+LEAST_SHARE = 1e-3
+"""Pairs with less than this part of the force get no film: they hardly touch, and what their film
+props them apart by moves the load share by less than their own part."""
+
+MOST_ROUNDS = 12
+
+
+@dataclass(frozen=True)
+class FilmStage:
+    """Film along the path of contact, and the mesh with it.
+
+    Attributes
+    ----------
+    cycle : MeshStiffness
+        Stiffness and load share with the film in series.
+    rho1 : ndarray, shape (n,)
+        Curvature radius of the pinion's flank at the contacts that have a film, rising [m].
+    load : ndarray, shape (n,)
+        Force per length of face [N/m].
+    central, minimum : ndarray, shape (n,)
+        Film thickness [m].
+    hertz_pressure : ndarray, shape (n,)
+        [Pa]
+    stiffness : mapping
+        Definition to film stiffness, shape (n,) [N/m at the whole face].
+    profiles : mapping
+        Label of a point of the path to its whole film, for pictures.
+    change_secant, change_tangent : float
+        What the film changes the mean stiffness by, relative.
+    error : float
+        Largest estimated relative error of the films' thicknesses.
+    seconds : float
+        Cost of the films [s].
+    iterations, unknowns : int
+        Newton steps in all; unknowns of the largest film.
+    rounds : int
+        Times that films and load share were brought into agreement.
+    mismatch : float
+        Last change of a pair's force over the whole force.
+    model : str
+        ``"ehl"`` or ``"dowson"``.
+    """
+
+    cycle: MeshStiffness
+    rho1: Array
+    load: Array
+    central: Array
+    minimum: Array
+    hertz_pressure: Array
+    stiffness: Mapping[str, Array]
+    profiles: Mapping[str, Film]
+    change_secant: float
+    change_tangent: float
+    error: float | None
+    seconds: float
+    iterations: int
+    unknowns: int
+    rounds: int
+    mismatch: float
+    model: str
+
+
+@dataclass(frozen=True)
+class _Contacts:
+    """The loaded contacts of a cycle in the order of the path."""
+
+    where: tuple[NDArray[np.intp], NDArray[np.intp]]
+    rho1: Array
+    contacts: tuple[LineContact, ...]
+
+
+def film(engine: Engine) -> FilmStage:
+    """Iterate films and load share until both agree."""
+    dry: MeshStiffness = engine["dry cycle"]
+    model = engine["film model"].model
+    split = ToleranceSplit.of(engine.scene.tolerance)
+    solve = _solved if model == "ehl" else _regressed
+    start = time.perf_counter()
+    in_contact_solver = 0.0
+    cycle, films, mismatch, rounds = dry, None, np.inf, 0
+    while mismatch > split.coupling:
+        if rounds == MOST_ROUNDS:
+            raise SolverError(
+                f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by {mismatch:.1e} "
+                "of the whole); raise the tolerance, or take film.model = \"dowson\""
+            )
+        rounds += 1
+        contacts = _contacts(engine, cycle)
+        films = solve(contacts, films, split.film)
+        before = cycle
+        shared = time.perf_counter()
+        cycle = cycle_at(engine, dry.phase.size, _law(engine, contacts, films, before))
+        in_contact_solver += time.perf_counter() - shared
+        mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
+    return _gather(engine, dry, cycle, contacts, films, time.perf_counter() - start - in_contact_solver, rounds, mismatch)
+
+
+def _contacts(engine: Engine, cycle: MeshStiffness) -> _Contacts:
+    """Give the line contacts that the loaded pairs of a cycle make, in the order of the path."""
+    from ehl import LineContact
+
+    pair, oil, speed = engine["pair"], lubricant(engine.scene), pinion_speed(engine.scene)
+    touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
+    position, number = np.nonzero(touching)
+    order = np.argsort(cycle.rho1[position, number], kind="stable")
+    position, number = position[order], number[order]
+    rho1 = cycle.rho1[position, number]
+    path = pair.path_at(rho1)
+    contacts = tuple(
+        LineContact(load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=oil)
+        for w, u, r in zip(
+            (cycle.forces[position, number] / pair.face_width).tolist(),
+            path.entrainment(speed).tolist(),
+            path.radius.tolist(),
+            strict=True,
+        )
+    )
+    return _Contacts((position, number), rho1, contacts)
+
+
+def _solved(contacts: _Contacts, before: tuple[Film, ...] | None, tolerance: float) -> tuple[Film, ...]:
+    """Solve all films, each from its neighbour, or from itself of the round before."""
+    from ehl import solve, solve_path
+
+    if before is None or len(before) != len(contacts.contacts):
+        films = solve_path(contacts.contacts, tolerance=tolerance)
+    else:
+        films = tuple(
+            solve(contact, tolerance=tolerance, start=old)
+            for contact, old in zip(contacts.contacts, before, strict=True)
+        )
+    for film, rho1 in zip(films, contacts.rho1.tolist(), strict=True):
+        if not film.converged:
+            raise SolverError(f"no film at rho1 = {1e3 * rho1:.3f} mm: {film.message}")
+    return films
+
+
+def _regressed(contacts: _Contacts, before: object, tolerance: float) -> tuple[Film, ...]:
+    from ehl import dowson
+
+    return tuple(dowson(contact) for contact in contacts.contacts)  # type: ignore[misc]
+
+
+def _law(engine: Engine, contacts: _Contacts, films: tuple[Film, ...], cycle: MeshStiffness) -> FilmLaw:
+    """Spread the films over positions and pairs."""
+    width = engine["pair"].face_width
+    definition = engine.scene.film.definition(engine["film model"].model)
+    force, prop, exponent = (np.zeros_like(cycle.forces) for _ in range(3))
+    force += cycle.forces.sum(axis=1, keepdims=True)
+    solved = np.array([width * film.contact.load for film in films])
+    props = np.array([film.prop for film in films])
+    stiffness = np.array([width * film.stiffness(definition) for film in films])
+    force[contacts.where] = solved
+    prop[contacts.where] = props
+    exponent[contacts.where] = solved / (stiffness * props)
+    return FilmLaw(force, prop, exponent)
+
+
+def _gather(
+    engine: Engine,
+    dry: MeshStiffness,
+    cycle: MeshStiffness,
+    contacts: _Contacts,
+    films: tuple[Film, ...],
+    seconds: float,
+    rounds: int,
+    mismatch: float,
+) -> FilmStage:
+    model = engine["film model"].model
+    definitions = _definitions(model)
+    width = engine["pair"].face_width
+    return FilmStage(
+        cycle=replace(cycle, label=f"{dry.label} with film", seconds=cycle.seconds),
+        rho1=contacts.rho1,
+        load=np.array([film.contact.load for film in films]),
+        central=np.array([film.central_thickness for film in films]),
+        minimum=np.array([film.minimum_thickness for film in films]),
+        hertz_pressure=np.array([film.contact.peak_pressure for film in films]),
+        stiffness={name: np.array([width * film.stiffness(name) for film in films]) for name in definitions},
+        profiles=_profiles(engine, contacts, films) if model == "ehl" else {},
+        change_secant=float(cycle.secant.mean() / dry.secant.mean() - 1),
+        change_tangent=float(cycle.tangent.mean() / dry.tangent.mean() - 1),
+        error=max(film.error for film in films) if model == "ehl" else None,
+        seconds=seconds,
+        iterations=sum(film.cost.iterations for film in films) if model == "ehl" else 0,
+        unknowns=max(film.cost.unknowns for film in films) if model == "ehl" else 0,
+        rounds=rounds,
+        mismatch=mismatch,
+        model=model,
+    )
+
+
+def _definitions(model: str) -> tuple[str, ...]:
+    from ehl import DEFINITIONS
+
+    return DEFINITIONS if model == "ehl" else ("dowson-central", "dowson-minimum")
+
+
+def _profiles(engine: Engine, contacts: _Contacts, films: tuple[Film, ...]) -> dict[str, Film]:
+    """Pick the films nearest to A, C and E, and to B and D on their single-pair side."""
+    points = engine["pair"].points
+    step = engine["pair"].base_pitch / max(1, np.unique(contacts.where[0]).size)
+    wanted = {
+        "near A": points.A,
+        "after B": points.B + step,
+        "C": points.C,
+        "before D": points.D - step,
+        "near E": points.E,
+    }
+    nearest = {name: int(np.argmin(np.abs(contacts.rho1 - rho))) for name, rho in wanted.items()}
+    return {name: replace(films[i], state=None) for name, i in nearest.items()}

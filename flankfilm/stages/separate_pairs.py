@@ -1,0 +1,115 @@
+"""Mesh cycles from single-pair stiffnesses, without the coupling through the gear body."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flankfilm.build import pinion_torque
+from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.stages.closed_forms import CLOSED_FORMS, closed_form
+
+if TYPE_CHECKING:
+    from flankfilm.film_law import FilmLaw
+    from flankfilm.stages.engine import Engine
+    from gears import GearPair
+
+Array = NDArray[np.float64]
+
+
+def contacts_of(pair: GearPair, positions: int) -> tuple[Array, Array]:
+    """Place the pairs of teeth on the path.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The pair.
+    positions : int
+        Number of equal intervals of one base pitch.
+
+    Returns
+    -------
+    phase : ndarray, shape (positions,)
+        Travel after a pair is at A, in base pitches, at the intervals' midpoints.
+    rho1 : ndarray, shape (positions, pairs)
+        Curvature radius of the pinion's flank [m]; NaN beyond E.
+    """
+    phase = (np.arange(positions) + 0.5) / positions
+    pairs = int(np.ceil(pair.contact_ratio))
+    rho1 = pair.points.A + pair.base_pitch * (phase[:, None] + np.arange(pairs))
+    return phase, np.where(rho1 <= pair.points.E, rho1, np.nan)
+
+
+def single_pair_stiffness(engine: Engine, rho1: Array) -> Array:
+    """Secant stiffness of one pair by the scene's model at given points, NaN staying NaN [N/m]."""
+    pair, scene = engine["pair"], engine.scene
+    force = pair.normal_force(pinion_torque(scene))
+    known = np.isfinite(rho1)
+    k = np.full_like(rho1, np.nan)
+    if scene.stiffness.model == "fem":
+        import fem
+
+        k[known] = fem.single_pair_stiffness(pair, force=force, rho1=rho1[known], compliance=engine["compliance"])
+    else:
+        k[known] = np.asarray(closed_form(scene.stiffness.model, pair, pair.path_at(rho1[known]), force))
+    return k
+
+
+def separate_pairs_cycle(engine: Engine, positions: int, film: FilmLaw | None = None) -> MeshStiffness:
+    """Mesh cycle of pairs that know each other only through the force they share.
+
+    ``independent``: each pair's secant stiffness, in series with its film's, and the force in
+    proportion. ``coupled``: one approach for all loaded pairs, with the gaps that tip relief leaves
+    and the film's prop as a function of its force; the gear body couples them in finite elements alone.
+    """
+    from gears import independent_pairs, share_load
+
+    start = time.perf_counter()
+    pair, scene = engine["pair"], engine.scene
+    force = pair.normal_force(pinion_torque(scene))
+    phase, rho1 = contacts_of(pair, positions)
+    touching = np.isfinite(rho1)
+    k = np.where(touching, single_pair_stiffness(engine, rho1), 0.0)
+    if scene.stiffness.pairs == "independent":
+        series = None if film is None else film.stiffness()
+        share = independent_pairs(force, k, series)
+        secant = tangent = np.asarray(share.tangent)
+    else:
+        compliance = 1.0 / np.where(touching, k, 1.0)
+        bulk = compliance[..., None] * np.eye(k.shape[1])
+        share = share_load(force, bulk, _NoHertz(), np.where(touching, _relief(pair, rho1), np.inf), film)
+        secant, tangent = force / np.asarray(share.approach), np.asarray(share.tangent)
+    return MeshStiffness(
+        label=f"{_LABELS[scene.stiffness.model]}, {scene.stiffness.pairs} pairs",
+        phase=phase,
+        rho1=rho1,
+        forces=share.forces,
+        secant=secant,
+        tangent=tangent,
+        transmission_error=np.asarray(share.approach),
+        error=engine["compliance"].error if scene.stiffness.model == "fem" else None,
+        seconds=time.perf_counter() - start,
+    )
+
+
+_LABELS = {**CLOSED_FORMS, "fem": "finite elements"}
+
+
+class _NoHertz:
+    """Local deflection of closed forms: already in the single pair's stiffness at the full force."""
+
+    def approach(self, force: Array) -> Array:
+        return np.zeros_like(force)
+
+    def slope(self, force: Array) -> Array:
+        return np.zeros_like(force)
+
+
+def _relief(pair: GearPair, rho1: Array) -> Array:
+    """Clearance that tip relief of both gears leaves [m], NaN staying NaN, least zero at each position."""
+    pinion, wheel = pair.teeth_profiles
+    gap = pinion.relief(rho1) + wheel.relief(pair.line_of_action - rho1)
+    return np.asarray(gap - np.nanmin(gap, axis=1, keepdims=True))

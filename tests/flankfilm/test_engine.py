@@ -1,0 +1,128 @@
+"""Stages run once, only when asked for, and come from the cache when nothing they depend on changed."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from flankfilm.cache import Cache
+from flankfilm.film_law import FilmLaw
+from flankfilm.mesh_stiffness import sampling_error
+from flankfilm.scene import parse_scene, template
+from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.engine import Engine, Stage
+
+
+def scene(changes: dict[str, str] | None = None):
+    text = template()
+    for old, new in (changes or {}).items():
+        assert old in text
+        text = text.replace(old, new, 1)
+    return parse_scene(text)
+
+
+def counting(calls: list[str], kept: bool = True) -> dict[str, Stage]:
+    def of(name: str, needs: tuple[str, ...], sections: tuple[str, ...]) -> Stage:
+        def compute(engine: Engine) -> str:
+            calls.append(name)
+            return "+".join([name, *(engine[n] for n in needs)])
+
+        return Stage(
+            name, name, compute, lambda s: {k: getattr(s, k).model_dump() for k in sections}, needs, ("gears",), kept
+        )
+
+    return {s.name: s for s in (of("teeth", (), ("pair",)), of("oil", ("teeth",), ("lubricant",)))}
+
+
+def test_a_stage_runs_once(tmp_path):
+    calls: list[str] = []
+    engine = Engine(scene(), counting(calls), Cache(None))
+    assert engine["oil"] == engine["oil"] == "oil+teeth"
+    assert calls == ["oil", "teeth"]
+
+
+def test_a_change_of_lubricant_meshes_nothing_again(tmp_path):
+    calls: list[str] = []
+    stages = counting(calls)
+    Engine(scene(), stages, Cache(tmp_path))["oil"]
+    calls.clear()
+    thicker = scene({"viscosity_Pa_s = 0.075": "viscosity_Pa_s = 0.08"})
+    Engine(thicker, stages, Cache(tmp_path))["oil"]
+    assert calls == ["oil"]
+
+
+def test_a_kept_result_needs_nothing_below_it(tmp_path):
+    calls: list[str] = []
+    stages = counting(calls)
+    Engine(scene(), stages, Cache(tmp_path))["oil"]
+    calls.clear()
+    again = Engine(scene(), stages, Cache(tmp_path))
+    assert again["oil"] == "oil+teeth"
+    assert calls == []
+    assert again.runs["oil"].cached
+
+
+def test_time_of_a_stage_excludes_those_it_asks_for(monkeypatch):
+    clock = iter([0.0, 1.0, 11.0, 12.0])
+    monkeypatch.setattr("flankfilm.stages.engine.time.perf_counter", lambda: next(clock))
+    engine = Engine(scene(), counting([]), Cache(None))
+    engine["oil"]
+    assert engine.runs["teeth"].seconds == 10.0
+    assert engine.runs["oil"].seconds == 2.0
+
+
+def test_warnings_are_gathered_once_each():
+    def warn(engine: Engine) -> int:
+        for pressure in (1.1, 1.2):
+            warnings.warn(f"Hertz pressure {pressure} GPa: above about 1 GPa", UserWarning, stacklevel=2)
+        return 1
+
+    stage = Stage("warns", "warns", warn, lambda s: {})
+    engine = Engine(scene(), {"warns": stage}, Cache(None))
+    engine["warns"]
+    assert len(engine.runs["warns"].warnings) == 1
+
+
+def test_needs_of_all_stages_exist_and_have_no_cycle():
+    def below(name: str, above: tuple[str, ...]) -> None:
+        assert name not in above
+        for need in STAGES[name].needs:
+            below(need, (*above, name))
+
+    for name in STAGES:
+        below(name, ())
+
+
+@pytest.mark.parametrize(
+    ("wants", "asked"),
+    [
+        ('["geometry"]', {"pair"}),
+        ('["stiffness"]', {"dry cycle", "film model", "mesh"}),
+        ('["sweep"]', {"fourier", "scaling", "sweep"}),
+    ],
+)
+def test_only_what_is_wanted_is_asked_for(wants: str, asked: set[str]):
+    text = '["stiffness", "film", "sweep", "vtk", "report"]'
+    assert set(goals(scene({text: wants}))) == asked
+
+
+def test_the_film_law_meets_value_and_slope_and_stays_positive():
+    law = FilmLaw(np.array([[1000.0, 500.0]]), np.array([[4e-7, 0.0]]), np.array([[0.13, 0.0]]))
+    solved = np.array([[1000.0, 500.0]])
+    assert law.approach(solved) == pytest.approx(np.array([[4e-7, 0.0]]))
+    assert law.slope(solved) == pytest.approx(np.array([[-0.13 * 4e-7 / 1000.0, 0.0]]))
+    force, step = np.array([[700.0, 500.0]]), np.array([[1e-3, 0.0]])
+    difference = (law.approach(force + step) - law.approach(force - step))[0, 0] / 2e-3
+    assert law.slope(force)[0, 0] == pytest.approx(difference, rel=1e-6)
+    assert np.isfinite(law.approach(np.zeros((1, 2)))).all()
+
+
+def test_sampling_error_bounds_the_error_of_a_step():
+    true_mean = 0.37 * 2.0 + 0.63
+    for n in (40, 120, 360):
+        phase = (np.arange(n) + 0.5) / n
+        errors = [np.where((phase - s) % 1.0 < 0.37, 2.0, 1.0).mean() / true_mean - 1 for s in np.linspace(0, 0.9, 97)]
+        estimate = sampling_error(np.where(phase < 0.37, 2.0, 1.0))
+        assert 0.5 < estimate / np.sqrt(np.mean(np.square(errors))) < 2.5
