@@ -1,1 +1,71 @@
-"""dynamics."""
+"""Piecewise-linear oscillators with periodic stiffness and backlash, by their exact flow.
+
+Knows no gears: a Fourier series of stiffness goes in, motions come out. Public names are loaded when first
+used, so that importing the package costs next to nothing and compiles nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from dynamics.cost import Cost as Cost
+    from dynamics.errors import DynamicsError as DynamicsError
+    from dynamics.errors import DynamicsWarning as DynamicsWarning
+    from dynamics.errors import Fault as Fault
+    from dynamics.flow import Trajectory as Trajectory
+    from dynamics.flow import period_map as period_map
+    from dynamics.flow import trajectory as trajectory
+    from dynamics.flow import turning_points as turning_points
+    from dynamics.fourier import FourierFit as FourierFit
+    from dynamics.fourier import fit_fourier as fit_fourier
+    from dynamics.grazing import ContactGrazing as ContactGrazing
+    from dynamics.grazing import contact_grazing as contact_grazing
+    from dynamics.grazing import contact_orbit as contact_orbit
+    from dynamics.oscillator import GearOscillator as GearOscillator
+    from dynamics.scaling import Scaling as Scaling
+    from dynamics.shooting import Orbit as Orbit
+    from dynamics.shooting import find_orbit as find_orbit
+    from dynamics.special import SpecialPoint as SpecialPoint
+    from dynamics.stiffness import FourierStiffness as FourierStiffness
+    from dynamics.sweeps import SweepResult as SweepResult
+    from dynamics.sweeps import sweep as sweep
+
+_HOMES = {
+    "ContactGrazing": "grazing",
+    "Cost": "cost",
+    "DynamicsError": "errors",
+    "DynamicsWarning": "errors",
+    "Fault": "errors",
+    "FourierFit": "fourier",
+    "FourierStiffness": "stiffness",
+    "GearOscillator": "oscillator",
+    "Orbit": "shooting",
+    "Scaling": "scaling",
+    "SpecialPoint": "special",
+    "SweepResult": "sweeps",
+    "Trajectory": "flow",
+    "contact_grazing": "grazing",
+    "contact_orbit": "grazing",
+    "find_orbit": "shooting",
+    "fit_fourier": "fourier",
+    "period_map": "flow",
+    "sweep": "sweeps",
+    "trajectory": "flow",
+    "turning_points": "flow",
+}
+
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> object:
+    """Load a public name from its module."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Public names, loaded or not."""
+    return list(__all__)

@@ -1,0 +1,136 @@
+"""Fourier series through a sampled stiffness, and what the series leaves out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import Faults
+from dynamics.stiffness import FourierStiffness
+
+__all__ = ["FourierFit", "fit_fourier"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FourierFit:
+    """A Fourier series and what it leaves out.
+
+    Parameters
+    ----------
+    stiffness : FourierStiffness
+        The series, in the unit of the samples.
+    remainder_rms : float
+        Root mean square of samples minus series, over the mean.
+    remainder_max : float
+        Largest difference between a sample and the series, over the mean.
+    harmonics : tuple of float
+        Amplitude over mean of the harmonics 1, 2, ...: all that equally spaced samples resolve, so that what
+        a low order drops can be seen; with unequal spacing those of the series.
+    condition : float
+        Condition number of the least-squares matrix; 1.41 for equally spaced samples (the mean against a
+        cosine).
+    """
+
+    stiffness: FourierStiffness
+    remainder_rms: float
+    remainder_max: float
+    harmonics: tuple[float, ...]
+    condition: float
+
+    @property
+    def order(self) -> int:
+        """Highest harmonic of the series."""
+        return self.stiffness.order
+
+    @property
+    def error(self) -> float:
+        """Relative error of the series as a description of the samples (its relative root mean square)."""
+        return self.remainder_rms
+
+
+def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike | None = None) -> FourierFit:
+    r"""Fit :math:`K = k_0 + \sum_{j \le n} k_j \cos(j \omega \tau + \varphi_j)` to samples of one period.
+
+    Least squares; for equally spaced samples this is the discrete Fourier transform. The phases refer to the
+    start of the period, for a gear pair the instant at which a tooth pair is at A.
+
+    Parameters
+    ----------
+    samples : array_like, shape (m,)
+        Stiffness over one period, [N/m] or any unit, m > 2 order.
+    order : int
+        Highest harmonic, 0 or more.
+    positions : array_like, shape (m,), optional
+        Where in the period the samples lie, as fractions of the period. Left out: the midpoints of m equal
+        intervals, (i + 1/2)/m.
+
+    Returns
+    -------
+    FourierFit
+        The series, its remainder and the harmonics.
+
+    Raises
+    ------
+    DynamicsError
+        If a sample is not finite, the mean is zero, the order is too high for the samples, or the positions
+        cannot tell the harmonics apart.
+    """
+    faults = Faults()
+    k = np.asarray(samples, dtype=np.float64)
+    if k.ndim != 1 or len(k) < 1 or not np.all(np.isfinite(k)):
+        faults.add(
+            "samples", f"shape {k.shape}", "finite numbers in one dimension", "mend or drop the bad samples"
+        )
+        faults.raise_if_any()
+    m = len(k)
+    n = faults.whole(
+        "order", order, 0, (m - 1) // 2, f"{m} samples resolve {(m - 1) // 2} harmonics: give more samples"
+    )
+    midpoints = (np.arange(m) + 0.5) / m
+    where = midpoints if positions is None else np.asarray(positions, dtype=np.float64)
+    if where.shape != k.shape or not np.all(np.isfinite(where)):
+        faults.add("positions", f"shape {where.shape}", f"{m} finite numbers", "give one position per sample")
+    faults.raise_if_any()
+
+    spacing = np.diff(np.sort(np.mod(where, 1.0)))
+    equal = bool(np.allclose(spacing, 1.0 / m, rtol=0.0, atol=1e-12))
+    resolved = (m - 1) // 2 if equal else n
+    angle = 2.0 * np.pi * where
+    design = _design(angle, resolved)
+    condition = float(np.linalg.cond(design[:, : 2 * n + 1]))
+    if not condition < 1e8:
+        faults.add(
+            "positions",
+            f"condition number {condition:.1e}",
+            "below 1e8",
+            "spread the positions over the period",
+        )
+        faults.raise_if_any()
+    solution = np.linalg.lstsq(design, k, rcond=None)[0]
+    mean = float(solution[0])
+    if mean == 0.0:
+        faults.add("samples", "mean 0", "a mean other than zero", "a relative remainder needs a mean")
+        faults.raise_if_any()
+    cosine, sine = solution[1::2], solution[2::2]
+    amplitudes = np.hypot(cosine, sine)
+    phases = np.arctan2(-sine, cosine)
+    left = (k - design[:, : 2 * n + 1] @ solution[: 2 * n + 1]) / mean
+    return FourierFit(
+        stiffness=FourierStiffness(mean, tuple(amplitudes[:n].tolist()), tuple(phases[:n].tolist())),
+        remainder_rms=float(np.sqrt(np.mean(left**2))),
+        remainder_max=float(np.max(np.abs(left))),
+        harmonics=tuple((amplitudes / abs(mean)).tolist()),
+        condition=condition,
+    )
+
+
+def _design(angle: FloatArray, order: int) -> FloatArray:
+    """Columns 1, cos, sin, cos 2, sin 2, ..."""
+    columns = [np.ones_like(angle)]
+    for j in range(1, order + 1):
+        columns += [np.cos(j * angle), np.sin(j * angle)]
+    return np.stack(columns, axis=1)

@@ -1,0 +1,206 @@
+"""Where the orbit that never leaves contact first touches the limit of the backlash."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.cost import Cost
+from dynamics.errors import DynamicsWarning, Faults
+from dynamics.flow import period_map, tables, turning_points
+from dynamics.oscillator import GearOscillator
+from dynamics.shooting import EPS, exact_determinant, floquet_multipliers
+from dynamics.special import SpecialPoint
+
+__all__ = ["ContactGrazing", "ContactOrbit", "contact_grazing", "contact_orbit"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactOrbit:
+    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash.
+
+    Parameters
+    ----------
+    state : ndarray, shape (2,)
+        X and V at tau = 0.
+    multipliers : ndarray, shape (2,)
+        Floquet multipliers.
+    clearance : float
+        How far the orbit stays from the limit, min(side X) - D; it exists with the backlash if not negative.
+    tau, acceleration : float
+        Time of the point nearest to the limit, and X'' there.
+    """
+
+    state: FloatArray
+    multipliers: npt.NDArray[np.complex128] | FloatArray
+    clearance: float
+    tau: float
+    acceleration: float
+
+
+@dataclass(frozen=True, eq=False)
+class ContactGrazing:
+    """Parameter values at which the orbit that never leaves contact touches the limit.
+
+    Parameters
+    ----------
+    points : tuple of SpecialPoint
+        In the order of the parameter.
+    values, clearance : ndarray, shape (n,)
+        The scan: parameter values and how far the orbit stays from the limit; negative where it would cross.
+    error : float
+        Largest estimated relative error of a point.
+    cost : Cost
+        Effort.
+    converged : bool
+        Whether every change of sign ended in a point.
+    message : str
+        What was found.
+    """
+
+    points: tuple[SpecialPoint, ...]
+    values: FloatArray
+    clearance: FloatArray
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+    def __array__(
+        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
+    ) -> npt.NDArray[np.generic]:
+        """Parameter values of the points."""
+        return np.array([p.parameter for p in self.points]).astype(dtype if dtype is not None else np.float64)
+
+
+def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1) -> ContactOrbit:
+    """Periodic solution that feels no backlash: a linear problem, solved without iteration.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    side : int
+        1 for the driving flanks (X > D), -1 for the others.
+    refinement : int
+        Factor on the number of cells.
+
+    Raises
+    ------
+    DynamicsError
+        If there is none, because a Floquet multiplier of the linear equation is one.
+    """
+    faults = Faults()
+    if side not in (1, -1):
+        faults.add("side", side, "1 or -1", "1 is the driving side")
+    faults.raise_if_any()
+    linear = dataclasses.replace(oscillator, half_backlash=0.0)
+    table = tables(linear, refinement)
+    image = period_map(table, np.zeros(2))
+    matrix = np.eye(2) - image.jacobian
+    if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e14:
+        faults.add(
+            "oscillator", "multiplier 1", "a linear equation without resonance", "change the frequency"
+        )
+        faults.raise_if_any()
+    state = np.linalg.solve(matrix, image.state)
+    state += np.linalg.solve(
+        matrix, period_map(table, state).state - state
+    )  # one refinement, against rounding
+    turns = turning_points(table, state)
+    at = int(np.argmin(side * turns[:, 1])) if len(turns) else -1
+    tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, state[0], 0.0)
+    return ContactOrbit(
+        state=state + np.array([side * oscillator.half_backlash, 0.0]),
+        multipliers=floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(linear, 1)),
+        clearance=float(side * nearest),
+        tau=float(tau),
+        acceleration=float(acceleration),
+    )
+
+
+def contact_grazing(
+    oscillator: GearOscillator,
+    parameter: str = "frequency",
+    bounds: tuple[float, float] = (0.3, 2.0),
+    *,
+    points: int = 200,
+    side: int = 1,
+) -> ContactGrazing:
+    """Find where the orbit that never leaves contact grazes the limit of the backlash.
+
+    The clearance of the linear orbit is a smooth function of the parameter on both sides of the grazing, so
+    that its roots are found to rounding. They do not depend on the backlash.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its value of the parameter is not used.
+    parameter : str
+        As in `GearOscillator.with_parameter`.
+    bounds : tuple of float
+        Range of the parameter.
+    points : int
+        Values of the scan that brackets the roots; two roots between neighbours are missed.
+    side : int
+        1 for X = D, -1 for X = -D.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range.
+    """
+    from scipy.optimize import brentq
+
+    began = time.perf_counter()
+    faults = Faults()
+    n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
+    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    if not low < high:
+        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+    faults.raise_if_any()
+    evaluations = 0
+
+    def clearance(value: float, refinement: int = 1) -> float:
+        nonlocal evaluations
+        evaluations += 1
+        return contact_orbit(oscillator.with_parameter(parameter, value), side, refinement).clearance
+
+    grid = np.linspace(low, high, n)
+    gap = np.array([clearance(float(value)) for value in grid])
+    scale = max(float(np.max(np.abs(gap))), 1e-300)
+    found: list[SpecialPoint] = []
+    poles = 0
+    for i in range(n - 1):
+        if gap[i] == 0.0 or gap[i] * gap[i + 1] >= 0.0:
+            continue
+        root = float(brentq(clearance, grid[i], grid[i + 1], xtol=1e-300, rtol=4.0 * EPS, maxiter=200))
+        here = oscillator.with_parameter(parameter, root)
+        orbit = contact_orbit(here, side)
+        if abs(orbit.clearance) > 1e-9 * scale:
+            poles += 1  # a resonance: the orbit changes side through infinity
+            continue
+        slope = (gap[i + 1] - gap[i]) / (grid[i + 1] - grid[i])
+        error = max(abs(clearance(root, 2) / slope / root) if root else 0.0, EPS)
+        found.append(
+            SpecialPoint(
+                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, side, orbit.tau,
+                orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
+            )
+        )  # fmt: skip
+    if not found and float(np.max(np.abs(gap))) <= 64.0 * EPS:
+        warnings.warn(
+            "the contact orbit lies on the limit throughout: no load", DynamicsWarning, stacklevel=2
+        )
+    message = f"{len(found)} grazings" + (f"; {poles} resonances in the range" if poles else "")
+    cost = Cost(time.perf_counter() - began, 2, evaluations, 3 * evaluations)
+    error = max((p.error for p in found), default=math.nan)
+    return ContactGrazing(tuple(found), grid, gap, error, cost, True, message)

@@ -1,0 +1,454 @@
+"""Compiled exact flow of the oscillator with backlash; plain arrays in and out.
+
+Within a region the motion is linear with periodic coefficients, so the flow over a cell of the period is an
+affine map that is known beforehand; only the instants at which a boundary is crossed are searched for.
+
+Arrays that travel together:
+
+- `par`, (7,): mean stiffness, zeta, F_m, eps, omega, error phase, D.
+- `coef`, (2, cells, 3, degree + 1): Taylor coefficients, in time counted from the start of the cell and
+measured
+  in cells, of the solution started with (1, 0), of that started with (0, 1) and of the forced one started
+  with (0, 0). First index: 0 with the stiffness (in contact, y = X -+ D), 1 without (in the dead zone, y =
+  X).
+- `edge`, (2, cells, 9): the map over the whole cell, A (4, row by row) and b (2), then three factors which
+bound
+  how far y departs from the chord of the cell: factor . (|y|, |v|, 1).
+
+The region is +1 above D, 0 in the dead zone, -1 below -D; the coordinate y belongs to it. With D = 0 there
+is no region 0. Kept in one file because a change in a helper elsewhere would leave stale compiled callers.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def kernel(function: F) -> F:
+    """Compile when first called, keep the result on disk, keep the type signature."""
+    return cast(F, njit(cache=True, error_model="numpy", nogil=True)(function))
+
+
+MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH = range(7)
+FINE, DIVERGED, CROWDED = range(3)  # what a kernel returns: all well, not finite, too many events in a cell
+MAX_EVENTS = (
+    10_000  # in one cell; a cell holds a fraction of an oscillation, so that this is never met in earnest
+)
+
+
+@kernel
+def poly(c: FloatArray, first: int, t: float) -> tuple[float, float, float]:
+    """Value, first and second derivative of sum c[first + k] t^k."""
+    f = 0.0
+    df = 0.0
+    ddf = 0.0
+    for k in range(len(c) - 1, first - 1, -1):
+        ddf = ddf * t + df
+        df = df * t + f
+        f = f * t + c[k]
+    return f, df, 2.0 * ddf
+
+
+@kernel
+def find_root(c: FloatArray, first: int, low: float, high: float, f_low: float, f_high: float) -> float:
+    """Root of the polynomial c[first + k] t^k between two points of opposite sign (Halley)."""
+    rising = f_low < 0.0
+    t = low + (high - low) * f_low / (f_low - f_high)
+    before = high - low
+    for _ in range(200):
+        f, df, ddf = poly(c, first, t)
+        if f == 0.0:
+            return t
+        if (f < 0.0) == rising:
+            low = t
+        else:
+            high = t
+        new = t - f * df / (df * df - 0.5 * f * ddf)
+        if not (low < new < high):
+            new = 0.5 * (low + high)
+        step = abs(new - t)
+        if step <= 4.5e-16 * abs(t) or new == t or (step >= 0.5 * before and step < 1e-12 * abs(t)):
+            return new
+        before = step
+        t = new
+    return t
+
+
+@kernel
+def first_exit(c: FloatArray, slope: FloatArray, end: float, fresh: int) -> float:
+    """Smallest t in [0, end] at which the polynomial turns negative, -1 if it does not.
+
+    A root at t = 0 is divided out. `fresh` = 1: the motion has just come in through this boundary, so that a
+    leading coefficient of the wrong sign is rounding. Every part of [0, end] is either proved free of roots
+    by a bound on a derivative, or proved to hold at most one extremum, or halved.
+    """
+    degree = len(c) - 1
+    m = 0
+    while m <= degree and (c[m] == 0.0 or (m == 0 and c[0] < 0.0)):
+        m += 1
+    if m <= degree and c[m] < 0.0:
+        if fresh != 1:
+            return 0.0
+        while m <= degree and c[m] <= 0.0:
+            m += 1
+    if m > degree or end <= 0.0:
+        return -1.0
+    s2 = s3 = s4 = 0.0
+    power = end
+    for k in range(2, degree - m + 1):
+        power *= end
+        size = abs(c[m + k]) * power * k * (k - 1) * 0.12501
+        s2 += size
+        s3 += size * (k - 2)
+        s4 += size * (k - 2) * (k - 3)
+    left = 0.0
+    width = 1.0
+    f_l, g_l, h_l = poly(c, m, 0.0)
+    while left < 1.0:
+        right = min(left + width, 1.0)
+        f_r, g_r, h_r = poly(c, m, right * end)
+        square = (right - left) ** 2
+        low, high = left * end, right * end
+        tilt, bend = min(abs(g_l), abs(g_r)) * end, min(abs(h_l), abs(h_r)) * end * end
+        tiny = width < 1e-9
+        if f_r > 0.0 and f_l > 0.0 and min(f_l, f_r) > s2 * square:
+            pass
+        elif (
+            tiny
+            or (g_l * g_r > 0.0 and tilt > s3 * square)
+            or (h_l * h_r > 0.0 and bend > s4 * square and g_l * g_r >= 0.0)
+        ):
+            if f_r < 0.0:
+                return find_root(c, m, low, high, f_l, f_r) if f_l > 0.0 else low
+        elif h_l * h_r > 0.0 and bend > s4 * square:
+            for k in range(m + 1, degree + 1):
+                slope[k - 1] = (k - m) * c[k]
+            slope[degree] = 0.0
+            turn = find_root(slope, m, low, high, g_l, g_r)
+            f_t, _, _ = poly(c, m, turn)
+            if f_t < 0.0:
+                return find_root(c, m, low, turn, f_l, f_t) if f_l > 0.0 else low
+            if f_r < 0.0:
+                return find_root(c, m, turn, high, f_t, f_r) if f_t > 0.0 else turn
+        else:
+            width *= 0.5
+            continue
+        left, f_l, g_l, h_l = right, f_r, g_r, h_r
+        width *= 2.0
+    return -1.0
+
+
+@kernel
+def basis(u: FloatArray, s: float, h: float, phi: FloatArray) -> None:
+    """Values and speeds of the three tabulated solutions at s: phi = y1, y2, yp, v1, v2, vp."""
+    for which in range(3):
+        f, df, _ = poly(u[which], 0, s)
+        phi[which] = f
+        phi[3 + which] = df / h
+
+
+@kernel
+def expand(u: FloatArray, phi: FloatArray, s: float, y: float, v: float, h: float, a: FloatArray) -> None:
+    """Taylor coefficients `a` about s of the solution through (y, v) at s."""
+    basis(u, s, h, phi)
+    wronskian = phi[0] * phi[4] - phi[1] * phi[3]
+    r, w = y - phi[2], v - phi[5]
+    c1 = (r * phi[4] - w * phi[1]) / wronskian
+    c2 = (w * phi[0] - r * phi[3]) / wronskian
+    n = len(a)
+    for k in range(n):
+        a[k] = c1 * u[0, k] + c2 * u[1, k] + u[2, k]
+    for i in range(n - 1):
+        for k in range(n - 2, i - 1, -1):
+            a[k] += s * a[k + 1]
+    a[0] = y
+    a[1] = v * h
+
+
+@kernel
+def leave(
+    region: int, d: float, a: FloatArray, b: FloatArray, slope: FloatArray, end: float, fresh: int
+) -> tuple[float, int]:
+    """When, within `end`, and through which boundary (1: D, -1: -D, 0: none) the motion leaves."""
+    f_end = a[0] + a[1] * end
+    power = end
+    bend = 0.0
+    for k in range(2, len(a)):
+        power *= end
+        f_end += a[k] * power
+        bend += k * (k - 1) * abs(a[k]) * power
+    bend *= 0.12501
+    hit = 0
+    for side in (1, -1):
+        if region == -side:
+            continue
+        if region == 0:
+            offset, sign = d, -side
+        else:
+            offset, sign = 0.0, side
+        if min(offset + sign * a[0], offset + sign * f_end) > bend:
+            continue
+        for k in range(len(a)):
+            b[k] = sign * a[k]
+        b[0] += offset
+        t = first_exit(b, slope, end, fresh * side)
+        if t >= 0.0 and (t < end or hit == 0):
+            end = t
+            hit = side
+    return end, hit
+
+
+@kernel
+def enter(region: int, hit: int, d: float) -> tuple[int, float]:
+    """Region and coordinate just past the boundary `hit`."""
+    if d == 0.0:
+        return -region, 0.0
+    if region == 0:
+        return hit, 0.0
+    return 0, hit * d
+
+
+@kernel
+def start(x: float, v: float, d: float, push: float) -> tuple[int, float]:
+    """Region and coordinate of a state; on a boundary the motion (speed, else push) decides."""
+    way = v if v != 0.0 else push
+    if x > d or (x == d and (way > 0.0 or (d == 0.0 and way == 0.0))):
+        return 1, x - d
+    if x < -d or (x == -d and way < 0.0):
+        return -1, x + d
+    return 0, x
+
+
+@kernel
+def carry(phi: FloatArray, later: FloatArray, jac: FloatArray) -> None:
+    """Multiply the sensitivities by the flow between two instants of a cell."""
+    wronskian = phi[0] * phi[4] - phi[1] * phi[3]
+    for j in range(2):
+        c1 = (jac[0, j] * phi[4] - jac[1, j] * phi[1]) / wronskian
+        c2 = (jac[1, j] * phi[0] - jac[0, j] * phi[3]) / wronskian
+        jac[0, j] = c1 * later[0] + c2 * later[1]
+        jac[1, j] = c1 * later[3] + c2 * later[4]
+
+
+@kernel
+def apply(e: FloatArray, jac: FloatArray) -> None:
+    """Multiply the sensitivities by the map of a whole cell."""
+    for j in range(2):
+        top = e[0] * jac[0, j] + e[1] * jac[1, j]
+        jac[1, j] = e[2] * jac[0, j] + e[3] * jac[1, j]
+        jac[0, j] = top
+
+
+@kernel
+def cell_step(
+    coef: FloatArray,
+    edge: FloatArray,
+    cell: int,
+    d: float,
+    h: float,
+    region: int,
+    y: float,
+    v: float,
+    want: bool,
+    jac: FloatArray,
+    work: FloatArray,
+    count: IntArray,
+) -> tuple[int, float, float, int]:
+    """State at the end of a cell, crossing every boundary on the way; counts exits and entries."""
+    e = edge[0 if region != 0 else 1, cell]
+    y_new = e[0] * y + e[1] * v + e[4]
+    v_new = e[2] * y + e[3] * v + e[5]
+    reach = e[6] * abs(y) + e[7] * abs(v) + e[8]
+    if (region == 0 and d - max(abs(y), abs(y_new)) > reach) or min(region * y, region * y_new) > reach:
+        if want:
+            apply(e, jac)
+        return region, y_new, v_new, FINE
+    a, b, phi, later, slope = work[0], work[1], work[2], work[3], work[4]
+    s = 0.0
+    fresh = 0
+    for _ in range(MAX_EVENTS):
+        u = coef[0 if region != 0 else 1, cell]
+        if s == 0.0:
+            for k in range(len(a)):
+                a[k] = y * u[0, k] + v * u[1, k] + u[2, k]
+        else:
+            expand(u, phi, s, y, v, h, a)
+        t, hit = leave(region, d, a, b, slope, 1.0 - s, fresh)
+        if hit == 0 and s == 0.0:
+            if want:
+                apply(e, jac)
+            return region, y_new, v_new, FINE
+        y, v, _ = poly(a, 0, t)
+        v /= h
+        s = 1.0 if hit == 0 else s + t
+        if want:
+            basis(u, s - t, h, phi)
+            basis(u, s, h, later)
+            carry(phi, later, jac)
+        if hit == 0:
+            return region, y, v, FINE
+        old = region
+        region, y = enter(region, hit, d)
+        fresh = hit
+        count[0] += old == 1
+        count[1] += region == -1
+        if s >= 1.0:
+            return region, y, v, FINE
+    return region, y, v, CROWDED
+
+
+@kernel
+def iterate(
+    par: FloatArray,
+    coef: FloatArray,
+    edge: FloatArray,
+    state: FloatArray,
+    skip: int,
+    want: bool,
+    jac: FloatArray,
+    states: FloatArray,
+    counts: IntArray,
+) -> int:
+    """Carry `state` over `skip` periods, then fill `states` (periods, 2) and `counts` (periods, 2).
+
+    Row i is the state after i + 1 further periods and the exits and entries during the last of them. `state`
+    and `jac` (updated if `want`, in place) end at the last period.
+    """
+    cells = edge.shape[1]
+    d = par[HALF_BACKLASH]
+    h = 2.0 * math.pi / par[FREQUENCY] / cells
+    work = np.zeros((5, coef.shape[3]))
+    count = np.zeros(2, dtype=np.int64)
+    push = par[FORCE] + par[ERROR] * par[FREQUENCY] ** 2 * math.cos(par[PHASE])
+    v = state[1]
+    region, y = start(state[0], v, d, push)
+    for period in range(skip + len(states)):
+        count[0] = count[1] = 0
+        for cell in range(cells):
+            region, y, v, flag = cell_step(coef, edge, cell, d, h, region, y, v, want, jac, work, count)
+            if flag != FINE:
+                return flag
+        if not (abs(y) < 1e150 and abs(v) < 1e150):
+            return DIVERGED
+        if period >= skip:
+            states[period - skip, 0] = y + region * d
+            states[period - skip, 1] = v
+            counts[period - skip, 0] = count[0]
+            counts[period - skip, 1] = count[1]
+    state[0] = y + region * d
+    state[1] = v
+    return FINE
+
+
+@kernel
+def next_turn(a: FloatArray, b: FloatArray, slope: FloatArray, end: float) -> float:
+    """Smallest t in (0, end] at which the slope of the polynomial changes sign, -1 if it does not."""
+    for k in range(len(a) - 1):
+        b[k] = (k + 1) * a[k + 1]
+    b[len(a) - 1] = 0.0
+    k = 0
+    while k < len(b) and b[k] == 0.0:
+        k += 1
+    if k < len(b) and b[k] < 0.0:
+        for i in range(len(b)):
+            b[i] = -b[i]
+    return first_exit(b, slope, end, 1)
+
+
+@kernel
+def walk(
+    par: FloatArray,
+    coef: FloatArray,
+    edge: FloatArray,
+    state: FloatArray,
+    periods: int,
+    points: int,
+    samples: FloatArray,
+    turns: FloatArray,
+    events: FloatArray,
+) -> tuple[int, int, int]:
+    """Follow the motion closely; returns flag, number of turns and number of events.
+
+    `samples`, (periods points + 1, 2): states at equal times. `turns`, (any, 5): time, X, X'', region and
+    region just before, at every extremum of X. `events`, (any, 4): time, X, X', region entered. What does
+    not fit in `turns` or `events` is counted, not stored.
+    """
+    cells = edge.shape[1]
+    d = par[HALF_BACKLASH]
+    h = 2.0 * math.pi / par[FREQUENCY] / cells
+    work = np.zeros((5, coef.shape[3]))
+    a, b, phi, rest, slope = work[0], work[1], work[2], work[3], work[4]
+    push = par[FORCE] + par[ERROR] * par[FREQUENCY] ** 2 * math.cos(par[PHASE])
+    v = state[1]
+    region, y = start(state[0], v, d, push)
+    filled = turned = happened = 0
+    for global_cell in range(periods * cells):
+        cell = global_cell % cells
+        s = 0.0
+        fresh = 0
+        for event in range(MAX_EVENTS + 1):
+            if event == MAX_EVENTS:
+                return CROWDED, turned, happened
+            u = coef[0 if region != 0 else 1, cell]
+            expand(u, phi, s, y, v, h, a)
+            t, hit = leave(region, d, a, b, slope, 1.0 - s, fresh)
+            while points > 0 and filled < len(samples):
+                at = filled * (cells / points) - global_cell - s
+                if at > t:
+                    break
+                f, df, _ = poly(a, 0, max(at, 0.0))
+                samples[filled, 0] = f + region * d
+                samples[filled, 1] = df / h
+                filled += 1
+            done = 0.0
+            for k in range(len(a)):
+                rest[k] = a[k]
+            while len(turns) > 0:
+                step = next_turn(rest, b, slope, t - done)
+                if step <= 0.0:
+                    break
+                for i in range(len(rest) - 1):
+                    for k in range(len(rest) - 2, i - 1, -1):
+                        rest[k] += step * rest[k + 1]
+                rest[1] = 0.0
+                done += step
+                if turned < len(turns):
+                    turns[turned, 0] = (global_cell + s + done) * h
+                    turns[turned, 1] = rest[0] + region * d
+                    turns[turned, 2] = 2.0 * rest[2] / (h * h)
+                    turns[turned, 3] = region
+                    turns[turned, 4] = rest[0]
+                turned += 1
+            y, v, _ = poly(a, 0, t)
+            v /= h
+            s = 1.0 if hit == 0 else s + t
+            if hit == 0:
+                break
+            region, y = enter(region, hit, d)
+            fresh = hit
+            if happened < len(events):
+                events[happened, 0] = (global_cell + s) * h
+                events[happened, 1] = hit * d
+                events[happened, 2] = v
+                events[happened, 3] = region
+            happened += 1
+            if s >= 1.0:
+                break
+        if not (abs(y) < 1e150 and abs(v) < 1e150):
+            return DIVERGED, turned, happened
+    while filled < len(samples):
+        samples[filled, 0] = y + region * d
+        samples[filled, 1] = v
+        filled += 1
+    state[0] = y + region * d
+    state[1] = v
+    return FINE, turned, happened

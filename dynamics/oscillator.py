@@ -1,0 +1,197 @@
+"""The oscillator with periodic stiffness and backlash, and the checks of its parameters."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import DynamicsError, Faults
+from dynamics.stiffness import FourierStiffness
+
+__all__ = ["PARAMETERS", "GearOscillator"]
+
+FloatArray = npt.NDArray[np.float64]
+PARAMETERS = ("frequency", "error_amplitude", "error_phase", "mean_force", "damping_ratio", "half_backlash")
+MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
+
+
+@dataclass(frozen=True)
+class GearOscillator:
+    r"""Dimensionless torsional oscillator of a gear pair with backlash.
+
+    .. math::
+
+        \ddot X + 2 \zeta \dot X + K(\tau) f(X) = F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e),
+        \qquad f(X) = X - D, \; 0, \; X + D \quad \text{for } X > D, \; |X| \le D, \; X < -D.
+
+    Parameters
+    ----------
+    stiffness : FourierStiffness
+        :math:`K(\tau)`; mean 1 in the usual scaling.
+    damping_ratio : float
+        :math:`\zeta \ge 0`; the damping acts in the dead zone too.
+    mean_force : float
+        :math:`F_m`; positive presses the driving flanks together.
+    error_amplitude : float
+        :math:`\varepsilon`, amplitude of the unloaded transmission error.
+    frequency : float
+        :math:`\omega > 0`, mesh frequency over natural frequency.
+    half_backlash : float
+        :math:`D \ge 0`.
+    error_phase : float
+        :math:`\varphi_e` [rad], relative to :math:`\tau = 0`, like the phases of the stiffness.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found; also if the period is so long that its table would have more than 200 000
+        cells.
+    """
+
+    stiffness: FourierStiffness
+    damping_ratio: float
+    mean_force: float
+    error_amplitude: float
+    frequency: float
+    half_backlash: float
+    error_phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check and convert; every fault is listed."""
+        faults = Faults()
+        if not isinstance(self.stiffness, FourierStiffness):
+            faults.add(
+                "stiffness", self.stiffness, "a FourierStiffness", "build one, or fit one with fit_fourier"
+            )
+        values = {
+            "damping_ratio": faults.number(
+                "damping_ratio", self.damping_ratio, "0 or more", "a mesh has 0.03 to 0.1", lambda z: z >= 0.0
+            ),
+            "mean_force": faults.number("mean_force", self.mean_force),
+            "error_amplitude": faults.number("error_amplitude", self.error_amplitude),
+            "frequency": faults.number(
+                "frequency",
+                self.frequency,
+                "more than 0",
+                "give mesh over natural frequency",
+                lambda w: w > 0.0,
+            ),
+            "half_backlash": faults.number(
+                "half_backlash",
+                self.half_backlash,
+                "0 or more",
+                "give half the play, without sign",
+                lambda d: d >= 0.0,
+            ),
+            "error_phase": faults.number("error_phase", self.error_phase),
+        }
+        faults.raise_if_any()
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if not self.cells <= MAX_CELLS:
+            allowed = f"a period of at most {MAX_CELLS} cells (this has {self.cells:.3g})"
+            faults.add("frequency", self.frequency, allowed, "raise the frequency, or lower the stiffness")
+            faults.raise_if_any()
+
+    @property
+    def period(self) -> float:
+        r"""Excitation period :math:`T = 2 \pi / \omega`."""
+        return 2.0 * np.pi / self.frequency
+
+    @property
+    def cells(self) -> float:
+        """Cells that the exact flow divides a period into, before rounding up."""
+        stiffest = abs(self.stiffness.mean) + sum(abs(k) for k in self.stiffness.amplitudes)
+        per_period = max(
+            self.period * float(np.sqrt(stiffest)),
+            2.0 * np.pi * max(self.stiffness.order, 1),
+            2.0 * self.damping_ratio * self.period,
+        )
+        return per_period / 0.5
+
+    def get(self, parameter: str) -> float:
+        """Value of a parameter named as in `with_parameter`.
+
+        Raises
+        ------
+        DynamicsError
+            If there is no such parameter.
+        """
+        name, index = _resolve(self, parameter)
+        if name in PARAMETERS:
+            return float(getattr(self, name))
+        if name == "mean":
+            return self.stiffness.mean
+        return float(getattr(self.stiffness, name)[index])
+
+    def with_parameter(self, parameter: str, value: float) -> GearOscillator:
+        """Return the oscillator with one parameter changed.
+
+        Parameters
+        ----------
+        parameter : str
+            ``"frequency"``, ``"error_amplitude"``, ``"error_phase"``, ``"mean_force"``, ``"damping_ratio"``,
+            ``"half_backlash"``, ``"stiffness.mean"``, ``"stiffness.amplitudes[0]"``,
+            ``"stiffness.phases[0]"``, ...
+        value : float
+            The new value.
+
+        Raises
+        ------
+        DynamicsError
+            If there is no such parameter, or the value is not allowed.
+        """
+        name, index = _resolve(self, parameter)
+        if name in PARAMETERS:
+            return _replaced(self, name, value)
+        if name == "mean":
+            return dataclasses.replace(self, stiffness=dataclasses.replace(self.stiffness, mean=value))
+        series = list(getattr(self.stiffness, name))
+        series[index] = value
+        return dataclasses.replace(self, stiffness=_replaced(self.stiffness, name, tuple(series)))
+
+    def mirrored(self) -> GearOscillator:
+        """Return the oscillator of -X, which has forces and error reversed."""
+        return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
+
+    def force(self, tau: npt.ArrayLike) -> FloatArray:
+        r"""Return the force :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""
+        angle = self.frequency * np.asarray(tau, dtype=np.float64) + self.error_phase
+        return np.asarray(self.mean_force + self.error_amplitude * self.frequency**2 * np.cos(angle))
+
+    def deflection(self, x: npt.ArrayLike) -> FloatArray:
+        """Deflection f(X) past the backlash, shape of `x`."""
+        at = np.asarray(x, dtype=np.float64)
+        return np.asarray(at - np.clip(at, -self.half_backlash, self.half_backlash))
+
+
+Record = TypeVar("Record", GearOscillator, FourierStiffness)
+
+
+def _replaced(record: Record, name: str, value: float | tuple[float, ...]) -> Record:
+    """Copy of a frozen record with one field changed, checked again."""
+    changed: dict[str, Any] = {name: value}
+    return dataclasses.replace(record, **changed)
+
+
+def _resolve(oscillator: GearOscillator, parameter: str) -> tuple[str, int]:
+    """Attribute and index that a parameter name stands for."""
+    order = oscillator.stiffness.order
+    if parameter in PARAMETERS:
+        return parameter, -1
+    if parameter == "stiffness.mean":
+        return "mean", -1
+    match = re.fullmatch(r"stiffness\.(amplitudes|phases)\[(\d+)\]", str(parameter))
+    if match and int(match[2]) < order:
+        return match[1], int(match[2])
+    faults = Faults()
+    series = f", stiffness.amplitudes[0..{order - 1}], stiffness.phases[0..{order - 1}]" if order else ""
+    faults.add(
+        "parameter", parameter, ", ".join((*PARAMETERS, "stiffness.mean")) + series, "name one of these"
+    )
+    raise DynamicsError(tuple(faults.found))

@@ -1,0 +1,54 @@
+"""Record of a point at which a branch of orbits changes its kind."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["SpecialPoint"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SpecialPoint:
+    """A special point.
+
+    Parameters
+    ----------
+    kind : str
+        "grazing", "saddle-node" or "period-doubling".
+    parameter : float
+        Value of the parameter.
+    state : ndarray, shape (2,)
+        X and V at tau = 0.
+    multipliers : ndarray, shape (2,)
+        Floquet multipliers.
+    label : str
+        Motion at the point; at a grazing the touch itself is not counted.
+    error : float
+        Estimated error of the parameter value, relative.
+    boundary : int
+        At a grazing: 1 for X = D, -1 for X = -D; else 0.
+    tau : float
+        At a grazing: time of the touch; else nan.
+    acceleration : float
+        At a grazing: X'' at the touch; else nan.
+    stiffness : float
+        At a grazing: K at the touch; else nan. With the acceleration it gives the square-root law of the
+        multipliers.
+    """
+
+    kind: str
+    parameter: float
+    state: FloatArray
+    multipliers: npt.NDArray[np.complex128] | FloatArray
+    label: str
+    error: float
+    boundary: int = 0
+    tau: float = math.nan
+    acceleration: float = math.nan
+    stiffness: float = math.nan

@@ -1,0 +1,118 @@
+"""Periodic stiffness as a Fourier series."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import DynamicsWarning, Faults
+
+__all__ = ["MAX_ORDER", "FourierStiffness"]
+
+FloatArray = npt.NDArray[np.float64]
+MAX_ORDER = 1000  # the cells per period grow with the order; beyond this a series is the wrong description
+
+
+@dataclass(frozen=True)
+class FourierStiffness:
+    r"""Periodic stiffness :math:`K(\tau) = k_0 + \sum_j k_j \cos(j \omega \tau + \varphi_j)`.
+
+    Parameters
+    ----------
+    mean : float
+        Mean :math:`k_0` [N/m, or 1 when dimensionless].
+    amplitudes : sequence of float
+        Amplitudes :math:`k_j`, j = 1, 2, ... [unit of the mean].
+    phases : sequence of float
+        Phases :math:`\varphi_j` [rad], as many as amplitudes. They refer to :math:`\tau = 0`, for a gear
+        pair the instant at which a tooth pair enters contact at A.
+
+    Raises
+    ------
+    DynamicsError
+        If a value is not finite, or the two sequences differ in length.
+
+    Warns
+    -----
+    DynamicsWarning
+        If the mean is not positive: the motion is computed, but no mesh has such a stiffness.
+    """
+
+    mean: float
+    amplitudes: tuple[float, ...] = ()
+    phases: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check and convert; every fault is listed."""
+        faults = Faults()
+        mean = faults.number("stiffness.mean", self.mean)
+        series: list[tuple[float, ...]] = []
+        for name in ("amplitudes", "phases"):
+            given: object = getattr(self, name)
+            if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
+                faults.add(
+                    f"stiffness.{name}", given, "a sequence of numbers", "give one number per harmonic"
+                )
+                series.append(())
+                continue
+            series.append(tuple(faults.number(f"stiffness.{name}[{j}]", v) for j, v in enumerate(given)))
+        if len(series[0]) != len(series[1]):
+            faults.add(
+                "stiffness.phases",
+                f"{len(series[1])} phases",
+                f"{len(series[0])} phases, one per amplitude",
+                "give amplitudes and phases of equal length",
+            )
+        if len(series[0]) > MAX_ORDER:
+            faults.add(
+                "stiffness.amplitudes",
+                f"{len(series[0])} harmonics",
+                f"at most {MAX_ORDER}",
+                "leave out the highest harmonics",
+            )
+        faults.raise_if_any()
+        if mean <= 0.0:
+            warnings.warn(
+                f"stiffness.mean = {mean}: a mesh has a positive mean stiffness",
+                DynamicsWarning,
+                stacklevel=3,
+            )
+        object.__setattr__(self, "mean", mean)
+        object.__setattr__(self, "amplitudes", series[0])
+        object.__setattr__(self, "phases", series[1])
+
+    @property
+    def order(self) -> int:
+        """Highest harmonic."""
+        return len(self.amplitudes)
+
+    def __call__(self, angle: npt.ArrayLike) -> FloatArray:
+        r"""Stiffness at the excitation angle :math:`\omega \tau` [rad]; same shape as the angle."""
+        theta = np.asarray(angle, dtype=np.float64)
+        total = np.full(theta.shape, self.mean)
+        for j, (amplitude, phase) in enumerate(zip(self.amplitudes, self.phases, strict=True), start=1):
+            total += amplitude * np.cos(j * theta + phase)
+        return total
+
+    def normalised(self) -> FourierStiffness:
+        r"""Return the same stiffness over its mean, :math:`1 + \sum \kappa_j \cos(\cdot)`.
+
+        Raises
+        ------
+        DynamicsError
+            If the mean is not positive.
+        """
+        faults = Faults()
+        faults.number(
+            "stiffness.mean",
+            self.mean,
+            "a positive mean",
+            "only a positive mean can be scaled to 1",
+            lambda k: k > 0,
+        )
+        faults.raise_if_any()
+        return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)
