@@ -168,7 +168,7 @@ class LineContact:
     @property
     def moes_L(self) -> float:
         """Moes' lubricant number L = G U2^(1/4) [-]."""
-        return self.G * self.U2**0.25
+        return self.G * math.sqrt(math.sqrt(self.U2))
 
     @property
     def moes_film(self) -> float:

@@ -153,7 +153,7 @@ def fluxes(grid: Grid, groups: Groups, P: Array, H: Array, faces: Array) -> tupl
     p = groups.pressure * P
     ln_viscosity, viscosity_slope = groups.lubricant.log_viscosity(p)
     density, density_slope = groups.lubricant.density_ratio(p)
-    return reynolds(
+    found: tuple[Array, Array] = reynolds(
         grid.nodes,
         P,
         H,
@@ -164,6 +164,7 @@ def fluxes(grid: Grid, groups: Groups, P: Array, H: Array, faces: Array) -> tupl
         density_slope * groups.pressure,
         groups.lam,
     )
+    return found
 
 
 def residual(grid: Grid, groups: Groups, P: Array, H0: float) -> tuple[Array, float]:

@@ -59,10 +59,12 @@ def graded_nodes(H_c: float, n: int, domain: tuple[float, float]) -> Array:
     c = 2.0 / (right - left)
 
     def count(X: Array) -> Array:
-        return c * X + np.arcsinh((X + 1.0) / s_in) + _SPIKE_SHARE * np.arcsinh((X - spike) / s_out)
+        total: Array = c * X + np.arcsinh((X + 1.0) / s_in) + _SPIKE_SHARE * np.arcsinh((X - spike) / s_out)
+        return total
 
     def density(X: Array) -> Array:
-        return c + 1.0 / np.hypot(X + 1.0, s_in) + _SPIKE_SHARE / np.hypot(X - spike, s_out)
+        value: Array = c + 1.0 / np.hypot(X + 1.0, s_in) + _SPIKE_SHARE / np.hypot(X - spike, s_out)
+        return value
 
     ends = np.array([left, right])
     low, high = count(ends)
@@ -81,7 +83,8 @@ def graded_nodes(H_c: float, n: int, domain: tuple[float, float]) -> Array:
 
 def uniform_nodes(n: int, domain: tuple[float, float]) -> Array:
     """Equally spaced nodes on the domain [half-widths]."""
-    return np.linspace(domain[0], domain[1], n)
+    nodes: Array = np.linspace(domain[0], domain[1], n)
+    return nodes
 
 
 def face_weights(nodes: Array, *, upwind: bool = False) -> Array:

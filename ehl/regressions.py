@@ -23,7 +23,8 @@ def dowson_higginson_minimum(contact: LineContact) -> float:
     D. Dowson, Elastohydrodynamics, Proc. Inst. Mech. Engrs 182 (1967-68), Part 3A, 151-167.
     """
     U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    return 2.65 * U**0.70 * G**0.54 * W**-0.13 * contact.radius
+    film: float = 2.65 * U**0.70 * G**0.54 * W**-0.13 * contact.radius
+    return film
 
 
 def dowson_toyoda_central(contact: LineContact) -> float:
@@ -37,7 +38,8 @@ def dowson_toyoda_central(contact: LineContact) -> float:
     Leeds-Lyon Symposium on Tribology (1979), 60-65.
     """
     U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    return 3.06 * U**0.69 * G**0.56 * W**-0.10 * contact.radius
+    film: float = 3.06 * U**0.69 * G**0.56 * W**-0.10 * contact.radius
+    return film
 
 
 def moes_central(contact: LineContact) -> float:
@@ -63,7 +65,8 @@ def moes_central(contact: LineContact) -> float:
         rigid_piezo = 1.287 * L ** (2 / 3)
         elastic_piezo = 1.311 * M**-0.125 * L**0.75
         isoviscous += (rigid_piezo**-3.5 + elastic_piezo**-3.5) ** (-2 * s / 7)
-    return isoviscous ** (1 / s) * contact.moes_film
+    film: float = isoviscous ** (1 / s) * contact.moes_film
+    return film
 
 
 @dataclass(frozen=True)

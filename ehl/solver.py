@@ -62,15 +62,15 @@ def _warn(contact: LineContact) -> None:
     oil = contact.lubricant
     if oil.pressure_viscosity > 0 and contact.peak_pressure > 1e9:
         warnings.warn(
-            f"Hertz pressure {contact.peak_pressure / 1e9:.2f} GPa: above about 1 GPa the viscosity law is an "
-            "extrapolation; film thickness, decided in the inlet, suffers little",
+            f"Hertz pressure {contact.peak_pressure / 1e9:.2f} GPa: above about 1 GPa the viscosity law is "
+            "an extrapolation; film thickness, decided in the inlet, suffers little",
             EhlWarning,
             stacklevel=4,
         )
     if moes_central(contact) > 1e-3 * contact.radius:
         warnings.warn(
-            f"film of about {moes_central(contact):.2g} m at a radius of {contact.radius:.2g} m: the parabola "
-            "that stands for the cylinders no longer holds over the whole inlet",
+            f"film of about {moes_central(contact):.2g} m at a radius of {contact.radius:.2g} m: the "
+            "parabola that stands for the cylinders no longer holds over the whole inlet",
             EhlWarning,
             stacklevel=4,
         )
@@ -117,7 +117,7 @@ class _Run:
         return self.descend(level)
 
     def descend(self, failed: Level) -> Level:
-        """Continue in the load, from a contact soft enough to be solved from cold, on the failed level's grid."""
+        """Continue in the load, from a contact soft enough to be solved from cold, on the failed grid."""
         for factor in (0.5, 0.2, 0.05):
             load = factor * self.contact.load
             level = self.count(cold(replace(self.contact, load=load), failed.grid, self.plan.H_c / factor))
@@ -172,8 +172,8 @@ def solve(
     contact : LineContact
         What to solve.
     tolerance : float
-        Wanted relative error of central and minimum film. Grids of 65, 129, 257, ... nodes are solved until the
-        estimate meets it.
+        Wanted relative error of central and minimum film. Grids of 65, 129, 257, ... nodes are solved until
+        the estimate meets it.
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     domain : tuple of float, optional
@@ -214,7 +214,11 @@ def solve(
     if old is not None and old.plan.serves(plan):
         plan = old.plan
     run = _Run(contact, plan)
-    n = nodes if nodes is not None else 2 * _FIRST_NODES - 1
+    n = 2 * _FIRST_NODES - 1
+    if nodes is not None:
+        n = int(nodes)
+    elif old is not None and old.plan is plan:
+        n = old.fine.grid.nodes.size
     half = (n + 1) // 2
     if old is None:
         coarse = run.cold(half)
@@ -237,9 +241,9 @@ def _refine(run: _Run, coarse: Level, fine: Level, tolerance: float | None, inle
     """Double the grid until the estimate meets the tolerance, then report."""
     while True:
         if not (coarse.found.converged and fine.found.converged):
-            return _failed(
-                run, fine, f"{fine.found.message}: give more nodes, or start from a similar contact"
-            )
+            failed = fine if coarse.found.converged else coarse
+            message = f"{failed.found.message}: give more nodes, or start from a similar contact"
+            return _failed(run, fine, message)
         worst = _film_error(coarse, fine) + inlet
         if tolerance is None or worst <= tolerance:
             return _film(run, coarse, fine, worst, inlet)
@@ -258,7 +262,7 @@ def _film(run: _Run, coarse: Level, fine: Level, error: float, inlet: float) -> 
     errors = FilmErrors(
         film=error,
         prop=_GRID_FACTOR * abs(before.prop / shown.prop - 1.0) + _PROP_LOSS * inlet,
-        approach_stiffness=abs(slope_before.prop / slope.prop - 1.0) + _PROP_LOSS * inlet,
+        approach_stiffness=abs(slope_before.prop / slope.prop - 1.0) + slope.ripple + _PROP_LOSS * inlet,
         tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + _PROP_LOSS * inlet,
         inlet=inlet,
     )
