@@ -1,5 +1,6 @@
 """Spur-gear geometry, path of contact, load sharing and closed-form tooth deflection; loads numpy only."""
 
+from gears import closed_form
 from gears.errors import (
     Fault,
     GearsError,
@@ -9,6 +10,7 @@ from gears.errors import (
     ModelRangeWarning,
 )
 from gears.gear import Gear, TipRelief
+from gears.hertz import half_width, peak_pressure
 from gears.load_sharing import LoadShare, independent_pairs, share_load
 from gears.material import STEEL, Material, reduced_modulus
 from gears.pair import GearPair
@@ -36,7 +38,10 @@ __all__ = [
     "Placement",
     "TipRelief",
     "ToothProfile",
+    "closed_form",
+    "half_width",
     "independent_pairs",
+    "peak_pressure",
     "reduced_modulus",
     "share_load",
 ]

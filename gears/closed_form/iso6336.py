@@ -1,0 +1,118 @@
+"""Tooth stiffness after ISO 6336-1, method B."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+from gears.errors import Fault, GeometryError, ModelRangeWarning
+from gears.pair import GearPair
+
+CORRECTION = 0.8
+"""C_M, what measurements found of the theoretical stiffness of a solid disc."""
+
+LIGHT_LOAD = 100.0
+"""Load per face width [N/mm] below which the stiffness falls with the fourth root of the load."""
+
+_STEEL = 206e9  # Pa, for which the polynomial holds
+_NEWTON_PER_MM_UM = 1e9  # Pa
+
+
+@dataclass(frozen=True)
+class Iso6336Stiffness:
+    """Tooth stiffness per face width after ISO 6336-1.
+
+    Parameters
+    ----------
+    c_th : float
+        Theoretical single stiffness c'_th [N/(mm um)].
+    c_prime : float
+        Single stiffness c', the largest of one pair of teeth [N/(mm um)].
+    c_gamma : float
+        Mesh stiffness c_gamma_alpha, mean over the mesh cycle [N/(mm um)].
+    C_R : float
+        Gear blank factor, 1 for a solid disc.
+    C_B : float
+        Basic rack factor.
+    face_width : float
+        b [m].
+    """
+
+    c_th: float
+    c_prime: float
+    c_gamma: float
+    C_R: float
+    C_B: float
+    face_width: float
+
+    @property
+    def single_stiffness(self) -> float:
+        """Single stiffness c' b [N/m]."""
+        return self.c_prime * _NEWTON_PER_MM_UM * self.face_width
+
+    @property
+    def mesh_stiffness(self) -> float:
+        """Mesh stiffness c_gamma b [N/m]."""
+        return self.c_gamma * _NEWTON_PER_MM_UM * self.face_width
+
+
+def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
+    """Single and mesh stiffness of a pair of solid discs after ISO 6336-1.
+
+    q' = 0.04723 + 0.15551/z1 + 0.25791/z2 - 0.00635 x1 - 0.11654 x1/z1 - 0.00193 x2 - 0.24188 x2/z2
+    + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B E/E_steel with C_R = 1 and
+    C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha)]; c_gamma = c' (0.75 epsilon_alpha + 0.25).
+
+    Parameters
+    ----------
+    pair : GearPair
+        The gears; the one with fewer teeth is gear 1 of the standard.
+    force : float or None
+        Normal force with the application factor in it [N]: where the tangential load F cos(alpha) / b is
+        below 100 N/mm, c' is multiplied by its ratio to that to the power 0.25. None is no reduction.
+
+    Returns
+    -------
+    Iso6336Stiffness
+        c'_th, c', c_gamma and the factors.
+
+    Raises
+    ------
+    GeometryError
+        If the force is not a finite positive number.
+
+    Warns
+    -----
+    ModelRangeWarning
+        Outside x1 >= x2, -0.5 <= x1 + x2 <= 2 and 1.2 <= epsilon_alpha <= 1.9.
+    """
+    first, second = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift))
+    z1, z2, x1, x2 = first.teeth, second.teeth, first.profile_shift, second.profile_shift
+    _warn_outside(x1, x2, pair.contact_ratio)
+    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
+    q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
+    C_R = 1.0
+    angle = math.degrees(pair.rack.alpha)
+    C_B = (1.0 + 0.5 * (1.2 - pair.rack.h_fP)) * (1.0 - 0.02 * (20.0 - angle))
+    E1, E2 = (material.youngs_modulus for material in pair.materials)
+    c_prime = CORRECTION * C_R * C_B / q * (2.0 * E1 * E2 / (E1 + E2) / _STEEL)
+    if force is not None:
+        if not (math.isfinite(force) and force > 0.0):
+            raise GeometryError([Fault("force", repr(force), "a finite force above 0 N", "give it, or None")])
+        load = force * math.cos(pair.rack.alpha) / (pair.face_width * 1e3)
+        c_prime *= min(load / LIGHT_LOAD, 1.0) ** 0.25
+    c_gamma = c_prime * (0.75 * pair.contact_ratio + 0.25)
+    return Iso6336Stiffness(1.0 / q, c_prime, c_gamma, C_R, C_B, pair.face_width)
+
+
+def _warn_outside(x1: float, x2: float, contact_ratio: float) -> None:
+    outside = []
+    if x1 < x2:
+        outside.append(f"x1 = {x1:g} is less than x2 = {x2:g}")
+    if not -0.5 <= x1 + x2 <= 2.0:
+        outside.append(f"x1 + x2 = {x1 + x2:g} is not within -0.5 to 2")
+    if not 1.2 <= contact_ratio <= 1.9:
+        outside.append(f"contact ratio {contact_ratio:.3f} is not within 1.2 to 1.9")
+    if outside:
+        warnings.warn("ISO 6336-1: " + "; ".join(outside), ModelRangeWarning, stacklevel=3)

@@ -1,0 +1,141 @@
+"""A tooth under a normal load: load geometry, and integrals over its true sections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gears.arrays import Array
+from gears.errors import Fault, GeometryError
+from gears.material import Material
+from gears.pair import GearPair
+from gears.path import PathOfContact
+from gears.profile import ToothProfile
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedTooth:
+    """One tooth with loads at n points of its right-hand flank.
+
+    Parameters
+    ----------
+    profile : ToothProfile
+        The tooth.
+    material : Material
+        Its material.
+    rho : (n,) array
+        Curvature radii of the loaded points [m].
+    """
+
+    profile: ToothProfile
+    material: Material
+    rho: Array
+
+    @property
+    def radius(self) -> Array:
+        """Distance of the load from the axis r_x, (n,) [m]."""
+        return np.hypot(self.rho, self.profile.base_radius)
+
+    @property
+    def half_angle(self) -> Array:
+        """Half-thickness angle at the load gamma_x, (n,) [rad]."""
+        return self.profile.half_angle(self.radius)
+
+    @property
+    def load_angle(self) -> Array:
+        """Angle omega_x between the load and the normal to the tooth's centre line, (n,) [rad]."""
+        return np.asarray(self.rho / self.profile.base_radius - self.profile.base_half_angle)
+
+    @property
+    def crossing(self) -> Array:
+        """Height at which the load's line crosses the centre line, r_b / cos omega_x, (n,) [m]."""
+        return np.asarray(self.profile.base_radius / np.cos(self.load_angle))
+
+    @property
+    def depth(self) -> Array:
+        """Distance from the loaded point along the load's line to the centre line, (n,) [m]."""
+        return np.asarray(self.profile.involute(self.rho)[..., 0] / np.cos(self.load_angle))
+
+    @property
+    def root_section(self) -> tuple[float, float]:
+        """Height and full width of the chord between the feet of the fillets [m]."""
+        angle, root = self.profile.root_half_angle, self.profile.root_radius
+        return root * math.cos(angle), 2.0 * root * math.sin(angle)
+
+    def integrate(self, integrand: Callable[[Array, Array], Array], top: Array) -> Array:
+        """Integrate over the height of the tooth's true profile, from the root section upwards.
+
+        Gauss-Legendre quadrature in the parameters of fillet and involute, in which the profile is analytic.
+
+        Parameters
+        ----------
+        integrand : callable
+            Of height y and half width x, both (n, nodes) [m].
+        top : (n,) array
+            Height at which the integral ends [m].
+
+        Returns
+        -------
+        (n,) array
+            The integral.
+        """
+        curve, start = self.profile.fillet_curve, self.profile.flank_rho[0]
+        base = self.profile.base_radius
+        height_of_fillet = lambda beta: curve.point(beta)[..., 1]  # noqa: E731
+        height_of_flank = lambda rho: self.profile.involute(rho)[..., 1]  # noqa: E731
+        fillet = _parameter_at(height_of_fillet, top, 0.0, curve.end)
+        flank = _parameter_at(height_of_flank, top, start, self.profile.flank_rho[1])
+        beta, per_beta = _nodes(0.0, fillet)
+        rho, per_rho = _nodes(start, flank)
+        total = np.zeros_like(top)
+        for points, rise in (
+            (curve.point(beta), per_beta * curve.speed(beta) * curve.normal(beta)[..., 0]),
+            (self.profile.involute(rho), per_rho * rho / base * self.profile.normal(rho)[..., 0]),
+        ):
+            total = total + (integrand(points[..., 1], points[..., 0]) * rise).sum(axis=-1)
+        return np.asarray(total)
+
+
+def _nodes(low: float, high: Array) -> tuple[Array, Array]:
+    half = 0.5 * (high - low)[..., None]
+    return np.asarray(low + half * (1.0 + _NODES)), np.asarray(half * _WEIGHTS)
+
+
+def _parameter_at(height: Callable[[Array], Array], top: Array, low: float, high: float) -> Array:
+    """Parameter at which a rising curve reaches `top`, kept within its ends; by bisection."""
+    below, above = np.full_like(top, low), np.full_like(top, high)
+    for _ in range(60):
+        middle = 0.5 * (below + above)
+        short = height(middle) < top
+        below, above = np.where(short, middle, below), np.where(short, above, middle)
+    return np.asarray(0.5 * (below + above))
+
+
+def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, LoadedTooth]:
+    """Teeth of pinion and wheel with the loads of a path of contact.
+
+    Raises
+    ------
+    GeometryError
+        If a point of the path is not on both involutes.
+    """
+    teeth = []
+    faults = []
+    for name, profile, material, rho in zip(
+        ("rho1", "rho2"), pair.teeth_profiles, pair.materials, (path.rho1, path.rho2), strict=True
+    ):
+        low, high = profile.flank_rho
+        slack = 1e-9 * profile.module
+        if not np.all((rho >= low - slack) & (rho <= high + slack)):
+            allowed = f"{low:.6g} to {high:.6g} m, the flank"
+            value = f"{np.min(rho):g} .. {np.max(rho):g}"
+            faults.append(Fault(f"path.{name}", value, allowed, "closed forms hold between A and E"))
+        teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))
+    if faults:
+        raise GeometryError(faults)
+    return teeth[0], teeth[1]
