@@ -110,13 +110,13 @@ class LineContact:
         faults = number_fault("M", M, low=0.0, high=1e9, remedy=remedy)
         faults += number_fault("L", L, low=0.0, high=1e3, open_low=False, remedy=remedy)
         faults += number_fault(
-            "roelands_z", roelands_z, low=0.0, high=2.0, remedy="oils lie between 0.2 and 1"
+            "roelands_z", roelands_z, low=0.1, high=2.0, open_low=False, remedy="oils lie between 0.2 and 1"
         )
         faults += number_fault(
             "pressure_viscosity",
             pressure_viscosity,
             low=0.0,
-            high=1e-6,
+            high=1e-7,
             remedy="for a constant viscosity give L=0",
         )
         faults += number_fault("reduced_modulus", reduced_modulus, low=0.0, high=1e14, remedy="give E' in Pa")

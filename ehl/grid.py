@@ -74,7 +74,7 @@ def graded_nodes(H_c: float, n: int, domain: tuple[float, float]) -> Array:
         [-1.0 + s_in * np.sinh(np.linspace(-12, 12, 241)), spike + s_out * np.sinh(np.linspace(-12, 12, 241))]
     )
     sample = np.unique(np.concatenate([ends, sample[(sample > left) & (sample < right)]]))
-    X = np.interp(want, count(sample), sample)
+    X: Array = np.interp(want, count(sample), sample)
     for _ in range(4):
         X = np.clip(X - (count(X) - want) / density(X), left, right)
     X[0], X[-1] = left, right

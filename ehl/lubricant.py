@@ -66,7 +66,7 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        faults = number_fault("viscosity", self.viscosity, low=0.0, high=1e30, remedy="give eta0 in Pa s")
+        faults = number_fault("viscosity", self.viscosity, low=0.0, high=1e100, remedy="give eta0 in Pa s")
         faults += number_fault(
             "pressure_viscosity",
             self.pressure_viscosity,

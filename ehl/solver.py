@@ -23,6 +23,7 @@ _FIRST_NODES = 65
 _MOST_NODES = 1025
 _REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the propping below 1e-3
 _PROP_LOSS = 20.0  # times the film's own error by the finite inlet
+_DRY = 1e-5  # h R/b^2 below which refusals are laid to a contact that is as good as dry
 _GRID_FACTOR = (
     0.4  # error of N nodes over its difference from (N+1)/2 nodes: 1/3 at second order, with a margin
 )
@@ -242,16 +243,26 @@ def _refine(run: _Run, coarse: Level, fine: Level, tolerance: float | None, inle
     while True:
         if not (coarse.found.converged and fine.found.converged):
             failed = fine if coarse.found.converged else coarse
-            message = f"{failed.found.message}: give more nodes, or start from a similar contact"
-            return _failed(run, fine, message)
+            return _failed(run, fine, f"{failed.found.message}: {_remedy(run.plan)}")
         worst = _film_error(coarse, fine) + inlet
         if tolerance is None or worst <= tolerance:
             return _film(run, coarse, fine, worst, inlet)
         n = 2 * fine.grid.nodes.size - 1
         if n > _MOST_NODES:
-            remedy = f"error {worst:.2g} left on {fine.grid.nodes.size} nodes: allow it as tolerance"
-            return _failed(run, fine, remedy, worst)
+            message = f"error {worst:.2g} left on {fine.grid.nodes.size} nodes: {_remedy(run.plan)}"
+            return _failed(run, fine, message, worst)
         coarse, fine = fine, run.warm(fine, None, n)
+
+
+def _remedy(plan: Plan) -> str:
+    """Say what to do about a contact that was not solved."""
+    if plan.H_c < _DRY:
+        return "the film is too thin beside the flattening to be resolved; take the contact as dry (prop 0)"
+    if plan.fixed and plan.domain[0] > -1.05:
+        return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
+    if plan.kind == "uniform":
+        return "use the graded grid, or give more nodes"
+    return "allow a larger tolerance, give more nodes, or start from a similar contact"
 
 
 def _film(run: _Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
