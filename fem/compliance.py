@@ -310,7 +310,9 @@ def single_pair_stiffness(
     points = pair.points
     faults = []
     if not (np.isfinite(force) and force > 0):
-        faults.append(Fault("force", f"{force!r}", "finite and > 0 (N)", "give the force along the line of action"))
+        faults.append(
+            Fault("force", f"{force!r}", "finite and > 0 (N)", "give the force along the line of action")
+        )
     slack = 1e-9 * points.E
     if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):
         allowed = f"{points.A:g} to {points.E:g} m, the path of contact"

@@ -45,6 +45,8 @@ class MeshCycle:
         Curvature radius on the pinion [m]; nan where there is no contact between A and E.
     edge : (n, pairs) boolean array
         Candidates outside the path, where a tip edge touches if it carries force.
+    flank_rho : (2, n, pairs) array
+        Curvature radii of pinion's and wheel's flank at the contact, tip edges included [m].
     forces : (n, pairs) array
         Normal forces [N]; zero where unloaded.
     load_share : (n, pairs) array
@@ -74,6 +76,7 @@ class MeshCycle:
     pair_offset: NDArray[np.int64]
     rho1: Array
     edge: NDArray[np.bool_]
+    flank_rho: Array
     forces: Array
     load_share: Array
     gaps: Array
@@ -139,9 +142,13 @@ def mesh_cycle(
 
     faults = []
     if not (np.isfinite(torque) and torque > 0):
-        faults.append(Fault("torque", f"{torque!r}", "finite and > 0 (N m)", "the pinion drives; give its torque"))
+        faults.append(
+            Fault("torque", f"{torque!r}", "finite and > 0 (N m)", "the pinion drives; give its torque")
+        )
     if isinstance(positions, bool) or not isinstance(positions, (int, np.integer)) or positions < 1:
-        faults.append(Fault("positions", f"{positions!r}", "a whole number >= 1", "40 resolve the usual harmonics"))
+        faults.append(
+            Fault("positions", f"{positions!r}", "a whole number >= 1", "40 resolve the usual harmonics")
+        )
     if compliance is not None and compliance.pair != pair:
         faults.append(Fault("compliance", "of another pair", "of this pair", "compute it anew"))
     if faults:
@@ -186,6 +193,7 @@ def mesh_cycle(
         pair_offset=where.offset,
         rho1=places,
         edge=edge,
+        flank_rho=np.where(where.touchable, np.stack([rho1, rho2]), np.nan),
         forces=share.forces / lever,
         load_share=share.forces / force,
         gaps=gaps,
@@ -244,8 +252,17 @@ def _edge_contacts(
     if not where.edge.any():
         return lever, gaps, None
     rows: dict[str, list[Array]] = {"place": [], "force": [], "approach": []}
-    for corner, chosen in ((1, where.edge & (where.rho1 < points.A)), (0, where.edge & (where.rho1 > points.E))):
-        law = edge_laws(pair, bodies.tips[corner], corner, where.rho1[chosen], (bodies.pinion, bodies.wheel)[1 - corner].law)
+    for corner, chosen in (
+        (1, where.edge & (where.rho1 < points.A)),
+        (0, where.edge & (where.rho1 > points.E)),
+    ):
+        law = edge_laws(
+            pair,
+            bodies.tips[corner],
+            corner,
+            where.rho1[chosen],
+            (bodies.pinion, bodies.wheel)[1 - corner].law,
+        )
         kappa = lever_ratio(pair, law.where, where.rho1[chosen]) if corner == 0 else np.ones(len(law.where))
         end = pair.teeth_profiles[corner].flank_rho[1]
         rho1[chosen], rho2[chosen] = (law.where, end) if corner == 1 else (end, law.where)
@@ -263,7 +280,10 @@ def _leave_out_corner(bodies: Compliance, matrix: Array, where: _Candidates) -> 
     """The edge's law holds its own tooth's flexibility already: keep only the touched flank's."""
     points = bodies.pair.points
     width = bodies.pair.face_width
-    for corner, chosen in ((1, where.edge & (where.rho1 < points.A)), (0, where.edge & (where.rho1 > points.E))):
+    for corner, chosen in (
+        (1, where.edge & (where.rho1 < points.A)),
+        (0, where.edge & (where.rho1 > points.E)),
+    ):
         gear = (bodies.pinion, bodies.wheel)[corner]
         at_end = float(gear.own(np.array([gear.rho_end]))[0]) / width
         position, column = np.nonzero(chosen)

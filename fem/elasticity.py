@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from gears import Material
 
-__all__ = ["PlaneElasticity", "shape", "shape_gradients", "stiffness_matrix", "stress_at"]
+__all__ = ["PlaneElasticity", "nodal_stress_matrix", "shape", "shape_gradients", "stiffness_matrix", "stress_at"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -154,6 +154,33 @@ def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> c
     columns = np.tile(unknown, (1, 12)).ravel()
     size = 2 * len(points)
     return coo_array((element.reshape(m, -1).ravel(), (rows, columns)), shape=(size, size)).tocsc()
+
+
+def nodal_stress_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:
+    """Matrix (3n, 2n) from displacements to sigma_xx, sigma_yy, tau_xy at the nodes, averaged over elements.
+
+    Row 3 i + c is component c at node i.
+    """
+    from scipy.sparse import coo_array
+
+    lam, mu = law.lame
+    corners = np.array([[0.0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+    gradient, _ = _physical_gradients(points, triangles, corners[:, 0], corners[:, 1])
+    share = 1.0 / np.bincount(triangles.ravel(), minlength=len(points))[triangles]
+    dx, dy = (gradient[..., axis] * share[:, :, None] for axis in (0, 1))  # (elements, node at, node of)
+    blocks = np.stack(
+        [
+            np.stack([(lam + 2 * mu) * dx, lam * dy], axis=-1),
+            np.stack([lam * dx, (lam + 2 * mu) * dy], axis=-1),
+            np.stack([mu * dy, mu * dx], axis=-1),
+        ],
+        axis=2,
+    )  # (elements, node at, component, node of, direction)
+    rows = 3 * triangles[:, :, None, None, None] + np.arange(3)[:, None, None]
+    columns = 2 * triangles[:, None, None, :, None] + np.arange(2)
+    rows, columns = np.broadcast_to(rows, blocks.shape), np.broadcast_to(columns, blocks.shape)
+    shape_ = (3 * len(points), 2 * len(points))
+    return coo_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=shape_).tocsc()
 
 
 def stress_at(

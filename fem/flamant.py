@@ -31,9 +31,7 @@ def _frame(points: Array, load: Array, inward: Array) -> tuple[Array, Array, Arr
     return along, across, np.hypot(along, across)
 
 
-def displacement(
-    points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float
-) -> Array:
+def displacement(points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float) -> Array:
     """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself."""
     along, across, r = _frame(points, load, inward)
     theta = np.arctan2(across, along)

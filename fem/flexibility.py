@@ -172,9 +172,7 @@ def flexibility(
     noise = float(np.max(np.abs(chebyshev.chebval(unit, own) - smooth)))
     fit = np.linalg.pinv(chebyshev.chebvander(unit, CROSS_DEGREE))
     forward = 1 if flank == "left" else -1
-    cross = {
-        tooth: fit @ loads.on_tooth(forward * tooth, at).T @ fit.T for tooth in range(1, reach + 1)
-    }
+    cross = {tooth: fit @ loads.on_tooth(forward * tooth, at).T @ fit.T for tooth in range(1, reach + 1)}
     return GearFlexibility(
         (low, high),
         rho_end,

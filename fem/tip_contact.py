@@ -93,8 +93,9 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
     regular = np.zeros((count, count))
     regular[:, solved:] = loads.on_tooth(0, at) + loads.singular(at) - _flat(at, source, ring.law, m)
     regular[np.arange(solved, count), np.arange(solved, count)] = loads.regular_at_load()
-    larger, smaller = np.maximum.outer(np.arange(count), np.arange(count)), np.minimum.outer(
-        np.arange(count), np.arange(count)
+    larger, smaller = (
+        np.maximum.outer(np.arange(count), np.arange(count)),
+        np.minimum.outer(np.arange(count), np.arange(count)),
     )
     _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
     shift = np.maximum(solved - larger, 0)

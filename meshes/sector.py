@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -43,6 +43,8 @@ class SectorMesh:
     teeth : int
     module : float
         [m]
+    coarser : SectorMesh or None
+        The mesh that this one refines: its nodes are the first nodes here.
     """
 
     points: Array
@@ -52,6 +54,7 @@ class SectorMesh:
     curves: Mapping[str, Curve]
     teeth: int
     module: float
+    coarser: SectorMesh | None = None
 
     @property
     def unknowns(self) -> int:
@@ -194,7 +197,9 @@ def _second_order(
         low, high = np.sort(nodes, axis=1).T
         found = np.searchsorted(unique, low * len(corners) + high)
         if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
-            raise MeshError(Fault(name, "edges lost", "every edge of the outline kept", "use smaller elements"))
+            raise MeshError(
+                Fault(name, "edges lost", "every edge of the outline kept", "use smaller elements")
+            )
         points[len(corners) + found] = curves[name].at(t.mean(axis=1))
         facets[name] = np.column_stack([nodes, len(corners) + found])
         parameters[name] = t
@@ -245,10 +250,7 @@ def refined(mesh: SectorMesh) -> SectorMesh:
     """Split every triangle in four; the middles become corners, new middles lie on the exact curves."""
     a, b, c, ab, bc, ca = mesh.triangles.T
     children = np.concatenate(
-        [
-            np.stack(three, axis=1)
-            for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        ]
+        [np.stack(three, axis=1) for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
     )
     ends = {}
     for name, facets in mesh.facets.items():
@@ -257,4 +259,5 @@ def refined(mesh: SectorMesh) -> SectorMesh:
         half = t.mean(axis=1)
         nodes = np.stack([first, middle, middle, last], axis=1).reshape(-1, 2)
         ends[name] = (nodes, np.stack([t[:, 0], half, half, t[:, 1]], axis=1).reshape(-1, 2))
-    return _second_order(mesh.points, children, ends, mesh.curves, mesh.teeth, mesh.module)
+    finer = _second_order(mesh.points, children, ends, mesh.curves, mesh.teeth, mesh.module)
+    return replace(finer, coarser=mesh)

@@ -1,0 +1,112 @@
+"""Triangles to draw: coarse far from the contact, split again and again towards it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.elasticity import shape
+from meshes import SectorMesh
+
+__all__ = ["Picture", "picture_of"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+# corners of the four children of a triangle, in its reference coordinates (middle one last)
+_CHILDREN = np.array(
+    [
+        [[0, 0], [0.5, 0], [0, 0.5]],
+        [[0.5, 0], [1, 0], [0.5, 0.5]],
+        [[0, 0.5], [0.5, 0.5], [0, 1]],
+        [[0.5, 0], [0.5, 0.5], [0, 0.5]],
+    ]
+)
+SPLITS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """Points of a sector and the second-order cells that they make.
+
+    Attributes
+    ----------
+    nodes, weights : (n, k) arrays
+        Nodes of the sector whose values, weighted, give the value at each point.
+    cells : (m, 6) array
+    """
+
+    nodes: Index
+    weights: Array
+    cells: Index
+
+    def interpolate(self, values: Array) -> Array:
+        """Values (n, ...) at the points from values at the sector's nodes."""
+        return np.asarray(np.einsum("pk,pk...->p...", self.weights, values[self.nodes]))
+
+
+def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Picture:
+    """Cells of a sector for drawing.
+
+    Parameters
+    ----------
+    mesh : SectorMesh
+    focus : ((2,) array, float), optional
+        A point, and the wished size of cells at it; the size may grow by half the distance from it. Elements
+        are split until they are that small. Without a focus the cells are those of the coarsest mesh in the
+        family, with the finer mesh's values at its nodes.
+    """
+    if focus is None:
+        coarsest = mesh
+        while coarsest.coarser is not None:
+            coarsest = coarsest.coarser
+        nodes = np.arange(len(coarsest.points))[:, None]
+        return Picture(nodes, np.ones(nodes.shape), coarsest.triangles)
+    parent = np.arange(len(mesh.triangles))
+    corners = np.broadcast_to(np.array([[0.0, 0], [1, 0], [0, 1]]), (len(parent), 3, 2))
+    done_parent, done_corners = [], []
+    for _ in range(SPLITS):
+        place = _places(mesh, parent, corners)
+        size = np.sqrt(np.abs(_area(place)))
+        away = np.min(np.linalg.norm(place - focus[0], axis=2), axis=1)
+        split = size > np.maximum(focus[1], 0.5 * away)
+        done_parent.append(parent[~split])
+        done_corners.append(corners[~split])
+        old = corners[split]
+        base, e1, e2 = old[:, 0], old[:, 1] - old[:, 0], old[:, 2] - old[:, 0]
+        frame = np.stack([e1, e2], axis=1)
+        corners = (base[:, None, None] + np.einsum("cki,mia->mcka", _CHILDREN, frame)).reshape(-1, 3, 2)
+        parent = np.repeat(parent[split], 4)
+    parent = np.concatenate([*done_parent, parent])
+    corners = np.concatenate([*done_corners, corners])
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    return _merged(mesh, parent, np.concatenate([corners, middles], axis=1))
+
+
+def _places(mesh: SectorMesh, parent: Index, corners: Array) -> Array:
+    """Positions of reference corners; straight sides are enough to judge sizes."""
+    x = mesh.points[mesh.triangles[parent, :3]]
+    weight = np.concatenate([1 - corners.sum(axis=2, keepdims=True), corners], axis=2)
+    return np.asarray(np.einsum("mkc,mca->mka", weight, x))
+
+
+def _area(place: Array) -> Array:
+    d, e = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+    return np.asarray(d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0])
+
+
+def _merged(mesh: SectorMesh, parent: Index, local: Array) -> Picture:
+    """Points at the same place of the same element, and points that are nodes, are shared."""
+    values = shape(local[..., 0], local[..., 1]).reshape(-1, 6)
+    nodes = np.repeat(mesh.triangles[parent], 6, axis=0)
+    at_node = np.max(values, axis=1) > 1 - 1e-9
+    here = nodes[np.arange(len(nodes)), np.argmax(values, axis=1)]
+    # a key per point: its node, else its element and its place on the finest grid that splitting can make
+    steps = 2 ** (SPLITS + 1)
+    grid = np.rint(local.reshape(-1, 2) * steps).astype(np.int64)
+    inside = (np.repeat(parent, 6) * (steps + 1) + grid[:, 0]) * (steps + 1) + grid[:, 1]
+    key = np.where(at_node, here, len(mesh.points) + inside)
+    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    return Picture(nodes[first], values[first], inverse.reshape(-1, 6).astype(np.int64))
