@@ -50,14 +50,14 @@ class LineContact:
             "load",
             self.load,
             low=0.0,
-            high=1e10,
+            high=1e15,
             remedy="a pair without load has no film to solve: leave it out, or give its small load in N/m",
         )
         faults += number_fault(
             "entrainment",
             self.entrainment,
             low=0.0,
-            high=1e4,
+            high=1e9,
             remedy="without entrainment no steady film exists: take the contact as dry; "
             "if both surfaces move backwards, give the magnitude and mirror x",
         )

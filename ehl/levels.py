@@ -179,7 +179,7 @@ def _film_parameter(contact: LineContact) -> float:
 
 
 def _cold_start(contact: LineContact, grid: Grid, H_c: float) -> tuple[Array, float]:
-    """Half an ellipse of pressure and a separation that leaves the expected film everywhere."""
+    """Half an ellipse of pressure and a separation that leaves a film H_c at the centre."""
     groups = Groups.on(contact, grid)
     P = np.sqrt(np.maximum(0.0, 1.0 - grid.nodes**2))
     P[0] = P[-1] = 0.0
@@ -209,7 +209,11 @@ def _transfer(old: Level, contact: LineContact, grid: Grid) -> tuple[Array, floa
 
 
 def cold(contact: LineContact, grid: Grid, H_c: float) -> Level:
-    """Solve from an ellipse of pressure: first-order wedge until nearly converged, then third order."""
+    """Solve from an ellipse of pressure: first-order wedge until nearly converged, then third order.
+
+    A start with a thicker film than expected (``H_c``) is slower and safer: Newton comes down on the film
+    from above without closing the gap.
+    """
     groups = Groups.on(contact, grid)
     P, H0 = _cold_start(contact, grid, H_c)
     first = newton(grid, groups, P, H0, upwind=True, loose=True)

@@ -137,11 +137,12 @@ def newton(
         H0 += t * dH0
         settled = t == 1.0 and not joins.any() and not leaves.any()
         converged = settled and max(largest, _GAP_SHARE * float(np.max(np.abs(dH) / H))) < step_done
-        H = film_gap(grid, groups, P, H0)
-        if H.min() <= 0.0:  # clipping negative pressures can close a gap that the step left open
-            converged = False
-            H0 += 0.01 * float(np.median(H)) - float(H.min())
-            H = film_gap(grid, groups, P, H0)
+        # clipping negative pressures presses on the bodies, which may close a gap that the step left open
+        before, H = H, film_gap(grid, groups, P, H0)
+        closed = float(np.max(_GAP_LEFT * before - H))
+        if closed > 0.0 and leaves.any():
+            H0 += closed
+            H = H + closed
     flux, _ = fluxes(grid, groups, P, H, faces)
     mean, flux_error = _flux_error(flux, np.flatnonzero(inside))
     return Iteration(

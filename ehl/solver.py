@@ -23,6 +23,7 @@ _FIRST_NODES = 65
 _MOST_NODES = 1025
 _REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the propping below 1e-3
 _PROP_LOSS = 20.0  # times the film's own error by the finite inlet
+_STARTS = (2.0, 8.0)  # films to start from, over the expected one
 _DRY = 1e-5  # h R/b^2 below which refusals are laid to a contact that is as good as dry
 _GRID_FACTOR = (
     0.4  # error of N nodes over its difference from (N+1)/2 nodes: 1/3 at second order, with a margin
@@ -109,19 +110,21 @@ class _Run:
         return level
 
     def cold(self, n: int) -> Level:
-        """Solve from nothing; where that fails, come down from lighter loads."""
+        """Solve from nothing; where that fails, from a thicker film, then by continuation in the load."""
         grid = self.plan.grid(n)
-        level = self.count(cold(self.contact, grid, self.plan.H_c))
-        if level.found.converged:
-            return level
-        self.attempts += 1
+        for thickness in _STARTS:
+            level = self.count(cold(self.contact, grid, thickness * self.plan.H_c))
+            if level.found.converged:
+                return level
+            self.attempts += 1
         return self.descend(level)
 
     def descend(self, failed: Level) -> Level:
         """Continue in the load, from a contact soft enough to be solved from cold, on the failed grid."""
         for factor in (0.5, 0.2, 0.05):
             load = factor * self.contact.load
-            level = self.count(cold(replace(self.contact, load=load), failed.grid, self.plan.H_c / factor))
+            easier = replace(self.contact, load=load)
+            level = self.count(cold(easier, failed.grid, _STARTS[-1] * self.plan.H_c / factor))
             step = 1.5
             while level.found.converged and load < self.contact.load and step > 1.01:
                 target = min(self.contact.load, step * load)
