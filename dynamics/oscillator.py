@@ -160,7 +160,7 @@ class GearOscillator:
         return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
 
     def force(self, tau: npt.ArrayLike) -> FloatArray:
-        r"""Return the force :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""
+        r"""Return :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""
         angle = self.frequency * np.asarray(tau, dtype=np.float64) + self.error_phase
         return np.asarray(self.mean_force + self.error_amplitude * self.frequency**2 * np.cos(angle))
 

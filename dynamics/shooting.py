@@ -176,12 +176,14 @@ def find_orbit(
     if good:
         step = newton_step(image.jacobian, finer.state - x)
         error = float(np.max(np.abs(step))) / scale
+        good = error < 1e-3 and scale < 1e9 * _natural_size(oscillator, guess)
+    if good:
         message = f"converged in {len(history) - 1} iterations"
         if n != periods:
             message += f"; the orbit has period {n}, a divisor of the {periods} asked for"
     else:
         error = math.nan
-        message = image.message or _remedy(residual, image, scale)
+        message = image.message or _remedy(residual, image, scale, oscillator)
     cost = Cost(time.perf_counter() - began, 2, len(history) - 1, used)
     return make_orbit(oscillator, x, n, image, residual, error, cost, good, message, tuple(history))
 
@@ -262,8 +264,19 @@ def _size(image: MapResult, x: FloatArray) -> float:
     return float(np.max(np.abs(image.state - x)))
 
 
-def _remedy(residual: float, image: MapResult, scale: float) -> str:
+def _natural_size(oscillator: GearOscillator, guess: npt.ArrayLike) -> float:
+    """Size of the displacements that go in."""
+    o = oscillator
+    return max(
+        float(np.max(np.abs(guess))), o.half_backlash, abs(o.mean_force), abs(o.error_amplitude), 1e-300
+    )
+
+
+def _remedy(residual: float, image: MapResult, scale: float, oscillator: GearOscillator) -> str:
     """Why Newton's method stopped, and what to try."""
+    resonant = abs(1.0 - np.trace(image.jacobian) + exact_determinant(oscillator, 1)) < 1e-6
+    if resonant and scale > 1e6:
+        return "resonance: a multiplier is one and the motion grows without end; change frequency or damping"
     stretch = float(np.max(np.abs(image.jacobian)))
     if stretch * EPS * 64.0 > 1e-6:
         return (

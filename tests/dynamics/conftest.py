@@ -1,0 +1,83 @@
+"""An independent integrator to hold the exact flow against, and the oscillators of the tests."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from dynamics import FourierStiffness, GearOscillator
+
+
+def step_by_step(osc: GearOscillator, state, duration: float):
+    """Integrate in the stretches between crossings, which scipy's event location finds.
+
+    Every stretch is integrated with the branch of f that holds in it, so that no step straddles a corner of
+    f.
+    """
+    d = osc.half_backlash
+    x, v = float(state[0]), float(state[1])
+    region = 1 if x > d else -1 if x < -d else 0
+    now, y = 0.0, np.array([x, v, 1.0, 0.0, 0.0, 1.0])
+    counts = [0, 0]
+    for _ in range(10_000):
+        spring = 0.0 if region == 0 and d > 0.0 else 1.0
+
+        def rhs(t, y, spring=spring, region=region):
+            k = spring * osc.stiffness(osc.frequency * t)
+            c = 2.0 * osc.damping_ratio
+            acceleration = osc.force(t) - c * y[1] - k * (y[0] - region * d)
+            return [y[1], acceleration, y[4], y[5], -k * y[2] - c * y[4], -k * y[3] - c * y[5]]
+
+        def upper(t, y):
+            return y[0] - d
+
+        def lower(t, y):
+            return y[0] + d
+
+        upper.terminal = lower.terminal = True
+        # leaving only: the stretch begins on a boundary
+        upper.direction = -1 if region == 1 else 1
+        lower.direction = 1 if region == -1 else -1
+        events = [upper] if region == 1 else [lower] if region == -1 else [upper, lower]
+        if d == 0.0:
+            events = None  # f(X) = X: nothing to cross
+        done = solve_ivp(rhs, (now, duration), y, method="DOP853", rtol=3e-14, atol=1e-15, events=events)
+        y = done.y[:, -1].copy()
+        now = done.t[-1]
+        if done.status != 1:
+            break
+        at_upper = region == 1 or (region == 0 and len(done.t_events[0]) > 0)
+        counts[0] += region == 1
+        region = 0 if region else (1 if at_upper else -1)
+        counts[1] += region == -1
+        y[0] = d if at_upper else -d
+    jacobian = np.array([[y[2], y[3]], [y[4], y[5]]])
+    return y[:2], jacobian, tuple(counts)
+
+
+@pytest.fixture(scope="session")
+def integrate():
+    """`(oscillator, state, duration) -> (state, jacobian, counts)` by scipy, independent of the exact flow."""
+
+    def run(osc, state, duration):
+        return step_by_step(osc, state, duration)
+
+    return run
+
+
+@pytest.fixture
+def article():
+    """The oscillator of the lubricated frequency scan: `article(frequency=0.6, ...)`."""
+
+    def make(kappa=0.18, phi=0.0, **changes):
+        values = {
+            "damping_ratio": 0.05,
+            "mean_force": 0.1,
+            "error_amplitude": 0.2,
+            "frequency": 0.6,
+            "half_backlash": 0.2,
+        }
+        return GearOscillator(stiffness=FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
+
+    return make

@@ -1,0 +1,163 @@
+"""Shooting, sweeps and the grazing of the contact orbit."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+from dynamics import FourierStiffness, GearOscillator, contact_grazing, contact_orbit, find_orbit,
+period_map, sweep from dynamics.shooting import floquet_multipliers
+from dynamics.sweeps import repeat_after
+
+
+@pytest.mark.parametrize(
+    ("frequency", "guess", "label"),
+    [(0.6, (0.35, 0.0), "1-0-0"), (0.6, (0.5, 0.2), "U1-1-0"), (0.6, (0.53, 0.25), "1-1-1"), (2.0, (0.4,
+    0.0), "1-1-0")],
+)
+def test_orbits_close_and_keep_the_determinant(article, frequency, guess, label):
+    osc = article(frequency=frequency)
+    orbit = find_orbit(osc, guess, transient=0 if label.startswith("U") else 300)
+    assert orbit.converged
+    assert orbit.label == label
+    assert orbit.residual < 1e-14
+    assert orbit.error < 1e-12
+    assert np.max(np.abs(period_map(osc, orbit.state).state - orbit.state)) < 1e-14
+    assert np.linalg.det(orbit.jacobian) == pytest.approx(np.exp(-4 * np.pi * 0.05 / frequency), rel=1e-12)
+    assert np.prod(orbit.multipliers).real == pytest.approx(orbit.determinant, rel=1e-14)
+    np.testing.assert_allclose(
+        np.sort_complex(orbit.multipliers), np.sort_complex(np.linalg.eigvals(orbit.jacobian)), rtol=1e-10
+    )
+
+
+def test_newton_converges_quadratically(article):
+    history = find_orbit(article(), (0.5, 0.2)).history
+    a, b, c = [r for r in history if r > 1e-13][-3:]
+    assert a < 1e-2
+    assert b < a**1.5
+    assert c < b**1.5
+
+
+def test_least_period_is_reported(article):
+    orbit = find_orbit(article(), (0.35, 0.0), periods=6)
+    assert orbit.periods == 1
+    assert orbit.label == "1-0-0"
+    assert "divisor" in orbit.message
+
+
+def test_longer_orbit(article):
+    orbit = find_orbit(article(frequency=1.22), (0.4, 0.0), periods=4, transient=2000)
+    assert orbit.converged
+    assert orbit.label == "4-4-2"
+    assert np.abs(orbit.multipliers[0]) < 1
+
+
+def test_no_orbit_is_said():
+    osc = GearOscillator(FourierStiffness(1.0), 0.0, 0.1, 0.2, 1.0, half_backlash=0.0)  # resonance without
+    damping orbit = find_orbit(osc, (0.3, 0.1))
+    assert not orbit.converged
+    assert np.all(np.isnan(orbit.state))
+    assert orbit.label == ""
+    assert orbit.message
+
+
+def test_multipliers_far_apart_keep_their_digits():
+    large, small = floquet_multipliers(1e9 + 1e-9, 1.0)
+    assert large == pytest.approx(1e9, rel=1e-15)
+    assert small == pytest.approx(1e-9, rel=1e-15)
+    pair = floquet_multipliers(0.5, 1.0)
+    assert abs(pair[0]) == pytest.approx(1.0, rel=1e-15)
+
+
+def test_contact_orbit_is_the_orbit_while_it_clears_the_limit(article):
+    osc = article(frequency=0.5)
+    linear, orbit = contact_orbit(osc), find_orbit(osc, (0.35, 0.0))
+    np.testing.assert_allclose(linear.state, orbit.state, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(linear.multipliers, orbit.multipliers, rtol=1e-13)
+    assert linear.clearance > 0
+
+
+def test_grazing_does_not_depend_on_the_backlash_and_mirrors(article):
+    one = contact_grazing(article(), bounds=(0.4, 1.5)).points[0]
+    for d in (0.0, 1e-13, 0.7):
+        assert contact_grazing(article(half_backlash=d), bounds=(0.4, 1.5)).points[0].parameter ==
+        one.parameter
+    mirrored = contact_grazing(article().mirrored(), bounds=(0.4, 1.5), side=-1).points[0]
+    assert mirrored.parameter == one.parameter
+    assert mirrored.boundary == -1
+
+
+def test_grazing_in_other_parameters_is_the_same_point(article):
+    w = contact_grazing(article(), bounds=(0.4, 1.5)).points[0].parameter
+    osc = article(frequency=w)
+    for parameter, value, bounds in (
+        ("error_amplitude", 0.2, (0.1, 0.3)),
+        ("mean_force", 0.1, (0.05, 0.2)),
+        ("stiffness.amplitudes[0]", 0.18, (0.1, 0.3)),
+        ("damping_ratio", 0.05, (0.01, 0.09)),
+    ):
+        found = contact_grazing(osc, parameter, bounds).points
+        assert min(abs(p.parameter / value - 1) for p in found) < 1e-12, parameter
+
+
+def test_touch_is_a_touch(article):
+    point = contact_grazing(article(), bounds=(0.4, 1.5)).points[0]
+    osc = article(frequency=point.parameter)
+    assert point.acceleration == pytest.approx(float(osc.force(point.tau)), rel=1e-9)  # K f = 0 and V = 0
+    there assert point.stiffness == pytest.approx(float(osc.stiffness(osc.frequency * point.tau)))
+
+
+@pytest.mark.parametrize("direction", ["up", "down"])
+def test_sweep_finds_both_sides_of_the_hysteresis(article, direction):
+    values = np.arange(0.552, 0.668, 0.004)
+    result = sweep(article(), "frequency", values, direction, keep=32)
+    assert np.asarray(result).shape == (len(values), 32, 2)
+    one_zero_zero = np.array([label == "1-0-0" for label in result.labels])
+    # up: contact until the saddle node at 0.65558, past the grazing at 0.63353 as 1-1-0; down: impacts until
+    # 0.56940
+    edge = 0.63353 if direction == "up" else 0.56940
+    assert np.all(one_zero_zero == (values < edge))
+    assert result.converged
+    assert result.error < 1e-12
+    labelled_by_hand = find_orbit(article(frequency=0.6), (0.35, 0.0) if direction == "up" else (0.53, 0.25))
+    i = int(np.argmin(np.abs(values - 0.6)))
+    np.testing.assert_allclose(result.states[i, -1], labelled_by_hand.state, rtol=0, atol=1e-6)
+
+
+def test_sweep_result_keeps_the_order_given_and_pickles(article):
+    values = np.array([0.62, 0.5, 0.56])
+    result = sweep(article(), values=values, direction="down", keep=32)
+    again = pickle.loads(pickle.dumps(result))
+    assert np.array_equal(again.states, result.states)
+    for value, states in zip(values, result.states, strict=True):
+        assert np.allclose(period_map(article(frequency=value), states[-2]).state, states[-1], rtol=0,
+        atol=1e-13)
+
+
+def test_sweep_reports_progress(article):
+    seen: list[tuple[int, int]] = []
+    sweep(article(), values=[0.5, 0.51, 0.52], keep=32, progress=lambda done, all_: seen.append((done, all_)))
+    assert seen == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_sweep_of_chaos_is_aperiodic(article):
+    result = sweep(article(), values=[1.03, 1.05], keep=200)
+    assert set(result.labels) == {"aperiodic"}
+    assert set(result.periods) == {0}
+
+
+def test_sweep_that_diverges_says_so():
+    osc = GearOscillator(FourierStiffness(1.0, (0.9,), (0.0,)), 0.0, 0.1, 0.2, 2.0, half_backlash=0.1)
+    result = sweep(osc, values=[2.0, 9.0], keep=32, transient=4000)
+    assert not result.converged
+    assert result.labels[0] == "diverged"
+    assert np.all(np.isnan(result.states[0]))
+    assert np.all(np.isfinite(result.states[1]))
+
+
+def test_repeat_after():
+    wave = np.cos(2 * np.pi * np.arange(30) / 3)[:, None] * [1.0, 2.0]
+    assert repeat_after(wave, 8) == 3
+    assert repeat_after(np.cos(np.arange(30.0))[:, None] * [1.0, 2.0], 8) == 0

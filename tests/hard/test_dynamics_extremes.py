@@ -1,0 +1,161 @@
+"""The exact flow where others lose their footing: grazes, no backlash, negative stiffness, extreme frequencies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dynamics import FourierStiffness, GearOscillator, contact_orbit, find_orbit, period_map, trajectory
+from dynamics.flow import tables
+
+
+def oscillator(kappa=0.18, phi=0.0, **changes) -> GearOscillator:
+    values = {
+        "damping_ratio": 0.05,
+        "mean_force": 0.1,
+        "error_amplitude": 0.2,
+        "frequency": 0.6,
+        "half_backlash": 0.2,
+    }
+    return GearOscillator(FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
+
+
+def plain_taylor(osc: GearOscillator, state, periods: int = 1, steps: int = 4000, order: int = 20):
+    """Twin without tables: a Taylor step of the equation as it stands, in plain numpy, bisection for the crossings."""
+    d, w = osc.half_backlash, osc.frequency
+    h = osc.period / steps
+    x, v = map(float, state)
+
+    def series(t, y, v, spring):
+        k = np.zeros(order + 1)
+        g = np.zeros(order + 1)
+        k[0], g[0] = osc.stiffness.mean, osc.mean_force
+        factor = 1.0
+        for n in range(order + 1):
+            for j, (a, p) in enumerate(zip(osc.stiffness.amplitudes, osc.stiffness.phases, strict=True), 1):
+                k[n] += a * j**n * factor * np.cos(j * w * t + p + n * np.pi / 2)
+            g[n] += osc.error_amplitude * w**2 * factor * np.cos(w * t + osc.error_phase + n * np.pi / 2)
+            factor *= w / (n + 1)
+        c = np.zeros(order + 1)
+        c[0], c[1] = y, v
+        for n in range(order - 1):
+            total = g[n] - 2 * osc.damping_ratio * (n + 1) * c[n + 1] - spring * np.dot(k[: n + 1], c[n::-1])
+            c[n + 2] = total / ((n + 1) * (n + 2))
+        return c[::-1]
+
+    for i in range(periods * steps):
+        t, left = (i % steps) * h, h
+        for _ in range(20):
+            region = 1 if x > d or (x == d and v > 0) else -1 if x < -d or (x == -d and v < 0) else 0
+            c = series(t, x - region * d, v, float(region != 0 or d == 0))
+            x_new = np.polyval(c, left) + region * d
+            inside = (x_new - d) * region >= 0 if region == 1 else (x_new + d) <= 0 if region else abs(x_new)
+            <= d if inside:
+                x, v = x_new, np.polyval(np.polyder(c), left)
+                break
+            low, high = 0.0, left
+            target = (d if x_new > d else -d) if region == 0 else region * d
+            for _ in range(80):
+                middle = 0.5 * (low + high)
+                there = np.polyval(c, middle) + region * d
+                out = (there - target) * (1 if x_new > target else -1) > 0
+                low, high = (low, middle) if out else (middle, high)
+            x, v = target, float(np.polyval(np.polyder(c), high))
+            t, left = t + high, left - high
+    return np.array([x, v])
+
+
+@pytest.mark.parametrize("depth", [10.0**-n for n in range(2, 15)])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_grazing_depth(depth, sign):
+    """An orbit that passes the limit by 1e-2 to 1e-14: the crossing is seen, and not seen on the other side."""
+    # a change of the mean force moves the contact orbit rigidly if kappa = 0
+    osc = oscillator(kappa=0.0, frequency=0.5)
+    clear = contact_orbit(osc).clearance
+    osc = osc.with_parameter("mean_force", osc.mean_force - clear - sign * depth)
+    orbit = contact_orbit(osc)
+    assert orbit.clearance == pytest.approx(-sign * depth, rel=0, abs=2e-16)
+    image = period_map(osc, orbit.state)
+    assert image.counts[0, 0] == (sign > 0)
+    law = 4 * np.sqrt(2) / 3 * orbit.acceleration**-0.5 * depth**1.5
+    off = np.max(np.abs(image.state - orbit.state))
+    assert off < (3 * law if sign > 0 else 0.0) + 1e-15
+    finer = period_map(tables(osc, refinement=2), orbit.state)
+    np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=2e-15)
+    change = 2 * np.sqrt(2) * orbit.acceleration**-0.5 * np.sqrt(depth)
+    rounding = np.sqrt(1e-16 / depth) * change  # the depth itself is known to 1e-16
+    np.testing.assert_allclose(image.jacobian, finer.jacobian, rtol=0, atol=4 * rounding + 1e-13)
+
+
+def test_no_backlash_is_the_limit_of_little():
+    none = period_map(oscillator(half_backlash=0.0), (0.05, 0.2), periods=3)
+    little = period_map(oscillator(half_backlash=1e-13), (0.05, 0.2), periods=3)
+    np.testing.assert_allclose(little.states, none.states, rtol=0, atol=5e-12)
+    np.testing.assert_allclose(little.jacobian, none.jacobian, rtol=0, atol=5e-11)
+    assert np.array_equal(little.counts, none.counts)
+    assert none.counts.sum() > 0
+    tiny = period_map(oscillator(half_backlash=1e-300), (0.05, 0.2), periods=3)
+    np.testing.assert_allclose(tiny.states, none.states, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("kappa", [1.5, 3.0, 5.0])
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 2.0])
+def test_negative_stiffness(kappa, zeta):
+    osc = oscillator(kappa=kappa, damping_ratio=zeta, frequency=0.9)
+    image = period_map(osc, (0.4, 0.1))
+    size = max(1.0, np.max(np.abs(image.jacobian)))
+    np.testing.assert_allclose(image.state, plain_taylor(osc, (0.4, 0.1), steps=1000), rtol=0, atol=1e-12 *
+    size) j = image.jacobian
+    scale = abs(j[0, 0] * j[1, 1]) + abs(j[0, 1] * j[1, 0])
+    assert abs(np.linalg.det(j) - np.exp(-2 * zeta * osc.period)) <= 1e-13 * max(scale, 1.0)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 2.0])
+@pytest.mark.parametrize("frequency", [0.3, 1.3])
+def test_damping(zeta, frequency):
+    osc = oscillator(damping_ratio=zeta, frequency=frequency)
+    image = period_map(osc, (0.4, -0.3))
+    size = max(1.0, np.max(np.abs(image.jacobian)))
+    np.testing.assert_allclose(image.state, plain_taylor(osc, (0.4, -0.3)), rtol=0, atol=1e-12 * size)
+    if zeta:
+        orbit = find_orbit(osc, (0.3, 0.0), transient=50)
+        assert orbit.stable
+        assert orbit.error < 1e-13
+
+
+def test_fast_excitation():
+    osc = oscillator(frequency=50.0, error_amplitude=0.002)
+    image = period_map(osc, (0.3, 0.05), periods=4)
+    np.testing.assert_allclose(
+        image.state, plain_taylor(osc, (0.3, 0.05), periods=4, steps=400), rtol=0, atol=1e-13
+    )
+    assert find_orbit(osc, (0.3, 0.0), transient=5000).label == "1-0-0"
+
+
+def test_slow_excitation_with_many_crossings():
+    """A light load that is reversed by nothing but vibration: a period of 314 with a hundred crossings."""
+    osc = oscillator(frequency=0.02, damping_ratio=0.0005, mean_force=0.01, half_backlash=0.05)
+    start = (0.5, 0.3)
+    motion = trajectory(osc, start, periods=1, points_per_period=100)
+    assert len(motion.events) > 100
+    image = period_map(osc, start)
+    stretch = np.max(np.abs(image.jacobian))
+    np.testing.assert_allclose(image.state, plain_taylor(osc, start, steps=3000), rtol=0, atol=1e-12 *
+    stretch) assert period_map(osc, start).counts.sum() == np.sum(
+        ((motion.events[:, 1] > 0) & (motion.events[:, 3] == 0)) | (motion.events[:, 3] == -1)
+    )
+
+
+def test_hopeless_shot_says_so():
+    """Parametrically unstable over so long a period that the map stretches beyond all digits."""
+    osc = oscillator(kappa=1.5, frequency=0.02, half_backlash=0.0, damping_ratio=0.0)
+    orbit = find_orbit(osc, (0.3, 0.0))
+    assert not orbit.converged
+    assert np.all(np.isnan(orbit.state))
+    assert "stretch" in orbit.message or "1e150" in orbit.message
+
+
+def test_thousand_periods_of_rest():
+    """A state at rest inside the play, without any force, stays to the last bit."""
+    osc = oscillator(mean_force=0.0, error_amplitude=0.0)
+    assert period_map(osc, (0.1, 0.0), periods=1, skip=999).state.tolist() == [0.1, 0.0]
