@@ -13,6 +13,8 @@ from gears.gear import Gear, TipRelief
 from gears.hertz import half_width, peak_pressure
 from gears.load_sharing import LoadShare, independent_pairs, share_load
 from gears.material import STEEL, Material, reduced_modulus
+from gears.meshing import MeshingCheck, check_meshing
+from gears.outline import outline
 from gears.pair import GearPair
 from gears.path import PathOfContact, PathPoints
 from gears.placement import Placement
@@ -32,15 +34,18 @@ __all__ = [
     "LoadShare",
     "LoadSharingError",
     "Material",
+    "MeshingCheck",
     "ModelRangeWarning",
     "PathOfContact",
     "PathPoints",
     "Placement",
     "TipRelief",
     "ToothProfile",
+    "check_meshing",
     "closed_form",
     "half_width",
     "independent_pairs",
+    "outline",
     "peak_pressure",
     "reduced_modulus",
     "share_load",

@@ -145,13 +145,11 @@ def _tooth_findings(name: str, gear: Gear, tooth: ToothProfile) -> Findings:
 
 def _pointed(name: str, gear: Gear, tooth: ToothProfile) -> Fault:
     """Fault of a pointed tooth, with the highest tip that the flanks allow."""
-    if tooth.base_half_angle <= 0.0:
-        allowed = "less than the tooth's thickness"
-        value = f"{gear.thickness_allowance:g}"
-        return Fault(
-            f"{name}.thickness_allowance", value, allowed, "it takes the whole tooth: thin the tooth less"
-        )
-    point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(tooth.base_half_angle))
+    spare = gear.thickness_allowance + 2.0 * tooth.reference_radius * tooth.tip_half_angle
+    if gear.thickness_allowance > 0.0 and spare > 0.0:
+        value, allowed = f"{gear.thickness_allowance:g}", f"less than {spare:.4g} m"
+        return Fault(f"{name}.thickness_allowance", value, allowed, "the tip is pointed: thin the tooth less")
+    point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(max(tooth.base_half_angle, 1e-9)))
     excess = (tooth.tip_radius - point) / tooth.module
     highest = gear.tip_alteration - excess
     value = f"{gear.tip_alteration:g}"
@@ -159,7 +157,7 @@ def _pointed(name: str, gear: Gear, tooth: ToothProfile) -> Fault:
     if gear.tip_chamfer > 0.0 and excess < 0.0:
         value, where = f"{gear.tip_chamfer:g}", f"{name}.tip_chamfer"
         return Fault(where, value, "a chamfer that leaves a top land", "the tip is pointed: chamfer less")
-    remedy = "the tip is pointed: reduce profile_shift or tip_alteration (or the thickness allowance)"
+    remedy = "the tip is pointed: reduce profile_shift or tip_alteration"
     return Fault(f"{name}.tip_alteration", value, allowed, remedy)
 
 
@@ -232,13 +230,12 @@ def _interference(pair: GearPair, name: str, other: str, tooth: ToothProfile, ma
     """Fault of a mate whose flank end would touch below the form circle of `tooth`."""
     longest = pair.line_of_action - tooth.flank_rho[0]
     where, value = f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}"
+    remedy = f"the tip of the {other} would work on the fillet of the {name}, below its form circle: "
     if longest <= 0.0:
-        allowed = "a smaller gear"
-    else:
-        largest = math.hypot(mate.base_radius, longest)
-        allowed = f"at most {largest:.6g} m where the flank ends"
-    remedy = (
-        f"the tip of the {other} would work on the fillet of the {name}, below its form circle: raise "
-        f"{name}.profile_shift, lower {other}.tip_alteration or chamfer the {other}"
-    )
-    return Fault(where, value, allowed, remedy)
+        return Fault(where, value, "a smaller gear", remedy + f"raise {name}.profile_shift")
+    largest = math.hypot(mate.base_radius, longest)
+    lower = (mate.flank_end_radius - largest) / mate.module
+    remedy += f"lower {other}.tip_alteration by {lower:.4g}, chamfer the {other}"
+    if tooth.undercut:
+        remedy += f" or raise {name}.profile_shift, which lessens the undercut"
+    return Fault(where, value, f"at most {largest:.6g} m where the flank ends", remedy)
