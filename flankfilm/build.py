@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from flankfilm.faults import Fault, InputError
 from flankfilm.scene.schema import ElasticSection, GearSection, PairSection, RackSection, Scene
@@ -11,16 +11,10 @@ from flankfilm.scene.schema import ElasticSection, GearSection, PairSection, Rac
 if TYPE_CHECKING:
     from ehl import Lubricant
     from gears import BasicRack, Gear, GearPair, Material
+    from gears import Fault as GearFault
 
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.4, 0.39)}
 """Profiles of ISO 53:1998, annex A: addendum, dedendum and tip radius, times the module."""
-
-
-class _Fault(Protocol):
-    where: str
-    value: str
-    allowed: str
-    remedy: str
 
 
 def gear_pair(scene: Scene) -> GearPair:
@@ -79,7 +73,9 @@ def pinion_speed(scene: Scene) -> float:
 def pinion_torque(scene: Scene) -> float:
     """Pinion torque [N m]."""
     if scene.operating is None:
-        raise InputError([Fault("operating.pinion_torque_Nm", "", "is required", "Add the section [operating]")])
+        raise InputError(
+            [Fault("operating.pinion_torque_Nm", "", "is required", "Add the section [operating]")]
+        )
     return scene.operating.pinion_torque_Nm
 
 
@@ -145,13 +141,19 @@ _KEYS = {
 """The scene's keys for the attributes that a geometry fault names."""
 
 
-def _scene_fault(fault: _Fault) -> Fault:
-    owner, _, attribute = fault.where.partition(".") if fault.where.startswith(("pinion", "wheel", "rack")) else (
-        "", "", fault.where,
+def _scene_fault(fault: GearFault) -> Fault:
+    owner, _, attribute = (
+        fault.where.partition(".")
+        if fault.where.startswith(("pinion", "wheel", "rack"))
+        else (
+            "",
+            "",
+            fault.where,
+        )
     )
     key = _KEYS.get(attribute, attribute)
     where = ".".join(part for part in ("pair", owner, key) if part)
-    return Fault(where, fault.value, fault.allowed, fault.remedy)
+    return Fault(where, fault.value, fault.allowed, fault.remedy[:1].upper() + fault.remedy[1:])
 
 
 def check_scene(scene: Scene) -> list[str]:

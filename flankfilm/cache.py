@@ -95,11 +95,15 @@ class Cache:
         except FileNotFoundError:
             return None
         except OSError as fault:
-            warnings.warn(f"result cache: {path}: {fault.strerror}; computed again", CacheWarning, stacklevel=2)
+            warnings.warn(
+                f"result cache: {path}: {fault.strerror}; computed again", CacheWarning, stacklevel=2
+            )
             return None
         if hashlib.sha256(payload).hexdigest().encode() != head:
             path.unlink(missing_ok=True)
-            warnings.warn(f"result cache: {path.name[:12]} was damaged; computed again", CacheWarning, stacklevel=2)
+            warnings.warn(
+                f"result cache: {path.name[:12]} was damaged; computed again", CacheWarning, stacklevel=2
+            )
             return None
         return pickle.loads(payload)
 

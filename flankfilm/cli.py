@@ -17,7 +17,7 @@ INTERRUPTED = 130
 
 app = App(
     name="flankfilm",
-    help="Stiffness, oil film and motion of spur-gear pairs, each number with its error estimate and its cost.",
+    help="Stiffness, oil film and motion of spur-gear pairs; each number with its error and its cost.",
     version_flags=["--version"],
 )
 
@@ -36,11 +36,15 @@ def run(
     scene: Path,
     /,
     *,
-    out: Annotated[Path | None, Parameter(help="Folder for the results; SCENE-results beside you if left out.")] = None,
+    out: Annotated[
+        Path | None, Parameter(help="Folder for the results; SCENE-results beside you if left out.")
+    ] = None,
     tolerance: Annotated[
         str | None, Parameter(help="Relative, such as 0.5% or 0.005; overrules the scene's tolerance.")
     ] = None,
-    cache: Annotated[bool, Parameter(help="Use results of earlier runs whose inputs and code are the same.")] = True,
+    cache: Annotated[
+        bool, Parameter(help="Use results of earlier runs whose inputs and code are the same.")
+    ] = True,
 ) -> int:
     """Compute what SCENE wants and write the results and a report.
 
@@ -97,12 +101,16 @@ def new(scene: Path, /) -> int:
     from flankfilm.scene import template
 
     if scene.suffix != ".toml":
-        raise InputError([Fault(str(scene), "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")])
+        raise InputError(
+            [Fault(str(scene), "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")]
+        )
     try:
         with scene.open("x", encoding="utf-8") as file:
             file.write(template())
     except FileExistsError as fault:
-        raise InputError([Fault(str(scene), "", "exists already and is kept", "Name another file")]) from fault
+        raise InputError(
+            [Fault(str(scene), "", "exists already and is kept", "Name another file")]
+        ) from fault
     print(f"{scene} is written. Next: flankfilm run {scene}")
     return 0
 
@@ -122,7 +130,9 @@ def parse_tolerance(text: str) -> float:
         value = float(number) * (0.01 if percent else 1.0)
     except ValueError:
         value = float("nan")
-    low, high = (getattr(m, n) for m, n in zip(Scene.model_fields["tolerance"].metadata, ("ge", "le"), strict=True))
+    low, high = (
+        getattr(m, n) for m, n in zip(Scene.model_fields["tolerance"].metadata, ("ge", "le"), strict=True)
+    )
     if rest or not low <= value <= high:
         allowed = f"must be from {low:g} to {high:g}, or the same in per cent"
         raise InputError([Fault("--tolerance", text, allowed, "Such as --tolerance 0.5%")])
@@ -150,8 +160,10 @@ def guarded(command: Callable[[], int]) -> int:
         print(f"flankfilm: {where}{error.strerror or error}", file=sys.stderr)
         return USER_FAULT
     except KeyboardInterrupt:
-        print("flankfilm: interrupted; files written so far are whole, and the next run takes up from the cache",
-              file=sys.stderr)
+        print(
+            "flankfilm: interrupted; files written so far are whole, and the next run takes up from the cache",
+            file=sys.stderr,
+        )
         return INTERRUPTED
 
 

@@ -93,6 +93,8 @@ def provenance(scene_json: str) -> dict[str, str]:
     libraries = ("flankfilm", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
     return {
         "scene_json": scene_json,
-        "versions_json": json.dumps({"python": platform.python_version(), **{n: version(n) for n in libraries}}),
+        "versions_json": json.dumps(
+            {"python": platform.python_version(), **{n: version(n) for n in libraries}}
+        ),
         "code_sha256": code_digest(("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")),
     }

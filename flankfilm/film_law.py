@@ -40,6 +40,10 @@ class FilmLaw:
     prop: Array
     exponent: Array
 
+    def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
+        """Prop [m] and its slope [m/N]; the law is tied to its places already."""
+        return self.approach(forces), self.slope(forces)
+
     def approach(self, force: Array) -> Array:
         """Prop of each pair at the given forces [N], shape (positions, pairs) [m].
 

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from fem import MeshCycle
 
 Array = NDArray[np.float64]
 
@@ -24,6 +28,8 @@ class MeshStiffness:
         Curvature radius of the pinion's flank at each pair's contact [m]; NaN without contact.
     forces : ndarray, shape (n, pairs)
         Normal force of each pair [N].
+    load_share : ndarray, shape (n, pairs)
+        Each pair's share of the torque, rows summing to one.
     secant, tangent : ndarray, shape (n,)
         Force over deflection, and its slope [N/m].
     transmission_error : ndarray, shape (n,)
@@ -32,23 +38,21 @@ class MeshStiffness:
         Estimated relative numerical error of the mean; None where the model's error is unknown.
     seconds : float
         Cost [s].
+    contact : MeshCycle or None
+        The loaded contact by finite elements that it was taken from, for fields.
     """
 
     label: str
     phase: Array
     rho1: Array
     forces: Array
+    load_share: Array
     secant: Array
     tangent: Array
     transmission_error: Array
     error: float | None
     seconds: float
-
-    @property
-    def load_share(self) -> Array:
-        """Each pair's part of the force, rows summing to one."""
-        total = self.forces.sum(axis=1, keepdims=True)
-        return np.divide(self.forces, total, out=np.zeros_like(self.forces), where=total > 0)
+    contact: MeshCycle | None = None
 
     def stiffness(self, kind: str) -> Array:
         """Curve named `kind`: ``"secant"`` or ``"tangent"`` [N/m]."""

@@ -24,11 +24,17 @@ def cycle_quantities(cycle: MeshStiffness, prefix: str) -> dict[str, Quantity]:
     along, each = (f"{prefix}_position",), (f"{prefix}_position", f"{prefix}_pair")
     said = "with the oil film" if prefix == "lubricated" else "without film"
     return {
-        f"{prefix}_phase": Quantity(along, cycle.phase, "1", "travel after a pair is at A, over the base pitch"),
+        f"{prefix}_phase": Quantity(
+            along, cycle.phase, "1", "travel after a pair is at A, over the base pitch"
+        ),
         f"{prefix}_secant_stiffness": Quantity(along, cycle.secant, "N/m", f"force over deflection, {said}"),
-        f"{prefix}_tangent_stiffness": Quantity(along, cycle.tangent, "N/m", f"slope of force over deflection, {said}"),
+        f"{prefix}_tangent_stiffness": Quantity(
+            along, cycle.tangent, "N/m", f"slope of force over deflection, {said}"
+        ),
         f"{prefix}_transmission_error": Quantity(along, cycle.transmission_error, "m", f"deflection, {said}"),
-        f"{prefix}_rho1": Quantity(each, cycle.rho1, "m", "curvature radius of the pinion's flank at the contact"),
+        f"{prefix}_rho1": Quantity(
+            each, cycle.rho1, "m", "curvature radius of the pinion's flank at the contact"
+        ),
         f"{prefix}_force": Quantity(each, cycle.forces, "N", f"normal force of each pair, {said}"),
         f"{prefix}_load_share": Quantity(each, cycle.load_share, "1", f"share of the force, {said}"),
     }
@@ -40,14 +46,19 @@ def single_pair_quantities(single: SinglePairs) -> dict[str, Quantity]:
         f"single_pair_{name}": Quantity(("path",), k, "N/m", f"stiffness of one pair: {label}")
         for (label, k), name in zip(single.curves.items(), _identifiers(single.curves), strict=True)
     }
-    return {"path_rho1": Quantity(("path",), single.rho1, "m", "curvature radius of the pinion's flank"), **curves}
+    return {
+        "path_rho1": Quantity(("path",), single.rho1, "m", "curvature radius of the pinion's flank"),
+        **curves,
+    }
 
 
 def film_quantities(film: FilmStage) -> dict[str, Quantity]:
     """Variables of the film along the path."""
     along = ("film_point",)
     stiffness = {
-        f"film_stiffness_{name.replace('-', '_')}": Quantity(along, k, "N/m", f"film stiffness by {name}, whole face")
+        f"film_stiffness_{name.replace('-', '_')}": Quantity(
+            along, k, "N/m", f"film stiffness by {name}, whole face"
+        )
         for name, k in film.stiffness.items()
     }
     return {
@@ -63,11 +74,16 @@ def film_quantities(film: FilmStage) -> dict[str, Quantity]:
 def sweep_quantities(sweep: SweepStage) -> dict[str, Quantity]:
     """Variables of the sweeps; labels are text."""
     found = {"sweep_frequency": Quantity(("sweep",), sweep.frequency, "1", "mesh over natural frequency")}
+    found["contact_grazing_frequency"] = Quantity(
+        ("grazing",), sweep.grazings, "1", "where the orbit that never leaves contact touches the backlash"
+    )
     if sweep.speed_rpm is not None:
         found["sweep_speed_rpm"] = Quantity(("sweep",), sweep.speed_rpm, "rpm", "pinion speed")
     for direction, states in sweep.states.items():
         dims = ("sweep", "kept", "state")
-        found[f"sweep_{direction}"] = Quantity(dims, states, "1", f"displacement and velocity at tau = 0, {direction}")
+        found[f"sweep_{direction}"] = Quantity(
+            dims, states, "1", f"displacement and velocity at tau = 0, {direction}"
+        )
         labels = np.asarray(sweep.labels[direction], dtype="U24")
         found[f"sweep_{direction}_label"] = Quantity(("sweep",), labels, "1", f"motion n-p-q, {direction}")
     return found
@@ -80,7 +96,9 @@ def fourier_quantities(fourier: FourierStage) -> dict[str, Quantity]:
     unit = "1" if fourier.kind == "given" and series.mean == 1.0 else "N/m"
     return {
         "fourier_mean": Quantity((), series.mean, unit, f"mean of the {fourier.kind} stiffness"),
-        "fourier_amplitude": Quantity(along, series.amplitudes, unit, "amplitude of cos(j omega tau + phase)"),
+        "fourier_amplitude": Quantity(
+            along, series.amplitudes, unit, "amplitude of cos(j omega tau + phase)"
+        ),
         "fourier_phase": Quantity(along, series.phases, "rad", "phase; tau = 0 when a pair is at A"),
     }
 
@@ -92,7 +110,8 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
     if (single := values.get("closed forms")) is not None:
         quantities |= single_pair_quantities(single)
         tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.position} | {
-            f"{name}_N_per_m": k for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
+            f"{name}_N_per_m": k
+            for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
         }
     for stage, prefix in (("dry cycle", "dry"), ("film", "lubricated")):
         if (value := values.get(stage)) is not None:

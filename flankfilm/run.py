@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from flankfilm.cache import Cache, user_cache
 from flankfilm.faults import Fault, InputError
+from flankfilm.outputs import write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
 from flankfilm.stages.engine import Engine, Stage, StageRun
+from flankfilm.stages.fields import write_vtk
 
 
 @dataclass(frozen=True)
@@ -51,9 +53,7 @@ class Results:
         return [*told, f"{len(self.files)} files in {self.folder} after {self.seconds:.1f} s"]
 
 
-def run_scene(
-    scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent
-) -> Results:
+def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:
     """Compute what a scene wants and write it.
 
     Parameters
@@ -92,21 +92,16 @@ def run_scene(
     for name in wanted:
         engine[name]
     values = engine.results()
-    progress("writing files", len(wanted), len(wanted) + 2)
-    from flankfilm.outputs import write_data
-
-    files = write_data(folder, scene, values)
+    files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, scene, values))
     if "vtk" in scene.wants:
-        from flankfilm.stages.fields import write_vtk
-
-        files += write_vtk(folder, engine)
+        files += engine.timed("vtk files", "fields for ParaView", lambda: write_vtk(folder, engine, progress))
     results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start)
     if "report" in scene.wants:
-        progress("writing the report", len(wanted) + 1, len(wanted) + 2)
         from flankfilm.report.contents import write_report
 
+        progress("writing the report", len(wanted) + 1, len(wanted) + 2)
         files.append(write_report(results))
-    return Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start)
+    return replace(results, files=tuple(files), seconds=time.perf_counter() - start)
 
 
 def _claim(folder: Path) -> None:

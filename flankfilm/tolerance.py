@@ -40,4 +40,6 @@ class ToleranceSplit:
         the compliance, and both are cheap: equal shares are close to the cheapest. What is left
         covers the film's part.
         """
-        return cls(compliance=0.4 * tolerance, sampling=0.4 * tolerance, film=tolerance, coupling=0.02 * tolerance)
+        return cls(
+            compliance=0.4 * tolerance, sampling=0.4 * tolerance, film=tolerance, coupling=0.02 * tolerance
+        )

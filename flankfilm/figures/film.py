@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def film_along_path(position: Array, central: Array, minimum: Array, pressure: Array, marks: Mapping[str, float]) -> Figure:
+def film_along_path(
+    position: Array, central: Array, minimum: Array, pressure: Array, marks: Mapping[str, float]
+) -> Figure:
     """Draw central and minimum film and the Hertz pressure against the travel of a pair from A.
 
     Parameters
@@ -38,15 +40,23 @@ def film_along_path(position: Array, central: Array, minimum: Array, pressure: A
         upper.plot(1e3 * position, 1e6 * central, color=COLOURS[0], label="central film")
         upper.plot(1e3 * position, 1e6 * minimum, color=COLOURS[1], linestyle="--", label="minimum film")
         upper.set(ylabel="film thickness [µm]", ylim=(0, None))
-        legend_above(upper)
+        legend_above(drawn, upper)
         lower.plot(1e3 * position, 1e-9 * pressure, color=COLOURS[2])
-        lower.set(xlabel="travel along the path of contact from A [mm]", ylabel="Hertz pressure [GPa]", ylim=(0, None))
+        lower.set(
+            xlabel="travel along the path of contact from A [mm]",
+            ylabel="Hertz pressure [GPa]",
+            ylim=(0, None),
+        )
         for axes in (upper, lower):
             for at in marks.values():
                 axes.axvline(1e3 * at, color="#999999", linewidth=0.8)
         for name, at in marks.items():
             lower.annotate(
-                name, (1e3 * at, 0.04), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points"
+                name,
+                (1e3 * at, 0.04),
+                xycoords=("data", "axes fraction"),
+                xytext=(3, 0),
+                textcoords="offset points",
             )
     return drawn
 
@@ -61,7 +71,7 @@ def film_profiles(films: Mapping[str, Film]) -> Figure:
             upper.plot(x, 1e-9 * film.pressure, color=colour, linestyle=dash, label=label)
             lower.plot(x, 1e6 * film.thickness, color=colour, linestyle=dash)
         upper.set(ylabel="pressure [GPa]")
-        legend_above(upper, columns=5)
+        legend_above(drawn, upper, columns=5)
         thickest = max(film.central_thickness for film in films.values())
         lower.set(xlabel="distance from the line of centres [half-widths]", ylabel="film thickness [µm]")
         lower.set(xlim=(-2.0, 1.5), ylim=(0, 3e6 * thickest))

@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def sweeps(parameter: Array, states: Mapping[str, Array], labels: Mapping[str, Sequence[str]], name: str) -> Figure:
+_DIRECTIONS = (COLOURS[5], COLOURS[0])
+
+
+def sweeps(
+    parameter: Array, states: Mapping[str, Array], labels: Mapping[str, Sequence[str]], name: str
+) -> Figure:
     """Draw the states at tau = 0 of sweeps, and under them the label of each motion.
 
     Parameters
@@ -35,17 +40,29 @@ def sweeps(parameter: Array, states: Mapping[str, Array], labels: Mapping[str, S
     with styled():
         drawn = figure(height=4.6)
         upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
-        for (direction, points), colour, marker in zip(states.items(), (COLOURS[1], COLOURS[0]), (".", "x"), strict=False):
-            size = 2.0 if marker == "." else 1.6
+        # the larger dots lie below, so that both show where the sweeps agree
+        for (direction, points), colour, size in zip(states.items(), _DIRECTIONS, (3.4, 1.3), strict=False):
             x = np.repeat(parameter, points.shape[1])
-            upper.plot(x, points[:, :, 0].ravel(), marker, color=colour, markersize=size, label=direction, rasterized=True)
+            upper.plot(
+                x,
+                points[:, :, 0].ravel(),
+                ".",
+                color=colour,
+                markersize=size,
+                label=direction,
+                rasterized=True,
+            )
         upper.set(ylabel="displacement at tau = 0 [-]")
-        legend_above(upper)
+        legend_above(drawn, upper)
         names = _most_frequent([label for row in labels.values() for label in row], 8)
-        for (direction, row), colour, shift in zip(labels.items(), (COLOURS[1], COLOURS[0]), (0.12, -0.12), strict=False):
+        for row, colour, shift in zip(labels.values(), _DIRECTIONS, (0.12, -0.12), strict=False):
             height = [names.index(label) if label in names else len(names) for label in row]
-            lower.plot(parameter, np.asarray(height) + shift, ".", color=colour, markersize=2, rasterized=True)
-        lower.set_yticks(range(len(names) + 1), [*names, "other"])
+            lower.plot(
+                parameter, np.asarray(height) + shift, ".", color=colour, markersize=2, rasterized=True
+            )
+        rest = ["other"] if any(label not in names for row in labels.values() for label in row) else []
+        lower.set_yticks(range(len(names) + len(rest)), [*names, *rest])
+        lower.margins(y=0.15)
         lower.set(xlabel=name, ylabel="motion n-p-q")
         lower.invert_yaxis()
     return drawn

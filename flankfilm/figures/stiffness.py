@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def single_pairs(position: Array, curves: Mapping[str, Array], marks: Mapping[str, float], face_width: float) -> Figure:
+def single_pairs(
+    position: Array, curves: Mapping[str, Array], marks: Mapping[str, float], face_width: float
+) -> Figure:
     """Draw the stiffness of one pair of teeth along the path of contact, one curve a model.
 
     Parameters
@@ -37,10 +39,16 @@ def single_pairs(position: Array, curves: Mapping[str, Array], marks: Mapping[st
         drawn = figure()
         axes = drawn.subplots()
         for (label, k), colour, dash in zip(curves.items(), COLOURS, DASHES, strict=False):
-            axes.plot(1e3 * position, 1e-6 * k / (1e3 * face_width), color=colour, linestyle=dash, label=label)
+            axes.plot(
+                1e3 * position, 1e-6 * k / (1e3 * face_width), color=colour, linestyle=dash, label=label
+            )
         _mark(axes, marks)
-        axes.set(xlabel="travel along the path of contact from A [mm]", ylabel="one pair [N/(mm µm)]", ylim=(0, None))
-        legend_above(axes)
+        axes.set(
+            xlabel="travel along the path of contact from A [mm]",
+            ylabel="one pair [N/(mm µm)]",
+            ylim=(0, None),
+        )
+        legend_above(drawn, axes)
     return drawn
 
 
@@ -54,7 +62,7 @@ def mesh_cycles(cycles: Sequence[MeshStiffness], face_width: float, kind: str = 
             axes.plot(phase, 1e-6 * k / (1e3 * face_width), color=colour, linestyle=dash, label=cycle.label)
         axes.set(xlabel="travel after a pair is at A [base pitches]", ylabel=f"{kind} stiffness [N/(mm µm)]")
         axes.set_ylim(0, None)
-        legend_above(axes, columns=3)
+        legend_above(drawn, axes, columns=2)
     return drawn
 
 
@@ -68,7 +76,10 @@ def load_share(cycle: MeshStiffness) -> Figure:
         share = cycle.load_share.ravel()[order]
         seen = np.isfinite(rho)
         axes.plot(1e3 * rho[seen], share[seen], ".-", color=COLOURS[0], markersize=3)
-        axes.set(xlabel="curvature radius of the pinion's flank at the contact [mm]", ylabel="share of the force [-]")
+        axes.set(
+            xlabel="curvature radius of the pinion's flank at the contact [mm]",
+            ylabel="share of the force [-]",
+        )
         axes.set_ylim(-0.02, 1.05)
     return drawn
 
@@ -82,11 +93,13 @@ def transmission_error(cycles: Sequence[MeshStiffness]) -> Figure:
             phase, error = _two_pitches(cycle.phase, cycle.transmission_error)
             axes.plot(phase, 1e6 * error, color=colour, linestyle=dash, label=cycle.label)
         axes.set(xlabel="travel after a pair is at A [base pitches]", ylabel="loaded transmission error [µm]")
-        legend_above(axes, columns=3)
+        legend_above(drawn, axes, columns=2)
     return drawn
 
 
-def fourier(cycle: MeshStiffness, fits: Mapping[str, FourierFit], harmonics: Array, face_width: float) -> Figure:
+def fourier(
+    cycle: MeshStiffness, fits: Mapping[str, FourierFit], harmonics: Array, face_width: float
+) -> Figure:
     """Draw the stiffness with its Fourier fits, and beside it the harmonics over the mean."""
     with styled():
         drawn = figure(height=3.2)
@@ -96,12 +109,16 @@ def fourier(cycle: MeshStiffness, fits: Mapping[str, FourierFit], harmonics: Arr
         left.plot(phase, scale * k, ".", color="#777777", markersize=3, label="secant")
         fine = np.linspace(0, 2, 401)
         for (label, fit), colour, dash in zip(fits.items(), COLOURS, DASHES, strict=False):
-            left.plot(fine, scale * fit.stiffness(2 * np.pi * fine), color=colour, linestyle=dash, label=label)
+            left.plot(
+                fine, scale * fit.stiffness(2 * np.pi * fine), color=colour, linestyle=dash, label=label
+            )
         left.set(xlabel="travel after a pair is at A [base pitches]", ylabel="stiffness [N/(mm µm)]")
-        legend_above(left)
+        legend_above(drawn, left)
         order = np.arange(1, harmonics.size + 1)
         right.bar(order, harmonics, color=COLOURS[0])
-        right.set(xlabel="harmonic", ylabel="amplitude over the mean [-]", xticks=order[:: max(1, order.size // 5)])
+        right.set(
+            xlabel="harmonic", ylabel="amplitude over the mean [-]", xticks=order[:: max(1, order.size // 5)]
+        )
     return drawn
 
 
@@ -113,5 +130,9 @@ def _mark(axes: object, marks: Mapping[str, float]) -> None:
     for name, at in marks.items():
         axes.axvline(1e3 * at, color="#999999", linewidth=0.8)  # type: ignore[attr-defined]
         axes.annotate(  # type: ignore[attr-defined]
-            name, (1e3 * at, 0.02), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points"
+            name,
+            (1e3 * at, 0.02),
+            xycoords=("data", "axes fraction"),
+            xytext=(3, 0),
+            textcoords="offset points",
         )

@@ -6,7 +6,7 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +17,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 1)))
 
-_RC = {
+_RC: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "flankfilm",
     "font.family": "sans-serif",
@@ -51,9 +51,10 @@ def figure(width: float = 7.0, height: float = 3.2) -> Figure:
     return Figure(figsize=(width, height))
 
 
-def legend_above(axes: Axes, columns: int = 4) -> None:
-    """Put the legend above the axes, where it covers no data."""
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, handlelength=2.6)
+def legend_above(drawn: Figure, axes: Axes, columns: int = 3) -> None:
+    """Put the legend of `axes` above the figure, where it covers no data and takes no width from it."""
+    handles, labels = axes.get_legend_handles_labels()
+    drawn.legend(handles, labels, loc="outside upper left", ncols=columns, handlelength=2.6)
 
 
 def to_svg(drawn: Figure, prefix: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flankfilm.dataset import provenance
 from flankfilm.files import write_text
@@ -12,6 +12,7 @@ from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
 from flankfilm.report import film_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Headline, Part, render
 from flankfilm.report.run_parts import CostRow
+from flankfilm.report.text import percent
 from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
@@ -27,8 +28,14 @@ def headlines(results: Results) -> list[Headline]:
     if (film := values.get("film")) is not None:
         told += film_parts.headlines(film)
     if (fourier := values.get("fourier")) is not None:
-        kappa = fourier.stiffness.amplitudes[0] / fourier.stiffness.mean if fourier.stiffness.amplitudes else 0.0
-        left = "given" if fourier.fit is None else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
+        kappa = (
+            fourier.stiffness.amplitudes[0] / fourier.stiffness.mean if fourier.stiffness.amplitudes else 0.0
+        )
+        left = (
+            "given"
+            if fourier.fit is None
+            else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
+        )
         told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
     return told
 
@@ -62,7 +69,9 @@ def _result_parts(results: Results) -> list[Part | None]:
             cycles.append(values["dry cycle"])
         cycles += values.get("other cycles", ())
         changes = {} if film is None else {"secant": film.change_secant, "tangent": film.change_tangent}
-        parts.append(mesh_parts.stiffness(pair, values.get("closed forms"), cycles, changes, _model_note(results)))
+        parts.append(
+            mesh_parts.stiffness(pair, values.get("closed forms"), cycles, changes, _model_note(results))
+        )
         if film is not None:
             parts.append(film_parts.film(pair, film, scene.tolerance))
     if (fields := values.get("fields")) is not None:
@@ -87,8 +96,9 @@ def _run_parts(results: Results) -> list[Part | None]:
     notes = []
     if "compliance" in results.values:
         notes.append(
-            f"The tolerance of {100 * scene.tolerance:g} % is split: {100 * split.compliance:g} % for the tooth compliance, "
-            f"{100 * split.sampling:g} % for the sampling of the mesh cycle, {100 * split.film:g} % for film thicknesses."
+            f"The tolerance of {percent(scene.tolerance)} is split: {percent(split.compliance)} for the tooth "
+            f"compliance, {percent(split.sampling)} for the sampling of the mesh cycle, {percent(split.film)} "
+            "for film thicknesses."
         )
     made = provenance(scene.model_dump_json())
     return [
@@ -106,13 +116,17 @@ def _cost_rows(results: Results) -> list[CostRow]:
     split = ToleranceSplit.of(results.scene.tolerance)
     rows = []
     for name, run in results.runs.items():
-        value = results.values.get(name)
+        value: Any = results.values.get(name)
         figure, allowed, error, note = "", None, None, ""
         if name == "compliance":
             figure, allowed, error = "tooth compliance", split.compliance, value.error
             note = f"{value.cost.unknowns:,} unknowns"
         elif name == "dry cycle":
-            figure, allowed, error = "mean stiffness, from sampling", split.sampling, sampling_error(value.secant)
+            figure, allowed, error = (
+                "mean stiffness, from sampling",
+                split.sampling,
+                sampling_error(value.secant),
+            )
             note = f"{value.phase.size} positions"
         elif name == "film" and value.model == "ehl":
             figure, allowed, error = "film thickness", split.film, value.error
@@ -123,7 +137,7 @@ def _cost_rows(results: Results) -> list[CostRow]:
         elif name == "sweep":
             figure, error = "settled motions", value.error
             note = f"{value.periods:,} periods"
-        elif run.seconds < 0.01:
+        elif run.seconds < 0.005:
             continue
         rows.append(CostRow(run.title, figure, allowed, error, note, run.seconds, run.cached))
     return rows

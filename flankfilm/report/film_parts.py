@@ -42,20 +42,34 @@ def film(pair: GearPair, stage: FilmStage, tolerance: float) -> Part:
         (name, number(k[at_pitch]), percent(-tooth / (tooth + k[at_pitch])), number(k.min()), number(k.max()))
         for name, k in stage.stiffness.items()
     )
-    heads = ("film stiffness by", "at C [N/m]", "in series with the mean stiffness", "least [N/m]", "largest [N/m]")
+    heads = (
+        "film stiffness by",
+        "at C [N/m]",
+        "in series with the mean stiffness",
+        "least [N/m]",
+        "largest [N/m]",
+    )
     change = stage.change_secant
     verdict = (
-        f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by {100 * change:+.3f} % "
-        f"and the mean tangent stiffness by {100 * stage.change_tangent:+.3f} %."
+        f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
+        f"{100 * change:+.3f} % and the mean tangent stiffness by {100 * stage.change_tangent:+.3f} %."
     )
     if abs(change) < tolerance:
-        verdict += f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be left out."
+        verdict += (
+            f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be "
+            "left out."
+        )
     rounds = (
         f"Films and load share agree after {stage.rounds} rounds; the last changed a pair's force by "
         f"{stage.mismatch:.1e} of the whole."
     )
     return Part(
-        "film", "Oil film", (verdict,), tuple(figures), (Table(heads, rows),), (rounds, "Steady, isothermal, fully flooded.")
+        "film",
+        "Oil film",
+        (verdict,),
+        tuple(figures),
+        (Table(heads, rows),),
+        (rounds, "Steady, isothermal, fully flooded."),
     )
 
 
@@ -65,5 +79,7 @@ def headlines(stage: FilmStage) -> list[Headline]:
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
     return [
         Headline("least film on the path", f"{1e6 * stage.minimum[thinnest]:.3g} µm", note),
-        Headline("what the film changes", f"{100 * stage.change_secant:+.2f} %", "of the mean secant stiffness"),
+        Headline(
+            "what the film changes", f"{100 * stage.change_secant:+.2f} %", "of the mean secant stiffness"
+        ),
     ]

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from flankfilm.stages.closed_forms import SinglePairs
+    from flankfilm.stages.fields import FieldsStage
     from gears import GearPair
 
 
@@ -57,7 +58,13 @@ def geometry(pair: GearPair) -> Part:
     return Part(
         "geometry",
         "Geometry",
-        figures=(drawing(gear_figures.mesh(pair), "mesh", "The pair in mesh at the pitch point, with the path of contact A to E."),),
+        figures=(
+            drawing(
+                gear_figures.mesh(pair),
+                "mesh",
+                "The pair in mesh at the pitch point, with the path of contact A to E.",
+            ),
+        ),
         tables=(
             Table(("", "pinion", "wheel"), tuple(rows)),
             Table(("pair", ""), tuple(common)),
@@ -66,7 +73,11 @@ def geometry(pair: GearPair) -> Part:
 
 
 def stiffness(
-    pair: GearPair, single: SinglePairs | None, cycles: list[MeshStiffness], changes: Mapping[str, float], note: str
+    pair: GearPair,
+    single: SinglePairs | None,
+    cycles: list[MeshStiffness],
+    changes: Mapping[str, float],
+    note: str,
 ) -> Part:
     """Stiffness of all models on one axis, load share and transmission error."""
     figures = [
@@ -75,14 +86,20 @@ def stiffness(
             "cycles",
             "Mesh stiffness (secant) over two base pitches, all models on one axis.",
         ),
-        drawing(stiffness_figures.load_share(cycles[0]), "share", f"Load share of a pair: {cycles[0].label}."),
-        drawing(stiffness_figures.transmission_error(cycles), "error", "Deflection along the line of action."),
+        drawing(
+            stiffness_figures.load_share(cycles[0]), "share", f"Load share of a pair: {cycles[0].label}."
+        ),
+        drawing(
+            stiffness_figures.transmission_error(cycles), "error", "Deflection along the line of action."
+        ),
     ]
     if single is not None:
         figures.insert(
             0,
             drawing(
-                stiffness_figures.single_pairs(single.position, single.curves, path_marks(pair), pair.face_width),
+                stiffness_figures.single_pairs(
+                    single.position, single.curves, path_marks(pair), pair.face_width
+                ),
                 "single",
                 "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up.",
             ),
@@ -111,12 +128,17 @@ def stiffness(
     if single is not None:
         tables.append(iso_table(single.iso))
     notes = [note] if note else []
-    notes += [f"The film changes the mean {kind} stiffness by {100 * value:+.2f} %." for kind, value in changes.items()]
+    notes += [
+        f"The film changes the mean {kind} stiffness by {100 * value:+.2f} %."
+        for kind, value in changes.items()
+    ]
     notes.append(
-        "The error of a closed form against the real tooth is unknown until it is compared with finite elements; "
-        "the column shows numerical error alone."
+        "The error of a closed form against the real tooth is unknown until it is compared with finite "
+        "elements; the column shows numerical error alone."
     )
-    return Part("stiffness", "Mesh stiffness", figures=tuple(figures), tables=tuple(tables), notes=tuple(notes))
+    return Part(
+        "stiffness", "Mesh stiffness", figures=tuple(figures), tables=tuple(tables), notes=tuple(notes)
+    )
 
 
 def iso_table(iso: Any) -> Table:
@@ -129,15 +151,23 @@ def iso_table(iso: Any) -> Table:
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 
 
-def fields(figure: Any, peak: float) -> Part:
+def fields(stage: FieldsStage) -> Part:
     """Picture of the loaded teeth."""
+    peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
     return Part(
         "fields",
         "Loaded teeth",
-        figures=(drawing(figure, "mises", "Von Mises stress at the pitch point, contact pressure included."),),
+        figures=(
+            drawing(
+                gear_figures.von_mises(stage),
+                "mises",
+                "Von Mises stress with a pair at the pitch point. The scale leaves out the highest 0.3 % of the "
+                "pictured area, which lies under the contacts.",
+            ),
+        ),
         notes=(
-            f"Largest von Mises stress on the mesh: {number(1e-6 * peak)} MPa. The folder vtk holds the whole mesh cycle "
-            "for ParaView: open mesh_cycle.pvd and colour by von_mises_Pa.",
+            f"Largest von Mises stress, under the contact: {number(1e-6 * peak)} MPa. The file mesh_cycle.pvd "
+            "holds the mesh cycle for ParaView; colour by von_mises_Pa.",
         ),
     )
 
@@ -152,6 +182,10 @@ def headlines(cycle: MeshStiffness, face_width: float) -> list[Headline]:
             f"{scale * cycle.secant.mean():.4g} N/(mm µm)",
             f"error {percent(cycle.error)}, {cycle.label}",
         ),
-        Headline("mean mesh stiffness (tangent)", f"{scale * cycle.tangent.mean():.4g} N/(mm µm)", "for small vibration"),
+        Headline(
+            "mean mesh stiffness (tangent)",
+            f"{scale * cycle.tangent.mean():.4g} N/(mm µm)",
+            "for small vibration",
+        ),
         Headline("loaded transmission error", f"{1e6 * te:.3g} µm", "peak to peak"),
     ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from flankfilm.figures import motion as motion_figures
 from flankfilm.figures import stiffness as stiffness_figures
-from flankfilm.report.page import Part, Table, drawing
+from flankfilm.report.page import Drawing, Part, Table, drawing
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
     )
-    figures = ()
+    figures: tuple[Drawing, ...] = ()
     notes: tuple[str, ...] = ("Phases refer to tau = 0, the instant when a pair is at A.",)
     if stage.fit is not None and cycle is not None and face_width is not None:
         harmonics = np.asarray(stage.fit.harmonics[:12])
@@ -35,17 +35,27 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
             drawing(
                 stiffness_figures.fourier(cycle, fits, harmonics, face_width),
                 "fourier",
-                f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples over the mean.",
+                f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples "
+                "over the mean.",
             ),
         )
         notes = (
             *notes,
-            f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the mean "
-            f"(root mean square; at most {percent(stage.fit.remainder_max)}). A higher dynamics.fourier_order keeps more.",
-            "The tangent stiffness belongs to small vibration about the load, the secant to motion with separation.",
+            f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the "
+            f"mean (root mean square; at most {percent(stage.fit.remainder_max)}). A higher "
+            "dynamics.fourier_order keeps more.",
+            "The tangent stiffness belongs to small vibration about the load, the secant to motion with "
+            "separation.",
         )
     heads = ("harmonic", "amplitude", "over the mean", "phase [deg]")
-    return Part("fourier", "Fourier stiffness", (f"Mean {number(series.mean, 6)}.",), figures, (Table(heads, rows),), notes)
+    return Part(
+        "fourier",
+        "Fourier stiffness",
+        (f"Mean {number(series.mean, 6)}.",),
+        figures,
+        (Table(heads, rows),),
+        notes,
+    )
 
 
 def scaling(stage: ScalingStage) -> Part:
@@ -77,12 +87,17 @@ def sweep(stage: SweepStage) -> Part:
             )
         )
     notes = [
-        f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a period; "
-        f"{stage.periods:,} periods were followed.",
+        f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a "
+        f"period; {stage.periods:,} periods were followed.",
         "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
         *stage.messages,
     ]
     if stage.grazings.size:
         at = ", ".join(f"{g:.6g}" for g in stage.grazings)
-        notes.insert(0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}.")
+        if stage.speed_rpm is not None:
+            rpm = stage.grazings * stage.speed_rpm[0] / stage.frequency[0]
+            at += " (" + ", ".join(f"{n:.0f}" for n in rpm) + " rpm)"
+        notes.insert(
+            0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
+        )
     return Part("motion", "Motion", figures=tuple(figures), notes=tuple(notes))

@@ -54,8 +54,8 @@ def costs(rows: Sequence[CostRow], total: float, tolerance: float) -> Part:
         for row in rows
     )
     text = (
-        f"The scene's tolerance is {percent(tolerance)} on the wanted figures. The run took {seconds(total)}, of which "
-        f"{seconds(sum(r.seconds for r in rows))} in the stages listed."
+        f"The scene's tolerance is {percent(tolerance)} on the wanted figures. The run took {seconds(total)}, "
+        f"of which {seconds(sum(r.seconds for r in rows))} in the stages listed."
     )
     return Part("costs", "Error and cost", (text,), tables=(Table(heads, cells),))
 

@@ -34,7 +34,7 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
             need("material", "a [dynamics] in physical units")
             need("operating", "a [dynamics] in physical units")
     if "film" in listed or (film and film.get("model", "auto") not in ("none", "auto")):
-        need("lubricant", 'the film' if "film" in listed else f'film.model = "{film["model"]}"')
+        need("lubricant", "the film" if "film" in listed else f'film.model = "{film["model"]}"')
     if "pair" in needed and listed != {"geometry"}:
         need("material", f"wants = [{_quoted(listed)}]")
         need("operating", f"wants = [{_quoted(listed)}]")
@@ -53,27 +53,46 @@ def _deeper(
     operating = _table(raw, "operating")
     lubricated = "film" in listed or ("lubricant" in raw and film and film.get("model", "auto") != "none")
     if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
-        faults.append(Fault("operating.pinion_speed_rpm", "", "is required by the film", "Give the pinion's speed"))
+        faults.append(
+            Fault("operating.pinion_speed_rpm", "", "is required by the film", "Give the pinion's speed")
+        )
     if "film" in listed and film.get("model") == "none":
         faults.append(Fault("film.model", "'none'", "excludes the wanted film", 'Take film.model = "ehl"'))
     if "vtk" in listed and stiffness.get("model", "fem") != "fem":
         faults.append(
-            Fault("stiffness.model", repr(stiffness.get("model")), 'must be "fem" for the wanted vtk', "Or drop vtk")
+            Fault(
+                "stiffness.model",
+                repr(stiffness.get("model")),
+                'must be "fem" for the wanted vtk',
+                "Or drop vtk",
+            )
         )
     dynamics = _table(raw, "dynamics")
     if "sweep" in listed and "dynamics" in raw and "sweep" not in dynamics:
         faults.append(
-            Fault("dynamics.sweep", "", "is required by the wanted sweep", "Add sweep = { speed_rpm = [500, 30000] }")
+            Fault(
+                "dynamics.sweep",
+                "",
+                "is required by the wanted sweep",
+                "Add sweep = { speed_rpm = [500, 30000] }",
+            )
         )
     given = stiffness.get("model") == "given"
     if "sweep" in listed and given and "mean_force" not in dynamics and "mean_N_per_m" not in stiffness:
         faults.append(
-            Fault("stiffness.mean_N_per_m", "", "is required by a [dynamics] in physical units", "Give the mean")
+            Fault(
+                "stiffness.mean_N_per_m", "", "is required by a [dynamics] in physical units", "Give the mean"
+            )
         )
     pair = _table(raw, "pair")
     if "centre_distance_mm" in pair and "backlash_um" in pair:
         faults.append(
-            Fault("pair.backlash_um", str(pair["backlash_um"]), "follows from centre_distance_mm", "Give one of them")
+            Fault(
+                "pair.backlash_um",
+                str(pair["backlash_um"]),
+                "follows from centre_distance_mm",
+                "Give one of them",
+            )
         )
     return faults
 

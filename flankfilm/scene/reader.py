@@ -61,7 +61,9 @@ def _text(path: Path) -> str:
     try:
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "does not exist"
-            raise InputError([Fault(str(path), "", what, "name a scene file, or write one: flankfilm new FILE")])
+            raise InputError(
+                [Fault(str(path), "", what, "name a scene file, or write one: flankfilm new FILE")]
+            )
         if path.stat().st_size > LARGEST_FILE:
             raise InputError([Fault(str(path), "", f"is larger than {LARGEST_FILE:,} bytes, so not a scene")])
         return path.read_bytes().decode("utf-8")

@@ -82,11 +82,14 @@ class MaterialSection(Section):
     @model_validator(mode="after")
     def _one_way_of_saying_it(self) -> MaterialSection:
         common = self.youngs_modulus_GPa is not None and self.poisson_ratio is not None
-        partly = any(v is not None for v in (self.youngs_modulus_GPa, self.poisson_ratio, self.density_kg_per_m3))
+        partly = any(
+            v is not None for v in (self.youngs_modulus_GPa, self.poisson_ratio, self.density_kg_per_m3)
+        )
         each = self.pinion is not None and self.wheel is not None
         if not common and not each:
             raise ValueError(
-                "give youngs_modulus_GPa and poisson_ratio for both gears, or both [material.pinion] and [material.wheel]"
+                "give youngs_modulus_GPa and poisson_ratio for both gears, "
+                "or both [material.pinion] and [material.wheel]"
             )
         if partly and (self.pinion is not None or self.wheel is not None):
             raise ValueError("give one material for both gears or one each, not both ways at once")
@@ -130,7 +133,9 @@ class StiffnessSection(Section):
             if self.amplitudes is None:
                 raise ValueError('model = "given" needs amplitudes, each over the mean, such as [0.18]')
             if self.phases_deg is not None and len(self.phases_deg) != len(self.amplitudes):
-                raise ValueError(f"{len(self.amplitudes)} amplitudes but {len(self.phases_deg)} phases_deg; give as many of each")
+                raise ValueError(
+                    f"{len(self.amplitudes)} amplitudes but {len(self.phases_deg)} phases_deg; give as many of each"
+                )
         return self
 
 
@@ -209,7 +214,9 @@ class DynamicsSection(Section):
             raise ValueError(f"the dimensionless form also needs {', '.join(missing)}")
         physical = [n for n in ("error_amplitude_um", "length_scale_um") if getattr(self, n) is not None]
         if physical and not missing:
-            raise ValueError(f"{', '.join(physical)} and the dimensionless {', '.join(own)} exclude each other")
+            raise ValueError(
+                f"{', '.join(physical)} and the dimensionless {', '.join(own)} exclude each other"
+            )
         if not missing and self.sweep is not None and self.sweep.speed_rpm is not None:
             raise ValueError("the dimensionless form needs sweep = { frequency = [from, to] }, not speed_rpm")
         if not missing and self.portraits_rpm:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from flankfilm.scene import Scene
-from flankfilm.stages import closed_forms, decide, fields, film, motion, sweep, teeth
+from flankfilm.stages import closed_forms, decide, fields, film, motion, separate_pairs, sweep, teeth
 from flankfilm.stages.engine import Stage
 
 
@@ -23,18 +23,22 @@ def _sections(*names: str) -> Any:
     return pick
 
 
-_TEETH = _sections("stiffness.model", "stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance")
+_TEETH = _sections(
+    "stiffness.model", "stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance"
+)
 
 STAGES: Mapping[str, Stage] = {
     stage.name: stage
     for stage in (
-        Stage("pair", "geometry", lambda e: teeth.pair(e), _sections("pair", "material"), packages=("gears",)),
+        Stage(
+            "pair", "geometry", lambda e: teeth.pair(e), _sections("pair", "material"), packages=("gears",)
+        ),
         Stage(
             "closed forms",
             "closed forms",
             lambda e: closed_forms.closed_forms(e),
-            _sections("operating"),
-            needs=("pair",),
+            _sections("operating", "stiffness.model", "wants"),
+            needs=("pair", "compliance"),
             packages=("gears",),
         ),
         Stage(
@@ -46,7 +50,21 @@ STAGES: Mapping[str, Stage] = {
             packages=("gears", "meshes", "fem"),
             kept=True,
         ),
-        Stage("dry cycle", "mesh cycle without film", lambda e: teeth.dry_cycle(e), _TEETH, needs=("compliance",)),
+        Stage(
+            "dry cycle",
+            "mesh cycle without film",
+            lambda e: teeth.dry_cycle(e),
+            _TEETH,
+            needs=("compliance",),
+        ),
+        Stage(
+            "other cycles",
+            "mesh cycle by the other models",
+            lambda e: separate_pairs.other_cycles(e),
+            _TEETH,
+            needs=("dry cycle",),
+            packages=("gears",),
+        ),
         Stage(
             "film model",
             "choice of the film model",
@@ -95,7 +113,9 @@ STAGES: Mapping[str, Stage] = {
             packages=("dynamics", "flankfilm"),
             kept=True,
         ),
-        Stage("fields", "stress and displacement fields", lambda e: fields.fields(e), _TEETH, needs=("dry cycle",)),
+        Stage(
+            "fields", "stress and displacement fields", lambda e: fields.fields(e), _TEETH, needs=("mesh",)
+        ),
     )
 }
 
@@ -111,6 +131,8 @@ def goals(scene: Scene) -> tuple[str, ...]:
         found.append("closed forms")
     if wants & {"stiffness", "film"} and not given:
         found += ["dry cycle", "film model"]
+        if "closed-forms" in wants or "report" in wants:
+            found.append("other cycles")
         if scene.film.model != "none" or "film" in wants:
             found.append("mesh")
     if wants & {"fourier", "sweep"}:

@@ -1,4 +1,4 @@
-"""Stiffness of one pair of teeth along the path of contact by every closed form."""
+"""Stiffness of one pair of teeth along the path of contact by every model."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from flankfilm.build import pinion_torque
 
 if TYPE_CHECKING:
+    from flankfilm.scene import Scene
     from flankfilm.stages.engine import Engine
     from gears import GearPair
 
@@ -61,14 +62,24 @@ def closed_form(model: str, pair: GearPair, path: Any, force: float) -> Any:
     return functions[model]()
 
 
+def compares_with_finite_elements(scene: Scene) -> bool:
+    """Tell whether finite elements are at hand anyway, to stand beside the closed forms."""
+    return scene.stiffness.model == "fem" and "stiffness" in scene.wants
+
+
 def closed_forms(engine: Engine, n: int = 81) -> SinglePairs:
-    """Evaluate all closed forms along the path."""
+    """Evaluate all closed forms along the path, beside finite elements where the scene has them."""
     from gears import closed_form as forms
 
     pair = engine["pair"]
     path = pair.path_of_contact(n=n)
     force = pair.normal_force(pinion_torque(engine.scene))
     curves = {label: np.asarray(closed_form(name, pair, path, force)) for name, label in CLOSED_FORMS.items()}
+    if compares_with_finite_elements(engine.scene):
+        import fem
+
+        k = fem.single_pair_stiffness(pair, force=force, rho1=path.rho1, compliance=engine["compliance"])
+        curves = {"finite elements": k, **curves}
     return SinglePairs(
         position=path.position,
         rho1=path.rho1,

@@ -55,6 +55,9 @@ def film_model(engine: Engine) -> FilmDecision:
     tooth = float(engine["dry cycle"].secant.mean())
     change = tooth / (tooth + film)
     if change < scene.tolerance:
-        told = f"it would lower the mean stiffness by about {change:.2%}, less than the tolerance of {scene.tolerance:.2%}"
+        told = (
+            f"it would lower the mean stiffness by about {change:.2%}, less than the tolerance of "
+            f"{scene.tolerance:.2%}"
+        )
         return FilmDecision("none", f"left out: {told}")
     return FilmDecision("ehl", f"it lowers the mean stiffness by about {change:.2%}, more than the tolerance")

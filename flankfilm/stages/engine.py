@@ -7,11 +7,12 @@ import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
 
+T = TypeVar("T")
 Compute = Callable[["Engine"], Any]
 
 
@@ -100,10 +101,21 @@ class Engine:
         """Results that have been asked for so far."""
         return dict(self._values)
 
+    def timed(self, name: str, title: str, work: Callable[[], T]) -> T:
+        """Do work that is no stage, such as writing files, and note its cost beside the stages'."""
+        start = time.perf_counter()
+        done = work()
+        self.runs[name] = StageRun(name, title, time.perf_counter() - start, cached=False)
+        return done
+
     def _obtain(self, stage: Stage) -> Any:
         start = time.perf_counter()
         self._elsewhere.append(0.0)
-        key = self.cache.key(stage.name, self.inputs(stage.name), self.packages(stage.name)) if stage.kept else ""
+        key = (
+            self.cache.key(stage.name, self.inputs(stage.name), self.packages(stage.name))
+            if stage.kept
+            else ""
+        )
         value = self.cache.get(key) if stage.kept else None
         cached = value is not None
         caught: list[warnings.WarningMessage] = []

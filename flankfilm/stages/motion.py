@@ -89,7 +89,9 @@ class ScalingStage:
             f"{damping:.4g} N s/m",
             f"{scales.rpm(osc.frequency):.6g} rpm of the pinion",
         )
-        rows = [(name, text, f"{value:.6g}") for (name, value), text in zip(own.items(), physical, strict=True)]
+        rows = [
+            (name, text, f"{value:.6g}") for (name, value), text in zip(own.items(), physical, strict=True)
+        ]
         rows += [
             ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
             ("mean stiffness k_m", f"{scales.mean_stiffness:.5g} N/m", "1"),
@@ -118,7 +120,9 @@ def fourier(engine: Engine) -> FourierStage:
         mean = scene.stiffness.mean_N_per_m or 1.0
         kappa = scene.stiffness.amplitudes or ()
         phases = scene.stiffness.phases_deg or (0.0,) * len(kappa)
-        series = FourierStiffness(mean, tuple(mean * k for k in kappa), tuple(math.radians(p) for p in phases))
+        series = FourierStiffness(
+            mean, tuple(mean * k for k in kappa), tuple(math.radians(p) for p in phases)
+        )
         return FourierStage(series, None, "given", "given in the scene", None)
     order = scene.dynamics.fourier_order if scene.dynamics else 1
     kind = scene.dynamics.stiffness if scene.dynamics else "secant"

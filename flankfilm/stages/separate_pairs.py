@@ -43,22 +43,38 @@ def contacts_of(pair: GearPair, positions: int) -> tuple[Array, Array]:
     return phase, np.where(rho1 <= pair.points.E, rho1, np.nan)
 
 
-def single_pair_stiffness(engine: Engine, rho1: Array) -> Array:
-    """Secant stiffness of one pair by the scene's model at given points, NaN staying NaN [N/m]."""
-    pair, scene = engine["pair"], engine.scene
-    force = pair.normal_force(pinion_torque(scene))
+def single_pair_stiffness(engine: Engine, model: str, rho1: Array) -> Array:
+    """Secant stiffness of one pair by a model at given points, NaN staying NaN [N/m]."""
+    pair = engine["pair"]
+    force = pair.normal_force(pinion_torque(engine.scene))
     known = np.isfinite(rho1)
     k = np.full_like(rho1, np.nan)
-    if scene.stiffness.model == "fem":
+    if model == "fem":
         import fem
 
-        k[known] = fem.single_pair_stiffness(pair, force=force, rho1=rho1[known], compliance=engine["compliance"])
+        k[known] = fem.single_pair_stiffness(
+            pair, force=force, rho1=rho1[known], compliance=engine["compliance"]
+        )
     else:
-        k[known] = np.asarray(closed_form(scene.stiffness.model, pair, pair.path_at(rho1[known]), force))
+        k[known] = np.asarray(closed_form(model, pair, pair.path_at(rho1[known]), force))
     return k
 
 
-def separate_pairs_cycle(engine: Engine, positions: int, film: FilmLaw | None = None) -> MeshStiffness:
+def other_cycles(engine: Engine) -> tuple[MeshStiffness, ...]:
+    """Mesh cycles by the models that the scene did not choose: independent pairs added, without film."""
+    scene, positions = engine.scene, engine["dry cycle"].phase.size
+    chosen = (scene.stiffness.model, scene.stiffness.pairs)
+    models = [*CLOSED_FORMS, *(["fem"] if scene.stiffness.model == "fem" else [])]
+    return tuple(
+        separate_pairs_cycle(engine, model, "independent", positions)
+        for model in models
+        if (model, "independent") != chosen
+    )
+
+
+def separate_pairs_cycle(
+    engine: Engine, model: str, pairs: str, positions: int, film: FilmLaw | None = None
+) -> MeshStiffness:
     """Mesh cycle of pairs that know each other only through the force they share.
 
     ``independent``: each pair's secant stiffness, in series with its film's, and the force in
@@ -68,12 +84,12 @@ def separate_pairs_cycle(engine: Engine, positions: int, film: FilmLaw | None = 
     from gears import independent_pairs, share_load
 
     start = time.perf_counter()
-    pair, scene = engine["pair"], engine.scene
-    force = pair.normal_force(pinion_torque(scene))
+    pair = engine["pair"]
+    force = pair.normal_force(pinion_torque(engine.scene))
     phase, rho1 = contacts_of(pair, positions)
     touching = np.isfinite(rho1)
-    k = np.where(touching, single_pair_stiffness(engine, rho1), 0.0)
-    if scene.stiffness.pairs == "independent":
+    k = np.where(touching, single_pair_stiffness(engine, model, rho1), 0.0)
+    if pairs == "independent":
         series = None if film is None else film.stiffness()
         share = independent_pairs(force, k, series)
         secant = tangent = np.asarray(share.tangent)
@@ -83,14 +99,15 @@ def separate_pairs_cycle(engine: Engine, positions: int, film: FilmLaw | None = 
         share = share_load(force, bulk, _NoHertz(), np.where(touching, _relief(pair, rho1), np.inf), film)
         secant, tangent = force / np.asarray(share.approach), np.asarray(share.tangent)
     return MeshStiffness(
-        label=f"{_LABELS[scene.stiffness.model]}, {scene.stiffness.pairs} pairs",
+        label=f"{_LABELS[model]}, {pairs} pairs",
         phase=phase,
         rho1=rho1,
         forces=share.forces,
+        load_share=share.forces / force,
         secant=secant,
         tangent=tangent,
         transmission_error=np.asarray(share.approach),
-        error=engine["compliance"].error if scene.stiffness.model == "fem" else None,
+        error=engine["compliance"].error if model == "fem" else None,
         seconds=time.perf_counter() - start,
     )
 

@@ -115,6 +115,8 @@ def sweep(engine: Engine) -> SweepStage:
         for direction in ("up", "down")
     }
     grazing = contact_grazing(oscillator, "frequency", (float(frequency[0]), float(frequency[-1])))
+    told = [(result.message, result.converged) for result in found.values()]
+    told.append((grazing.message, grazing.converged))
     return SweepStage(
         frequency=frequency,
         speed_rpm=speed,
@@ -126,7 +128,7 @@ def sweep(engine: Engine) -> SweepStage:
         error=max(result.error for result in found.values()),
         periods=sum(result.cost.periods for result in found.values()),
         seconds=time.perf_counter() - start,
-        messages=tuple(r.message for r in (*found.values(), grazing) if not r.converged),
+        messages=tuple(message for message, converged in told if not converged),
     )
 
 

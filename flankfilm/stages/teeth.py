@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from flankfilm.build import gear_pair, pinion_torque
+from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
 from flankfilm.tolerance import ToleranceSplit
@@ -50,17 +49,18 @@ def fem_cycle(engine: Engine, positions: int, film: Any = None) -> MeshCycle:
 
 def from_fem(cycle: MeshCycle, label: str) -> MeshStiffness:
     """Bring a cycle by finite elements into the common form."""
-    n = cycle.stiffness.size
     return MeshStiffness(
         label=label,
-        phase=(np.arange(n) + 0.5) / n,
+        phase=cycle.position,
         rho1=cycle.rho1,
         forces=cycle.forces,
+        load_share=cycle.load_share,
         secant=cycle.secant_stiffness,
         tangent=cycle.stiffness,
         transmission_error=cycle.transmission_error,
         error=cycle.error,
         seconds=cycle.cost.seconds,
+        contact=cycle,
     )
 
 
@@ -79,5 +79,8 @@ def cycle_at(engine: Engine, positions: int, film: Any = None) -> MeshStiffness:
     """Mesh stiffness by the scene's model at a number of positions, with a film law or dry."""
     scene = engine.scene
     if scene.stiffness.model == "fem" and scene.stiffness.pairs == "coupled":
-        return from_fem(fem_cycle(engine, positions, film), "finite elements")
-    return separate_pairs_cycle(engine, positions, film)
+        cycle = fem_cycle(engine, positions, film)
+        if not cycle.converged:
+            raise SolverError(f"loaded tooth contact: {cycle.message}")
+        return from_fem(cycle, "finite elements")
+    return separate_pairs_cycle(engine, scene.stiffness.model, scene.stiffness.pairs, positions, film)

@@ -26,7 +26,9 @@ def test_the_key_follows_inputs_stage_and_code(tmp_path):
         cache.key("stage", {"a": 1.0}, ("ehl",)),
     }
     assert len(keys) == 4
-    assert cache.key("stage", {"a": 1, "b": 2}, ("gears",)) == cache.key("stage", {"b": 2, "a": 1}, ("gears",))
+    assert cache.key("stage", {"a": 1, "b": 2}, ("gears",)) == cache.key(
+        "stage", {"b": 2, "a": 1}, ("gears",)
+    )
 
 
 def test_changed_code_changes_the_digest(tmp_path, monkeypatch):

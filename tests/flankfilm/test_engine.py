@@ -30,7 +30,13 @@ def counting(calls: list[str], kept: bool = True) -> dict[str, Stage]:
             return "+".join([name, *(engine[n] for n in needs)])
 
         return Stage(
-            name, name, compute, lambda s: {k: getattr(s, k).model_dump() for k in sections}, needs, ("gears",), kept
+            name,
+            name,
+            compute,
+            lambda s: {k: getattr(s, k).model_dump() for k in sections},
+            needs,
+            ("gears",),
+            kept,
         )
 
     return {s.name: s for s in (of("teeth", (), ("pair",)), of("oil", ("teeth",), ("lubricant",)))}
@@ -123,6 +129,9 @@ def test_sampling_error_bounds_the_error_of_a_step():
     true_mean = 0.37 * 2.0 + 0.63
     for n in (40, 120, 360):
         phase = (np.arange(n) + 0.5) / n
-        errors = [np.where((phase - s) % 1.0 < 0.37, 2.0, 1.0).mean() / true_mean - 1 for s in np.linspace(0, 0.9, 97)]
+        errors = [
+            np.where((phase - s) % 1.0 < 0.37, 2.0, 1.0).mean() / true_mean - 1
+            for s in np.linspace(0, 0.9, 97)
+        ]
         estimate = sampling_error(np.where(phase < 0.37, 2.0, 1.0))
         assert 0.5 < estimate / np.sqrt(np.mean(np.square(errors))) < 2.5

@@ -1,0 +1,173 @@
+"""The command line as a user meets it: messages, exit statuses, files, what is loaded."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from flankfilm.scene import template
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCRIPT = Path(sys.executable).with_name("flankfilm")
+
+
+def flankfilm(
+    *arguments: object, cwd: Path, status: int = 0, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    done = subprocess.run(
+        [str(SCRIPT), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        timeout=280,
+        check=False,
+    )
+    assert done.returncode == status, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
+    text = template()
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = folder / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_new_writes_a_scene_that_check_accepts(tmp_path):
+    flankfilm("new", "first.toml", cwd=tmp_path)
+    told = flankfilm("check", "first.toml", cwd=tmp_path).stdout
+    assert "Contact ratio 1.7030" in told
+
+
+def test_new_keeps_what_is_there(tmp_path):
+    (tmp_path / "mine.toml").write_text("precious")
+    told = flankfilm("new", "mine.toml", cwd=tmp_path, status=2).stderr
+    assert "kept" in told
+    assert (tmp_path / "mine.toml").read_text() == "precious"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ("profile_shift = 0.0, bore_mm = 33.5", "profile_shift = 1.5, bore_mm = 33.5", "pinion.profile_shift"),
+        ("profile_shift = 0.0, bore_mm = 33.5", "tip_alteration = 0.9, bore_mm = 33.5", "pinion.tip_alteration"),
+        ("bore_mm = 33.5", "bore_mm = 70", "pair.pinion.bore_mm"),
+        ("backlash_um = 50", "centre_distance_mm = 75.0", "pair.centre_distance_mm"),
+        ("backlash_um = 50", "centre_distance_mm = 79.9", "contact_ratio"),
+        ("teeth = 36, profile_shift = 0.0", "teeth = 8, profile_shift = -0.3", "pair.pinion"),
+    ],
+)
+def test_impossible_gears_are_refused_under_their_keys(tmp_path, old, new, where):
+    told = flankfilm("check", scene_file(tmp_path, (old, new)), cwd=tmp_path, status=2).stderr
+    assert where in told
+
+
+def test_all_faults_of_both_gears_come_at_once(tmp_path):
+    path = scene_file(tmp_path, ("bore_mm = 33.5", "bore_mm = 70"), ("bore_mm = 37.5", "bore_mm = 78"))
+    told = flankfilm("run", path, cwd=tmp_path, status=2).stderr
+    assert "pair.pinion.bore_mm" in told
+    assert "pair.wheel.bore_mm" in told
+
+
+def test_missing_and_unreadable_places(tmp_path):
+    assert "does not exist" in flankfilm("run", "none.toml", cwd=tmp_path, status=2).stderr
+    assert "is a folder" in flankfilm("run", tmp_path, cwd=tmp_path, status=2).stderr
+    (tmp_path / "taken").write_text("a file")
+    told = flankfilm("run", EXAMPLES / "oscillator.toml", "--out", "taken", cwd=tmp_path, status=2).stderr
+    assert "is a file, not a folder" in told
+    told = flankfilm(
+        "run", EXAMPLES / "oscillator.toml", "--out", "/proc/none", cwd=tmp_path, status=2
+    ).stderr
+    assert "cannot be written" in told
+
+
+@pytest.mark.parametrize("tolerance", ["0", "-1%", "half", "50%", "nan", "0.5%%"])
+def test_a_senseless_tolerance_is_refused(tmp_path, tolerance):
+    told = flankfilm("run", scene_file(tmp_path), f"--tolerance={tolerance}", cwd=tmp_path, status=2).stderr
+    assert "--tolerance" in told
+
+
+def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):
+    code = (
+        "import sys, os, flankfilm.cli as cli\n"
+        "def full(handle): raise OSError(28, 'No space left on device')\n"
+        "os.fsync = full\n"
+        "sys.argv = ['flankfilm', 'run', sys.argv[1], '--out', sys.argv[2], '--no-cache']\n"
+        "cli.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, EXAMPLES / "oscillator.toml", tmp_path / "out"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2, done.stderr
+    assert "No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert list((tmp_path / "out").rglob("*.*")) == []
+
+
+@pytest.fixture(scope="module")
+def oscillator_run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("oscillator")
+    shutil.copy(EXAMPLES / "oscillator.toml", folder)
+    flankfilm("run", "oscillator.toml", "--out", "out", cwd=folder, FLANKFILM_CACHE=str(folder / "cache"))
+    return folder
+
+
+def test_dynamics_alone_loads_no_mesher_and_no_finite_elements(oscillator_run):
+    code = (
+        "import sys, pathlib\n"
+        "from flankfilm.run import run_scene\n"
+        "from flankfilm.scene import read_scene\n"
+        "run_scene(read_scene(pathlib.Path('oscillator.toml')), pathlib.Path('again'))\n"
+        "print({'gmsh', 'skfem', 'meshio', 'pyvista', 'vtkmodules'} & {n.partition('.')[0] for n in sys.modules})\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        cwd=oscillator_run,
+        check=True,
+        env={**os.environ, "FLANKFILM_CACHE": str(oscillator_run / "cache")},
+    )
+    assert done.stdout.strip() == "set()"
+
+
+def test_results_carry_units_scene_and_the_known_grazing(oscillator_run):
+    import xarray as xr
+
+    with xr.open_dataset(oscillator_run / "out" / "results.nc", engine="h5netcdf") as found:
+        assert found.sweep_up.shape == (400, 64, 2)
+        assert found.sweep_up.attrs["units"] == "1"
+        assert json.loads(found.attrs["scene_json"])["dynamics"]["damping_ratio"] == 0.05
+        grazing = found.contact_grazing_frequency.values
+    assert abs(grazing[0] - 0.633533993217297) < 1e-12
+
+
+def test_the_report_needs_nothing_else(oscillator_run):
+    page = (oscillator_run / "out" / "report.html").read_text(encoding="utf-8")
+    assert "<svg" in page
+    for outside in ('src="http', 'href="http', "<script", "<link"):
+        assert outside not in page
+    ids = [part.split('"')[0] for part in page.split(' id="')[1:]]
+    assert len(ids) == len(set(ids))
+
+
+def test_csv_reads_back(oscillator_run):
+    import pandas as pd
+
+    table = pd.read_csv(oscillator_run / "out" / "csv" / "sweep_up.csv")
+    assert list(table.columns) == ["frequency", "displacement", "velocity", "motion"]
+    assert len(table) == 400 * 64
