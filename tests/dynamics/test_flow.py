@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -105,9 +106,11 @@ def test_degree_and_cells_do_not_matter(osc, state):
 def test_error_falls_with_the_degree_as_theory_says(article):
     osc = article()
     exact = period_map(tables(osc, refinement=4, degree=30), (0.5, 0.2)).state
-    errors = [np.max(np.abs(period_map(tables(osc, degree=n), (0.5, 0.2)).state - exact)) for n in (6, 8, 10,
-    12)] # two degrees more gain about (1/2)^2 / (n^2) and never less than a factor of 16
-    assert all(later < earlier / 16 for earlier, later in zip(errors, errors[1:], strict=False))
+    errors = [
+        np.max(np.abs(period_map(tables(osc, degree=n), (0.5, 0.2)).state - exact)) for n in (6, 8, 10, 12)
+    ]
+    # two degrees more gain about (1/2)^2 / (n^2) and never less than a factor of 16
+    assert all(later < earlier / 16 for earlier, later in itertools.pairwise(errors))
     assert np.max(np.abs(period_map(tables(osc, degree=DEGREE), (0.5, 0.2)).state - exact)) < 5e-15
 
 
@@ -115,8 +118,8 @@ def test_halving_the_cell_gains_the_order(article):
     osc = article(half_backlash=0.0)
     exact = period_map(tables(osc, refinement=4, degree=30), (0.5, 0.2)).state
     errors = [
-        np.max(np.abs(period_map(tables(osc, refinement=r, degree=6), (0.5, 0.2)).state - exact)) for r in
-        (2, 4)
+        np.max(np.abs(period_map(tables(osc, refinement=r, degree=6), (0.5, 0.2)).state - exact))
+        for r in (2, 4)
     ]
     # the speed of a cell is wrong by h^6, there are 1/h cells
     assert 4.7 < np.log2(errors[0] / errors[1]) < 5.3
@@ -181,9 +184,12 @@ def test_jacobian_against_finite_differences(osc, state):
 def test_jacobian_sharply_between_impacts(article):
     osc, state, h = article(), np.array([0.5, 0.2]), 1e-6
     image = period_map(osc, state)
-    columns = [(period_map(osc, state + e).state - period_map(osc, state - e).state) / (2 * h) for e in
-    np.eye(2) * h] np.testing.assert_allclose(image.jacobian, np.transpose(columns), rtol=0, atol=3e-9)  #
-    h^2 plus rounding over h
+    columns = [
+        (period_map(osc, state + e).state - period_map(osc, state - e).state) / (2 * h) for e in np.eye(2) * h
+    ]
+    np.testing.assert_allclose(
+        image.jacobian, np.transpose(columns), rtol=0, atol=3e-9
+    )  # h^2 plus rounding / h
 
 
 @settings(max_examples=40, deadline=None)
@@ -192,8 +198,8 @@ def test_sampled_motion_ends_where_the_map_does(osc, state):
     motion = trajectory(osc, state, periods=2, points_per_period=16)
     image = period_map(osc, state, periods=2)
     np.testing.assert_allclose(motion.poincare[1:], image.states, rtol=0, atol=1e-13 * size(image))
-    exits = np.sum((motion.events[:, 1] == osc.half_backlash) & (motion.events[:, 3] < 1)) if
-    len(motion.events) else 0 if osc.half_backlash > 0:
+    exits = np.sum((motion.events[:, 1] == osc.half_backlash) & (motion.events[:, 3] < 1))
+    if osc.half_backlash > 0:
         assert exits == image.counts[:, 0].sum()
 
 

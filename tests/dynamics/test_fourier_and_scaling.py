@@ -78,8 +78,10 @@ def test_scales(scaling):
     j1, j2, r1, r2 = 9.1e-4, 1.35e-3, 33.829e-3, 37.588e-3
     assert 1 / scaling.equivalent_mass == pytest.approx(r1**2 / j1 + r2**2 / j2)
     assert scaling.length == pytest.approx(17736.0 / 7.7e7)
-    assert scaling.natural_frequency == pytest.approx(math.sqrt(7.7e8 / scaling.equivalent_mass) / (2 *
-    math.pi)) mesh_hertz = 2000 / 60 * 36
+    assert scaling.natural_frequency == pytest.approx(
+        math.sqrt(7.7e8 / scaling.equivalent_mass) / (2 * math.pi)
+    )
+    mesh_hertz = 2000 / 60 * 36
     assert scaling.frequency_from_rpm(2000.0) == pytest.approx(mesh_hertz / scaling.natural_frequency)
 
 
@@ -105,8 +107,12 @@ def test_length_is_a_free_choice(scaling):
     for length in (231e-6, 1e-6):
         s = Scaling(scaling.equivalent_mass, 7.7e8, length, 36)
         osc = s.oscillator(
-            stiffness=k, damping_ratio=0.05, force=17736.0, error_amplitude=10e-6, half_backlash=25e-6,
-            speed=700.0
+            stiffness=k,
+            damping_ratio=0.05,
+            force=17736.0,
+            error_amplitude=10e-6,
+            half_backlash=25e-6,
+            speed=700.0,
         )
         orbit = find_orbit(osc, (osc.half_backlash + osc.mean_force, 0.0), transient=100)
         motions.append([s.displacement(orbit.state[0]), s.velocity(orbit.state[1])])
@@ -117,8 +123,12 @@ def test_physical_equation_is_met(scaling):
     """The scaled equation, written out in newtons."""
     k = FourierStiffness(7.7e8, (1.386e8,), (0.2,))
     osc = scaling.oscillator(
-        stiffness=k, damping_ratio=0.05, force=17736.0, error_amplitude=10e-6, half_backlash=25e-6,
-        speed=700.0
+        stiffness=k,
+        damping_ratio=0.05,
+        force=17736.0,
+        error_amplitude=10e-6,
+        half_backlash=25e-6,
+        speed=700.0,
     )
     t, x, v = 1.3e-4, 80e-6, 0.02
     m, w = scaling.equivalent_mass, 700.0 * 36

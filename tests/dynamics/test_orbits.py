@@ -7,15 +7,27 @@ import pickle
 import numpy as np
 import pytest
 
-from dynamics import FourierStiffness, GearOscillator, contact_grazing, contact_orbit, find_orbit,
-period_map, sweep from dynamics.shooting import floquet_multipliers
+from dynamics import (
+    FourierStiffness,
+    GearOscillator,
+    contact_grazing,
+    contact_orbit,
+    find_orbit,
+    period_map,
+    sweep,
+)
+from dynamics.shooting import floquet_multipliers
 from dynamics.sweeps import repeat_after
 
 
 @pytest.mark.parametrize(
     ("frequency", "guess", "label"),
-    [(0.6, (0.35, 0.0), "1-0-0"), (0.6, (0.5, 0.2), "U1-1-0"), (0.6, (0.53, 0.25), "1-1-1"), (2.0, (0.4,
-    0.0), "1-1-0")],
+    [
+        (0.6, (0.35, 0.0), "1-0-0"),
+        (0.6, (0.5, 0.2), "U1-1-0"),
+        (0.6, (0.53, 0.25), "1-1-1"),
+        (2.0, (0.4, 0.0), "1-1-0"),
+    ],
 )
 def test_orbits_close_and_keep_the_determinant(article, frequency, guess, label):
     osc = article(frequency=frequency)
@@ -55,8 +67,8 @@ def test_longer_orbit(article):
 
 
 def test_no_orbit_is_said():
-    osc = GearOscillator(FourierStiffness(1.0), 0.0, 0.1, 0.2, 1.0, half_backlash=0.0)  # resonance without
-    damping orbit = find_orbit(osc, (0.3, 0.1))
+    osc = GearOscillator(FourierStiffness(1.0), 0.0, 0.1, 0.2, 1.0, half_backlash=0.0)  # undamped resonance
+    orbit = find_orbit(osc, (0.3, 0.1))
     assert not orbit.converged
     assert np.all(np.isnan(orbit.state))
     assert orbit.label == ""
@@ -82,8 +94,8 @@ def test_contact_orbit_is_the_orbit_while_it_clears_the_limit(article):
 def test_grazing_does_not_depend_on_the_backlash_and_mirrors(article):
     one = contact_grazing(article(), bounds=(0.4, 1.5)).points[0]
     for d in (0.0, 1e-13, 0.7):
-        assert contact_grazing(article(half_backlash=d), bounds=(0.4, 1.5)).points[0].parameter ==
-        one.parameter
+        other = contact_grazing(article(half_backlash=d), bounds=(0.4, 1.5)).points[0]
+        assert other.parameter == one.parameter
     mirrored = contact_grazing(article().mirrored(), bounds=(0.4, 1.5), side=-1).points[0]
     assert mirrored.parameter == one.parameter
     assert mirrored.boundary == -1
@@ -105,8 +117,8 @@ def test_grazing_in_other_parameters_is_the_same_point(article):
 def test_touch_is_a_touch(article):
     point = contact_grazing(article(), bounds=(0.4, 1.5)).points[0]
     osc = article(frequency=point.parameter)
-    assert point.acceleration == pytest.approx(float(osc.force(point.tau)), rel=1e-9)  # K f = 0 and V = 0
-    there assert point.stiffness == pytest.approx(float(osc.stiffness(osc.frequency * point.tau)))
+    assert point.acceleration == pytest.approx(float(osc.force(point.tau)), rel=1e-9)  # there K f = 0 = V
+    assert point.stiffness == pytest.approx(float(osc.stiffness(osc.frequency * point.tau)))
 
 
 @pytest.mark.parametrize("direction", ["up", "down"])
@@ -132,8 +144,9 @@ def test_sweep_result_keeps_the_order_given_and_pickles(article):
     again = pickle.loads(pickle.dumps(result))
     assert np.array_equal(again.states, result.states)
     for value, states in zip(values, result.states, strict=True):
-        assert np.allclose(period_map(article(frequency=value), states[-2]).state, states[-1], rtol=0,
-        atol=1e-13)
+        assert np.allclose(
+            period_map(article(frequency=value), states[-2]).state, states[-1], rtol=0, atol=1e-13
+        )
 
 
 def test_sweep_reports_progress(article):

@@ -49,8 +49,8 @@ def plain_taylor(osc: GearOscillator, state, periods: int = 1, steps: int = 4000
             region = 1 if x > d or (x == d and v > 0) else -1 if x < -d or (x == -d and v < 0) else 0
             c = series(t, x - region * d, v, float(region != 0 or d == 0))
             x_new = np.polyval(c, left) + region * d
-            inside = (x_new - d) * region >= 0 if region == 1 else (x_new + d) <= 0 if region else abs(x_new)
-            <= d if inside:
+            inside = abs(x_new) <= d if region == 0 else x_new * region >= d
+            if inside:
                 x, v = x_new, np.polyval(np.polyder(c), left)
                 break
             low, high = 0.0, left
@@ -104,8 +104,10 @@ def test_negative_stiffness(kappa, zeta):
     osc = oscillator(kappa=kappa, damping_ratio=zeta, frequency=0.9)
     image = period_map(osc, (0.4, 0.1))
     size = max(1.0, np.max(np.abs(image.jacobian)))
-    np.testing.assert_allclose(image.state, plain_taylor(osc, (0.4, 0.1), steps=1000), rtol=0, atol=1e-12 *
-    size) j = image.jacobian
+    np.testing.assert_allclose(
+        image.state, plain_taylor(osc, (0.4, 0.1), steps=1000), rtol=0, atol=1e-12 * size
+    )
+    j = image.jacobian
     scale = abs(j[0, 0] * j[1, 1]) + abs(j[0, 1] * j[1, 0])
     assert abs(np.linalg.det(j) - np.exp(-2 * zeta * osc.period)) <= 1e-13 * max(scale, 1.0)
 
@@ -140,8 +142,10 @@ def test_slow_excitation_with_many_crossings():
     assert len(motion.events) > 100
     image = period_map(osc, start)
     stretch = np.max(np.abs(image.jacobian))
-    np.testing.assert_allclose(image.state, plain_taylor(osc, start, steps=3000), rtol=0, atol=1e-12 *
-    stretch) assert period_map(osc, start).counts.sum() == np.sum(
+    np.testing.assert_allclose(
+        image.state, plain_taylor(osc, start, steps=3000), rtol=0, atol=1e-12 * stretch
+    )
+    assert period_map(osc, start).counts.sum() == np.sum(
         ((motion.events[:, 1] > 0) & (motion.events[:, 3] == 0)) | (motion.events[:, 3] == -1)
     )
 

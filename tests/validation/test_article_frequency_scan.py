@@ -31,7 +31,7 @@ def test_starved_grazing_is_printed_late():
 
 
 def test_lubricated_scan_from_both_ends():
-    """What the article describes: 1-0-0 first, 1-1-0 last, a hysteresis from 0.5694 to 0.6556, 2-1-1 and 6-4-4 between."""
+    """As the article says: 1-0-0 first, 1-1-0 last, hysteresis from 0.5694 to 0.6556, 2-1-1 and 6-4-4 between."""
     osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     values = np.linspace(0.1, 2.1, 201)
     up, down = (sweep(osc, values=values, direction=d) for d in ("up", "down"))

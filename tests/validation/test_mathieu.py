@@ -48,5 +48,8 @@ def test_trace(a, q, trace):
 
 @pytest.mark.parametrize(("name", "a", "trace"), CHARACTERISTIC)
 def test_characteristic_value(name, a, trace):
-    found = brentq(lambda at: np.trace(monodromy(at, 1.0)) - trace, a - 0.02, a + 0.02, xtol=1e-15,
-    rtol=1e-15) assert found == pytest.approx(a, rel=0, abs=1e-12)
+    def off(at: float) -> float:
+        return float(np.trace(monodromy(at, 1.0))) - trace
+
+    found = brentq(off, a - 0.02, a + 0.02, xtol=1e-15, rtol=1e-15)
+    assert found == pytest.approx(a, rel=0, abs=1e-12)
