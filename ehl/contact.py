@@ -121,6 +121,8 @@ class LineContact:
         )
         faults += number_fault("reduced_modulus", reduced_modulus, low=0.0, high=1e14, remedy="give E' in Pa")
         faults += number_fault("radius", radius, low=0.0, high=1e6, remedy="give R in m")
+        if not faults and 0.0 < L < 1e-6:
+            faults.append(Fault("L", repr(L), "0 or at least 1e-6", "give L=0 for a constant viscosity"))
         if faults:
             raise EhlInputError(faults)
         alpha = pressure_viscosity if L > 0 else 0.0

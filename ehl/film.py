@@ -60,11 +60,11 @@ class Film:
     minimum_thickness: float  # least h inside the film [m]
     minimum_position: float  # x of the least h [m]
     inlet: float  # x where the domain begins [m]
-    outlet: float  # x of the last node under pressure [m]: the end of the film to within a cell
+    outlet: float  # x where the film ends [m]
     prop: float  # approach of the dry contact minus approach of the film [m]
     prop_slope: float  # d prop/d load at fixed speed [m per N/m]
     central_slope: float  # d h_cen/d load at fixed speed [m per N/m]
-    flow: float  # rho h u - ..., mass flow over rho0 and u [m]: the thickness that leaves the contact
+    flow: float  # mass flow over rho0 u [m]: the film that leaves the contact at ambient pressure
     flux_error: float  # largest deviation of the mass flow inside the film, relative
     load_error: float  # of the integral of the pressure, relative
     error: float  # estimated relative error of central and minimum thickness, the larger

@@ -97,6 +97,7 @@ class Figures:
     central: float
     minimum: float
     position: float
+    outlet: float
     prop: float
 
 
@@ -121,8 +122,18 @@ def figures(level: Level) -> Figures:
         central=centre_gap(grid, groups, found.P, found.H0) * groups.gap,
         minimum=float(lowest + shift * (slope + shift * curve)) * groups.gap,
         position=float(grid.nodes[i] + shift) * groups.length,
+        outlet=_outlet(grid.nodes, found.P) * groups.length,
         prop=(found.H0 + _dry(grid)) * groups.gap,
     )
+
+
+def _outlet(X: Array, P: Array) -> float:
+    """Return the end of the film: P goes to zero as the square of the distance, from its last two values."""
+    i = int(np.flatnonzero(P > 0.0)[-1])
+    last, before = math.sqrt(P[i]), math.sqrt(P[i - 1])
+    if before <= last:
+        return float(X[i + 1])
+    return float(min(X[i] + (X[i] - X[i - 1]) * last / (before - last), X[i + 1]))
 
 
 def _dry(grid: Grid) -> float:

@@ -7,7 +7,7 @@ import warnings
 from dataclasses import dataclass
 
 from ehl.contact import LineContact
-from ehl.errors import EhlWarning
+from ehl.errors import EhlInputError, EhlWarning, Fault
 
 __all__ = ["FormulaFilm", "dowson", "dowson_higginson_minimum", "dowson_toyoda_central", "moes_central"]
 
@@ -89,14 +89,15 @@ class FormulaFilm:
     def stiffness(self, definition: str = "dowson-central") -> float:
         """Film stiffness [N/m per m of face], a tangent since the formulas are powers of the load.
 
-        ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m).
+        ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise EhlInputError.
         """
         if definition == "dowson-central":
             return 10.0 * self.contact.load / self.central_thickness
         if definition == "dowson-minimum":
             return self.contact.load / (0.13 * self.minimum_thickness)
-        raise ValueError(
-            f"definition = {definition!r}: a formula knows 'dowson-central' and 'dowson-minimum' only"
+        allowed = "dowson-central or dowson-minimum"
+        raise EhlInputError(
+            [Fault("definition", repr(definition), allowed, "solve the contact for the others")]
         )
 
 

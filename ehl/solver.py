@@ -20,6 +20,7 @@ from ehl.regressions import moes_central
 __all__ = ["solve", "solve_path"]
 
 _FIRST_NODES = 65
+_MOST_FIRST_NODES = 257
 _MOST_NODES = 1025
 _REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the propping below 1e-3
 _PROP_LOSS = 20.0  # times the film's own error by the finite inlet
@@ -118,6 +119,14 @@ class _Run:
                 return level
             self.attempts += 1
         return self.descend(level)
+
+    def pair(self, half: int, n: int) -> tuple[Level, Level]:
+        """Solve a coarse and a fine grid from nothing, the one that gives in first before the other."""
+        coarse = self.cold(half)
+        if coarse.found.converged:
+            return coarse, self.warm(coarse, None, n)
+        fine = self.cold(n)
+        return (self.warm(fine, None, half) if fine.found.converged else coarse), fine
 
     def descend(self, failed: Level) -> Level:
         """Continue in the load, from a contact soft enough to be solved from cold, on the failed grid."""
@@ -225,8 +234,10 @@ def solve(
         n = old.fine.grid.nodes.size
     half = (n + 1) // 2
     if old is None:
-        coarse = run.cold(half)
-        fine = run.warm(coarse, None, n) if coarse.found.converged else run.cold(n)
+        coarse, fine = run.pair(half, n)
+        while nodes is None and not coarse.found.converged and n < _MOST_FIRST_NODES:
+            half, n = n, 2 * n - 1
+            coarse, fine = run.pair(half, n)
     else:
         same = old.plan is plan
         coarse = run.warm(old.coarse if same else old.fine, _same(old.coarse, half, same), half)
@@ -295,7 +306,7 @@ def _film(run: _Run, coarse: Level, fine: Level, error: float, inlet: float) -> 
         minimum_thickness=shown.minimum,
         minimum_position=shown.position,
         inlet=float(x[0]),
-        outlet=float(x[np.flatnonzero(found.P > 0.0)[-1]]),
+        outlet=shown.outlet,
         prop=shown.prop,
         prop_slope=slope.prop / contact.load,
         central_slope=slope.central / contact.load,

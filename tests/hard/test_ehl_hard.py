@@ -1,0 +1,199 @@
+"""Line contacts on which solvers fail: each is solved, or refused with the reason and a remedy."""
+
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ehl import EhlWarning, LineContact, Lubricant, solve, solve_path
+
+OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
+SECTION_2 = LineContact(1e5, 1.0, 0.015, 2.2e11, Lubricant(0.06, 22.6e-9, 910.0))
+
+
+@pytest.fixture(autouse=True)
+def _known_warnings():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EhlWarning)
+        yield
+
+
+def sound(film):
+    assert film.converged, film.message
+    assert film.load_error < 1e-12
+    assert film.flux_error < 1e-8
+    assert (film.pressure >= 0).all()
+    assert (film.thickness > 0).all()
+    assert film.minimum_thickness > 0
+    return film
+
+
+def refused(film):
+    assert not film.converged
+    assert math.isnan(film.central_thickness)
+    assert math.isnan(film.minimum_thickness)
+    assert math.isnan(film.stiffness("tangent"))
+    return film.message
+
+
+def test_uniform_grids_of_the_source_article():
+    # 130 equal steps on [-4, 1.2]; second-order upwinding runs into limit cycles at the pitch point
+    for nodes in (129, 130):
+        film = sound(solve(PITCH, nodes=nodes, domain=(-4.0, 1.2), grid="uniform"))
+        assert film.central_moes == pytest.approx(5.8562, rel=0.005)
+    film = sound(solve(SECTION_2, nodes=130, domain=(-4.0, 1.2), grid="uniform"))
+    assert film.central_moes == pytest.approx(5.7187, rel=0.005)
+    # the long inlet that this domain cuts off
+    full = solve(SECTION_2)
+    assert film.central_thickness / full.central_thickness == pytest.approx(0.974, abs=0.005)
+
+
+def test_coarse_grids_never_give_a_negative_film():
+    sound(solve(LineContact.from_moes(200.0, 15.0), nodes=65))
+    film = sound(solve(LineContact.from_moes(100.0, 10.0), nodes=65, domain=(-4, 1.5), grid="uniform"))
+    assert film.error > 0.05
+
+
+@pytest.mark.parametrize("pressure", [3e9, 4e9])
+def test_very_high_pressure(pressure):
+    load = 2 * math.pi * PITCH.radius * pressure**2 / PITCH.reduced_modulus
+    film = sound(solve(replace(PITCH, load=load)))
+    assert film.contact.peak_pressure == pytest.approx(pressure)
+    assert film.stiffness() > 0
+
+
+@pytest.mark.parametrize(("M", "L"), [(200, 20), (200, 25), (1000, 25), (5000, 0), (5000, 1), (5000, 2)])
+def test_heavy_contacts(M, L):
+    film = sound(solve(LineContact.from_moes(M, L)))
+    assert film.error < 0.005
+
+
+@pytest.mark.parametrize("M", [500, 1000, 3000])
+def test_soft_contacts(M):
+    film = sound(solve(LineContact.from_moes(M, 0.0, compressible=False)))
+    assert film.central_moes * M**0.2 == pytest.approx(2.49, rel=0.01)
+
+
+@pytest.mark.parametrize("L", [5.0, 20.0])
+@pytest.mark.parametrize("M", [1e-3, 0.01, 0.1])
+def test_light_contacts(M, L):
+    film = sound(solve(LineContact.from_moes(M, L)))
+    assert film.minimum_moes * M == pytest.approx(2.448, rel=0.2 if M == 0.1 else 0.02)
+
+
+def test_alpha_times_pressure_of_forty():
+    contact = LineContact.from_moes(M=2 * math.pi * 4.0**2, L=10.0)
+    assert contact.lubricant.pressure_viscosity * contact.peak_pressure == pytest.approx(40.0)
+    sound(solve(contact))
+    sound(solve(LineContact.from_moes(M=2 * math.pi * 4.0**2, L=10.0, roelands_z=1.0)))
+
+
+def test_inlet_near_the_dry_contact():
+    full = solve(PITCH).central_thickness
+    last = full
+    for inlet in (-1.5, -1.2, -1.1, -1.05):
+        film = sound(solve(PITCH, domain=(inlet, 1.5)))
+        assert film.central_thickness < last
+        last = film.central_thickness
+    for inlet in (-1.03, -1.01):
+        film = solve(PITCH, domain=(inlet, 1.5))
+        if film.converged:
+            assert sound(film).central_thickness < last
+        else:
+            assert "inlet" in refused(film)
+    assert "inlet" in refused(solve(PITCH, domain=(-1.0, 1.5)))
+
+
+def test_speed_towards_zero():
+    last = math.inf
+    for u in (1.0, 1e-2, 1e-4):
+        film = sound(solve(replace(PITCH, entrainment=u), tolerance=0.01))
+        assert film.central_thickness < last
+        assert film.stiffness() > 0
+        last = film.central_thickness
+    for u in (1e-7,):
+        film = solve(replace(PITCH, entrainment=u))
+        if not film.converged:
+            assert "dry" in refused(film)
+        else:
+            sound(film)
+    assert "dry" in refused(solve(replace(PITCH, entrainment=1e-12)))
+
+
+def test_load_towards_zero():
+    # a pair about to leave contact: the film grows as 1/w and never runs out of a solution
+    for w in (1e3, 1.0, 1e-3, 1e-9):
+        film = sound(solve(replace(PITCH, load=w)))
+        martin = 4.896 * 0.075 * 2.579 * PITCH.radius / w
+        assert film.minimum_thickness == pytest.approx(martin, rel=0.06 if w > 100 else 0.002)
+        assert film.prop == pytest.approx(film.central_thickness, rel=0.2)
+        assert film.stiffness() == pytest.approx(w / film.prop, rel=0.2)
+
+
+def test_film_as_soft_as_the_tooth():
+    # tooth 5.6e8 N/m at a face of 40 mm; an independent solver puts -dF/dh_c there at about 320 N
+    forces = np.geomspace(20.0, 2000.0, 25)
+    films = [sound(f) for f in solve_path([replace(PITCH, load=F / 0.04) for F in forces])]
+    for definition, crossing in (("tangent", 320.0), ("approach", 310.0)):
+        stiffness = np.array([0.04 * f.stiffness(definition) for f in films])
+        soft = forces < 500
+        assert (np.diff(stiffness[soft]) > 0).all()
+        found = np.exp(np.interp(np.log(5.6e8), np.log(stiffness[soft]), np.log(forces[soft])))
+        assert found == pytest.approx(crossing, rel=0.05)
+    # the propping hardly depends on the load where the bodies begin to flatten: nearly rigid, never negative
+    assert min(f.stiffness("approach") for f in films) > 0
+
+
+def test_load_share_jumping_between_a_half_and_one():
+    contacts = [replace(PITCH, load=PITCH.load * (0.5 if k % 2 else 1.0)) for k in range(20)]
+    films = [sound(f) for f in solve_path(contacts)]
+    for pair in (films[0::2], films[1::2]):
+        values = [f.central_thickness for f in pair]
+        assert max(values) / min(values) - 1 < 1e-6
+
+
+def test_alternating_between_very_different_contacts():
+    contacts = [replace(PITCH, load=10.0), PITCH, replace(PITCH, entrainment=1e-3), replace(PITCH, load=1e-3)]
+    for film, contact in zip(solve_path(contacts * 2), contacts * 2, strict=True):
+        assert sound(film).central_thickness == pytest.approx(solve(contact).central_thickness, rel=0.005)
+
+
+@pytest.mark.slow
+def test_map_of_moes_numbers():
+    for M in np.geomspace(0.5, 5000, 25):
+        for L in np.linspace(0, 25, 11):
+            sound(solve(LineContact.from_moes(M, L)))
+
+
+def random_contact(rng):
+    """Return a contact of p_H .2 to 3 GPa, u .05 to 30 m/s, R 2 to 50 mm, eta0 .005 to .5, alpha 10 to 30 /GPa."""
+    while True:
+        viscosity, alpha = np.exp(rng.uniform(np.log(0.005), np.log(0.5))), rng.uniform(10e-9, 30e-9)
+        oil = Lubricant(viscosity, alpha)
+        radius = np.exp(rng.uniform(np.log(2e-3), np.log(50e-3)))
+        load = 2 * np.pi * radius * rng.uniform(0.2e9, 3e9) ** 2 / 2.2e11
+        contact = LineContact(load, np.exp(rng.uniform(np.log(0.05), np.log(30))), radius, 2.2e11, oil)
+        if 0.2 <= oil.z <= 1 and contact.moes_L <= 25:
+            return contact
+
+
+@pytest.mark.slow
+def test_random_contacts():
+    rng = np.random.default_rng()
+    films = [solve(random_contact(rng)) for _ in range(500)]
+    for film in films:
+        sound(film)
+        assert film.stiffness() > 0
+    assert sum(f.cost.attempts == 1 for f in films) >= 498
+    beyond = 0
+    for film in films[:100]:
+        fine = solve(film.contact, nodes=1025)
+        true = max(
+            abs(film.central_thickness / fine.central_thickness - 1),
+            abs(film.minimum_thickness / fine.minimum_thickness - 1),
+        )
+        beyond += true > 2 * film.error
+    assert beyond <= 2

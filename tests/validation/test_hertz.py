@@ -1,0 +1,38 @@
+"""The dry contact of two cylinders: H. Hertz (1881); K. L. Johnson, Contact Mechanics (1985), section 4.2(c)."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from ehl import EhlWarning, LineContact, Lubricant, hertz_approach, solve
+
+OIL = Lubricant(viscosity=0.05, pressure_viscosity=2e-8)
+
+
+def test_a_thin_film_leaves_the_pressure_of_the_dry_contact():
+    deviations, props = [], []
+    for u in (1e-1, 1e-2, 1e-3):
+        contact = LineContact(2e5, u, 0.01, 2.2e11, OIL)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", EhlWarning)
+            film = solve(contact, nodes=257)
+        b = contact.half_width
+        inner = np.abs(film.x) < 0.8 * b
+        hertz = contact.peak_pressure * np.sqrt(1 - (film.x[inner] / b) ** 2)
+        deviations.append(np.max(np.abs(film.pressure[inner] - hertz)) / contact.peak_pressure)
+        props.append(film.prop * contact.radius / b**2)
+    assert deviations[2] < 2e-3
+    assert deviations[0] > 2 * deviations[1] > 4 * deviations[2]
+    assert props[2] < 2e-3
+    assert props[0] > 3 * props[1] > 9 * props[2]
+
+
+def test_the_scale_of_the_propping_is_the_dry_approach():
+    contact = LineContact(2e5, 1e-3, 0.01, 2.2e11, OIL)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EhlWarning)
+        film = solve(contact, nodes=257)
+    # the dry approach is hundreds of films: none of it may be left in the propping
+    assert hertz_approach(contact) > 100 * film.central_thickness
+    assert film.prop == pytest.approx(1.12 * film.central_thickness, rel=0.02)
