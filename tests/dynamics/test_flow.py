@@ -199,7 +199,8 @@ def test_sampled_motion_ends_where_the_map_does(osc, state):
     image = period_map(osc, state, periods=2)
     np.testing.assert_allclose(motion.poincare[1:], image.states, rtol=0, atol=1e-13 * size(image))
     exits = np.sum((motion.events[:, 1] == osc.half_backlash) & (motion.events[:, 3] < 1))
-    if osc.half_backlash > 0:
+    near = np.min(np.abs(np.abs(motion.extrema[:, 1]) - osc.half_backlash), initial=1.0)
+    if osc.half_backlash > 0 and near > 1e-12:  # a touch up to rounding may be seen by one and not by the other
         assert exits == image.counts[:, 0].sum()
 
 
