@@ -80,7 +80,8 @@ def share_load(
     gaps : (..., pairs) array
         Clearances left when the gears touch unloaded, >= 0; inf for a pair that cannot touch [m].
     film : DeflectionLaw or None
-        s_i(F_i) >= 0, what an oil film props the flanks apart, with slope <= 0; None is dry.
+        s_i(F_i) >= 0, what an oil film props the flanks apart, finite at zero force, with slope <= 0; None is
+        dry.
 
     Returns
     -------
@@ -101,7 +102,7 @@ def share_load(
     _check(force, stiff, clear)
     touchable = np.isfinite(clear)
     nothing = np.zeros_like(clear)
-    at_zero = clear if film is None else clear - film.approach(nothing)
+    at_zero = clear if film is None else clear - _finite(film.approach(nothing))
     if force == 0.0:
         return _first_touch(stiff, hertz, film, at_zero)
     clear = np.where(touchable, clear, 0.0)
@@ -179,6 +180,14 @@ def _first_touch(bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, 
     compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + slope
     first = np.take_along_axis(compliance, at_zero.argmin(axis=-1)[..., None], axis=-1)[..., 0]
     return LoadShare(nothing, approach, np.asarray(1.0 / first), 0)
+
+
+def _finite(prop: Array) -> Array:
+    """Refuse a film that grows without bound as the force falls; every pair would carry on it."""
+    if not np.all(np.isfinite(prop)):
+        remedy = "bound the film's thickness as the force goes to zero"
+        raise LoadSharingError([Fault("film", "not finite at zero force", "a finite thickness", remedy)])
+    return prop
 
 
 def _check(force: float, bulk: Array, gaps: Array) -> None:
