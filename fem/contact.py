@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 from time import perf_counter
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.compliance import Compliance, Cost, compliance as _compliance
+from fem.compliance import Compliance, Cost
+from fem.compliance import compliance as _compliance
 from fem.errors import Fault, FemError
 from fem.local_law import Film, FilmLaw, PairLaws, Table
 from fem.tip_contact import edge_laws, lever_ratio
@@ -182,9 +182,7 @@ def mesh_cycle(
         perf_counter() - began,
         bodies.cost.unknowns,
         share.iterations,
-        MappingProxyType(
-            {**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready}
-        ),
+        dict({**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready}),
     )
     return MeshCycle(
         torque=float(torque),
@@ -220,6 +218,11 @@ class _Candidates:
     touchable: NDArray[np.bool_]
     edge: NDArray[np.bool_]
 
+    def corners(self, start: float) -> tuple[tuple[int, NDArray[np.bool_]], ...]:
+        """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
+        before = self.edge & (self.rho1 < start)
+        return (1, before), (0, self.edge & ~before)
+
 
 def _candidates(pair: GearPair, positions: int, beyond_path: bool) -> _Candidates:
     position = (np.arange(positions) + 0.5) / positions
@@ -251,39 +254,30 @@ def _edge_contacts(
     lever = np.ones_like(gaps)
     if not where.edge.any():
         return lever, gaps, None
-    rows: dict[str, list[Array]] = {"place": [], "force": [], "approach": []}
-    for corner, chosen in (
-        (1, where.edge & (where.rho1 < points.A)),
-        (0, where.edge & (where.rho1 > points.E)),
-    ):
-        law = edge_laws(
-            pair,
-            bodies.tips[corner],
-            corner,
-            where.rho1[chosen],
-            (bodies.pinion, bodies.wheel)[1 - corner].law,
-        )
+    places: list[NDArray[np.int64]] = []
+    forces: list[Array] = []
+    approaches: list[Array] = []
+    for corner, chosen in where.corners(points.A):
+        touched = (bodies.pinion, bodies.wheel)[1 - corner].law
+        law = edge_laws(pair, bodies.tips[corner], corner, where.rho1[chosen], touched)
         kappa = lever_ratio(pair, law.where, where.rho1[chosen]) if corner == 0 else np.ones(len(law.where))
         end = pair.teeth_profiles[corner].flank_rho[1]
         rho1[chosen], rho2[chosen] = (law.where, end) if corner == 1 else (end, law.where)
         lever[chosen] = kappa
         gaps[chosen] = law.approach[:, 0] / kappa
-        rows["place"].append(np.flatnonzero(chosen))
-        rows["force"].append(law.force * kappa[:, None])
-        rows["approach"].append((law.approach - law.approach[:, :1]) / kappa[:, None])
-    order = np.argsort(np.concatenate(rows["place"]))
-    force, approach = (np.concatenate(rows[name])[order] for name in ("force", "approach"))
+        places.append(np.flatnonzero(chosen).astype(np.int64))
+        forces.append(law.force * kappa[:, None])
+        approaches.append((law.approach - law.approach[:, :1]) / kappa[:, None])
+    order = np.argsort(np.concatenate(places))
+    force, approach = np.concatenate(forces)[order], np.concatenate(approaches)[order]
     return lever, gaps, Table.through(force, approach)
 
 
 def _leave_out_corner(bodies: Compliance, matrix: Array, where: _Candidates) -> None:
-    """The edge's law holds its own tooth's flexibility already: keep only the touched flank's."""
+    """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
     points = bodies.pair.points
     width = bodies.pair.face_width
-    for corner, chosen in (
-        (1, where.edge & (where.rho1 < points.A)),
-        (0, where.edge & (where.rho1 > points.E)),
-    ):
+    for corner, chosen in where.corners(points.A):
         gear = (bodies.pinion, bodies.wheel)[corner]
         at_end = float(gear.own(np.array([gear.rho_end]))[0]) / width
         position, column = np.nonzero(chosen)

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.errors import Fault, FemError
+from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
     from gears import Material
 
-__all__ = ["PlaneElasticity", "nodal_stress_matrix", "shape", "shape_gradients", "stiffness_matrix", "stress_at"]
+__all__ = ["PlaneElasticity", "nodal_stress_matrix", "stiffness_matrix", "stress_at"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -39,6 +40,7 @@ class PlaneElasticity:
     nu: float
 
     def __post_init__(self) -> None:
+        """Refuse an unknown plane."""
         if self.plane not in ("strain", "stress"):
             raise FemError(
                 Fault("plane", repr(self.plane), '"strain" or "stress"', "wide gears are nearer plane strain")
@@ -71,7 +73,7 @@ class PlaneElasticity:
         return self.plane_modulus * self.plane_poisson / (1 - self.plane_poisson**2), mu
 
     def out_of_plane_stress(self, stress: Array) -> Array:
-        """sigma_zz [Pa] from in-plane stresses (..., 2, 2): nu (sigma_xx + sigma_yy) in plane strain, else 0."""
+        """Give sigma_zz [Pa] of stresses (..., 2, 2): nu (sigma_xx + sigma_yy) in plane strain, else 0."""
         trace: Array = stress[..., 0, 0] + stress[..., 1, 1]
         return self.nu * trace if self.plane == "strain" else np.zeros_like(trace)
 
@@ -81,31 +83,6 @@ _A, _B = 0.445948490915965, 0.091576213509771
 _XI = np.array([_A, 1 - 2 * _A, _A, _B, 1 - 2 * _B, _B])
 _ETA = np.array([_A, _A, 1 - 2 * _A, _B, _B, 1 - 2 * _B])
 _WEIGHT = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
-
-
-def shape(xi: Array, eta: Array) -> Array:
-    """Values (..., 6) of the P2 shape functions; node order as in ``meshes.SectorMesh.triangles``."""
-    l0 = 1 - xi - eta
-    return np.stack(
-        [
-            l0 * (2 * l0 - 1),
-            xi * (2 * xi - 1),
-            eta * (2 * eta - 1),
-            4 * xi * l0,
-            4 * xi * eta,
-            4 * eta * l0,
-        ],
-        axis=-1,
-    )
-
-
-def shape_gradients(xi: Array, eta: Array) -> Array:
-    """Gradients (..., 6, 2) of the P2 shape functions with respect to the reference coordinates."""
-    l0 = 1 - xi - eta
-    zero = np.zeros_like(xi)
-    d_xi = np.stack([1 - 4 * l0, 4 * xi - 1, zero, 4 * (l0 - xi), 4 * eta, -4 * eta], axis=-1)
-    d_eta = np.stack([1 - 4 * l0, zero, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (l0 - eta)], axis=-1)
-    return np.stack([d_xi, d_eta], axis=-1)
 
 
 def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) -> tuple[Array, Array]:
@@ -164,8 +141,7 @@ def nodal_stress_matrix(points: Array, triangles: Index, law: PlaneElasticity) -
     from scipy.sparse import coo_array
 
     lam, mu = law.lame
-    corners = np.array([[0.0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
-    gradient, _ = _physical_gradients(points, triangles, corners[:, 0], corners[:, 1])
+    gradient, _ = _physical_gradients(points, triangles, NODES[:, 0], NODES[:, 1])
     share = 1.0 / np.bincount(triangles.ravel(), minlength=len(points))[triangles]
     dx, dy = (gradient[..., axis] * share[:, :, None] for axis in (0, 1))  # (elements, node at, node of)
     blocks = np.stack(

@@ -17,6 +17,7 @@ class Fault:
     remedy: str
 
     def __str__(self) -> str:
+        """One line: where, value, what is allowed, remedy."""
         return f"{self.where} = {self.value}: allowed {self.allowed}; {self.remedy}"
 
 

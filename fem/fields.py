@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem import flamant
-from fem.compliance import Compliance, compliance as _compliance, mesh_and_factor
+from fem.compliance import Compliance, mesh_and_factor
+from fem.compliance import compliance as _compliance
 from fem.contact import MeshCycle
 from fem.elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.errors import Fault, FemError
@@ -114,7 +115,7 @@ def loaded_fields(
         raise FemError(Fault("position", f"{position!r}", allowed, "give a row of the cycle"))
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     if rings is None:
-        rings, _ = mesh_and_factor(pair, bodies.plane, bodies.sizes, bodies.refinements, bodies.reach)
+        rings, _ = mesh_and_factor(pair, bodies.plane, bodies.sizes, bodies.refinements)
     start = pair.points.A + cycle.position[position] * pair.base_pitch
     placed = pair.placement(float(start))
     turns = ((placed.pinion_angle, np.zeros(2)), (placed.wheel_angle, placed.wheel_centre))
@@ -128,7 +129,7 @@ def loaded_fields(
 def _contacts(
     pair: GearPair, cycle: MeshCycle, position: int, ring: Ring, gear: int, bodies: Compliance
 ) -> list[_Contact]:
-    """Loads on one gear; a tip edge presses at the least distance from the corner that loads may have."""
+    """List the loads on one gear; a tip edge presses at the least distance from the corner."""
     contacts = []
     flexible = (bodies.pinion, bodies.wheel)[gear]
     for column in np.flatnonzero(cycle.forces[position] > 0):
@@ -218,9 +219,7 @@ def _sector_field(
     )
 
 
-def _near_field(
-    points: Array, contact: _Contact, law: PlaneElasticity, length: float
-) -> tuple[Array, Array]:
+def _near_field(points: Array, contact: _Contact, law: PlaneElasticity, length: float) -> tuple[Array, Array]:
     """Displacement and stress of the contact itself."""
     load, inward = contact.at.points[0], contact.at.inward[0]
     a, w = contact.half_width, contact.line_load
@@ -240,7 +239,7 @@ def _near_field(
 
 
 def _hertz_displacement(points: Array, contact: _Contact, law: PlaneElasticity, length: float) -> Array:
-    """Flamant's displacement spread over the Hertz pressure: Gauss quadrature with the weight sqrt(1 - t^2)."""
+    """Spread Flamant's displacement over the Hertz pressure by Gauss quadrature with weight sqrt(1 - t^2)."""
     n = 24
     angle = np.pi * np.arange(1, n + 1) / (n + 1)
     load, inward = contact.at.points[0], contact.at.inward[0]

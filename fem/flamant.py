@@ -42,7 +42,8 @@ def displacement(points: Array, load: Array, inward: Array, law: PlaneElasticity
     turning = factor * (log * sin + half_plus * sin - half_minus * theta * cos)
     u_along, u_across = radial * cos - turning * sin, radial * sin + turning * cos
     side = np.array([-inward[1], inward[0]])
-    return np.multiply.outer(u_along, inward) + np.multiply.outer(u_across, side)
+    moved: Array = np.multiply.outer(u_along, inward) + np.multiply.outer(u_across, side)
+    return moved
 
 
 def stress(points: Array, load: Array, inward: Array) -> Array:
@@ -63,7 +64,7 @@ def traction(points: Array, normal: Array, load: Array, inward: Array) -> Array:
     return size[:, None] * away
 
 
-def hertz_half_width(line_load: Array, radius: Array, reduced_modulus: float) -> Array:
+def hertz_half_width(line_load: float | Array, radius: Array, reduced_modulus: float) -> Array:
     """Half-width of a Hertzian line contact a = sqrt(8 w R/(pi E')) [m].
 
     Parameters
@@ -79,8 +80,8 @@ def hertz_half_width(line_load: Array, radius: Array, reduced_modulus: float) ->
     return width
 
 
-def hertz_indentation(half_width: Array, law: PlaneElasticity, length: float) -> Array:
-    """Normal displacement of one surface under the middle of a Hertz pressure, per unit line load [m^2/N].
+def hertz_indentation(half_width: float | Array, law: PlaneElasticity, length: float) -> Array:
+    """Displace one surface under the middle of a Hertz pressure, per unit line load [m per N/m].
 
     The Flamant displacement of the edge averaged over the pressure,
     2/(pi E*) [ln(2 length/a) + 1/2 - (1 + nu*)/2]: it is relative to the same zero as ``displacement``.

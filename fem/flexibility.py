@@ -1,8 +1,8 @@
-"""Flexibility of one gear's flank: own tooth and neighbouring teeth, as smooth functions of the load's place.
+"""Flexibility of one gear's flank: own tooth and neighbouring teeth, as smooth functions of rho.
 
-Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear, root,
-body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a wedge
-yields more than a half-plane. With the interior angle 2 beta of the corner and gamma = pi/2 - beta between
+Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear,
+root, body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a
+wedge yields more than a half-plane. With the interior angle 2 beta of the corner and gamma = pi/2 - beta between
 load and bisector, Michell's wedge under a force at its apex gives
 
     u_r ~ c ln d,   c = [2/pi - cos^2 gamma/(beta + sin(2 beta)/2) - sin^2 gamma/(beta - sin(2 beta)/2)]/E*
@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -84,11 +83,11 @@ class GearFlexibility:
         """u_r at the load along the load [m per N/m]; rho [m] beyond the range is moved to its end."""
         rho = np.clip(rho, *self.rho_range)
         away = (self.rho_end**2 - rho**2) / (2 * self.base_radius)
-        own: Array = chebyshev.chebval(self._unit(rho), self.own_series)
-        return own + self.logarithm * np.log(away / self.module)
+        own = chebyshev.chebval(self._unit(rho), self.own_series)
+        return np.asarray(own + self.logarithm * np.log(away / self.module))
 
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
-        """Displacement along its inward normal at ``point`` of another tooth by a load at ``load`` of tooth 0.
+        """Displacement along the inward normal of another tooth by a load on tooth 0.
 
         Parameters
         ----------
@@ -102,8 +101,7 @@ class GearFlexibility:
         array
             [m per N/m]
         """
-        value: Array = chebyshev.chebval2d(self._unit(load), self._unit(point), self.cross_series[tooth])
-        return value
+        return np.asarray(chebyshev.chebval2d(self._unit(load), self._unit(point), self.cross_series[tooth]))
 
 
 def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left") -> tuple[float, float]:
@@ -134,7 +132,7 @@ def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left"
 
 
 def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: PlaneElasticity) -> float:
-    """Turning of the body on its held bore, along the line of action [m per N/m].
+    """Turn the body on its held bore, measured along the line of action [m per N/m].
 
     delta = r_b^2/(4 pi G) (1/r_h^2 - 1/r_f^2) per N/m: a ring in shear by a torque (Lame), exact for a ring
     of outer radius r_f. Closed forms of tooth deflection leave it out.
@@ -168,7 +166,7 @@ def flexibility(
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
     smooth = loads.regular_at_load() - logarithm * np.log(away / profile.module)
     # least squares of low degree: u_r is smooth, what is left is the mesh's own small ripple
-    own = chebyshev.chebfit(unit, smooth, DEGREE)
+    own = np.asarray(chebyshev.chebfit(unit, smooth, DEGREE), dtype=float)
     noise = float(np.max(np.abs(chebyshev.chebval(unit, own) - smooth)))
     fit = np.linalg.pinv(chebyshev.chebvander(unit, CROSS_DEGREE))
     forward = 1 if flank == "left" else -1
@@ -181,7 +179,7 @@ def flexibility(
         ring.law,
         logarithm,
         own,
-        MappingProxyType(cross),
+        dict(cross),
         hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
         noise,
     )

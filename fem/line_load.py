@@ -49,7 +49,7 @@ class FlankPoints:
     weights: Array
 
     def part(self, some: slice) -> FlankPoints:
-        """Some of the points."""
+        """Take some of the points."""
         return FlankPoints(
             self.rho[some], self.points[some], self.inward[some], self.nodes[some], self.weights[some]
         )
@@ -57,8 +57,7 @@ class FlankPoints:
     def normal_part(self, displacement: Array) -> Array:
         """Component along the inward normal of nodal displacements (nodes, 2, ...), at every point."""
         there = np.einsum("nk,nka...->na...", self.weights, displacement[self.nodes])
-        part: Array = np.einsum("na,na...->n...", self.inward, there)
-        return part
+        return np.asarray(np.einsum("na,na...->n...", self.inward, there))
 
 
 def _edge_points(points: Array, edges: Index, t: Array) -> tuple[Array, Array, Array]:
@@ -82,7 +81,8 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
         When a radius lies outside the involute.
     """
     rho = np.atleast_1d(np.asarray(rho, dtype=float))
-    edges, t = mesh.facets[f"flank_{flank}"], mesh.parameters[f"flank_{flank}"]
+    edges, arc = mesh.facets[f"flank_{flank}"], mesh.parameters[f"flank_{flank}"]
+    t = np.sqrt(2 * mesh.base_radius * arc)  # the flank's parameter is its arc length
     low, high = float(t.min()), float(t.max())
     slack = 1e-9 * high
     if not np.all((rho >= low - slack) & (rho <= high + slack)):
@@ -97,7 +97,8 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     rho = np.clip(rho, low, high)
     order = np.argsort(t.min(axis=1))
     which = order[np.clip(np.searchsorted(t.min(axis=1)[order], rho, side="right") - 1, 0, len(t) - 1)]
-    local = (rho - t[which, 0]) / (t[which, 1] - t[which, 0])
+    place = rho**2 / (2 * mesh.base_radius)
+    local = (place - arc[which, 0]) / (arc[which, 1] - arc[which, 0])
     points, along, weights = _edge_points(mesh.points, edges[which], local)
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
     inward = np.stack([-along[:, 1], along[:, 0]], axis=1)  # the material is on the left hand
@@ -147,9 +148,9 @@ class LineLoads:
         return part
 
     def _inner(self, tooth: int) -> Array:
-        cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, range(tooth, tooth + 1))[0]
+        cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
         inner = -self.ring.inner_by_cut @ cuts
-        return inner + self.own_inner if tooth == 0 else inner
+        return np.asarray(inner + self.own_inner if tooth == 0 else inner)
 
 
 def _nodal(ring: Ring, inner: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Local deflection laws of the pairs in a load-sharing problem: Hertz on the flanks, tables at tip edges, film."""
+"""Local deflection of each pair by its own force: Hertz on the flanks, tables at tip edges, oil film."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class HertzApproach:
         return np.asarray(force * (self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE))))
 
     def slope(self, force: Array) -> Array:
-        """Derivative of the indentation by the force [m/N]."""
+        """Differentiate the indentation by the force [m/N]."""
         inside = np.where(force > LEAST_FORCE, self.per_log, 0.0)
         return np.asarray(self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE)) - inside)
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Monotone cubic interpolation (Fritsch and Carlson's limits) of one law per row; straight beyond the end.
+    """Monotone cubic interpolation (Fritsch and Carlson) of one law per row; straight beyond the end.
 
     Attributes
     ----------

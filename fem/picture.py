@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.elasticity import shape
 from meshes import SectorMesh
+from meshes.triangle import shape
 
 __all__ = ["Picture", "picture_of"]
 

@@ -1,12 +1,12 @@
-"""The whole annulus by one sector: static condensation and the discrete Fourier transform over the teeth.
+"""The whole annulus by one sector: static condensation, and a ring of equal links.
 
 All sectors of a gear are copies of one another. The sector's stiffness matrix is factorised once, its inner
-unknowns are condensed onto the two cuts to its neighbours, and the ring of z such sectors, whose matrix is
-block-circulant in polar components, is solved harmonic by harmonic. The result is that of the whole annulus
-with the same elements in every sector, to rounding.
+unknowns are condensed onto the two cuts to its neighbours, and the ring of z such sectors, in polar
+components, is closed by ``fem.chain``. The result is that of the whole annulus with the same elements in
+every sector, to rounding.
 
 Notation: sector j (counted anticlockwise) lies between interface j on its right and interface j + 1 on its
-left; q_j are the displacements of interface j in polar components; the hub (bore) is held.
+left; the hub (bore) is held.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.chain import RingOfLinks, ring_of_links
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 
 if TYPE_CHECKING:
@@ -52,8 +53,8 @@ class Ring:
         From polar to Cartesian components on the cuts.
     schur : (cut, cut) array
         Stiffness of the sector as seen from its cuts, polar components.
-    green : mapping of int to (b, b) array
-        Displacements of interface j by unit forces on interface 0, for the few j that teeth near the load need.
+    links : RingOfLinks
+        The closed ring, in polar components of the cuts.
     seconds : mapping of str to float
         Time of assembly, factorisation and condensation.
     """
@@ -71,7 +72,7 @@ class Ring:
     inner_by_cut: Array
     polar: csc_array
     schur: Array
-    green: Mapping[int, Array]
+    links: RingOfLinks
     seconds: Mapping[str, float]
 
     @property
@@ -79,53 +80,40 @@ class Ring:
         """Unknowns of the whole annulus that this ring stands for."""
         return self.mesh.teeth * (len(self.inner) + len(self.cut) // 2)
 
-    def interfaces(self, force: Array, sectors: range) -> Array:
-        """Displacements of both cuts of some sectors when forces act on the cuts of sector 0.
+    def interfaces(self, force: Array, sector: int) -> Array:
+        """Displacements of both cuts of a sector when forces act on the cuts of sector 0.
 
         Parameters
         ----------
         force : (cut, loads) array
             Forces on the cuts of sector 0, polar components, right cut first [per unit thickness].
-        sectors : range
-            Sectors whose cuts are wanted; ``self.green`` must reach one interface further on either side.
+        sector : int
 
         Returns
         -------
-        (sectors, cut, loads) array
+        (cut, loads) array
             Polar components, right cut first.
         """
         half = len(self.cut) // 2
-        on_right, on_left = force[:half], force[half:]
-        q = {
-            j: self.green[j] @ on_right + self.green[j - 1] @ on_left
-            for j in range(sectors.start, sectors.stop + 1)
-        }
-        return np.stack([np.concatenate([q[j], q[j + 1]]) for j in sectors])
+        behind, here, ahead = (self.links.influence(sector + step) for step in (-1, 0, 1))
+        right, left = force[:half], force[half:]
+        return np.concatenate([here @ right + behind @ left, ahead @ right + here @ left])
 
     def all_interfaces(self, force: Array) -> Array:
-        """As ``interfaces`` for every sector 0..z-1 and one load: (z, cut)."""
-        half, z = len(self.cut) // 2, self.mesh.teeth
-        right, left = force[:half], force[half:]
-        q = np.empty((z, half))
-        spectrum = np.empty((z // 2 + 1, half), dtype=complex)
-        for start in range(0, z // 2 + 1, 64):
-            n = np.arange(start, min(start + 64, z // 2 + 1))
-            turn = np.exp(-2j * np.pi * n / z)
-            load = right + turn[:, None] * left
-            spectrum[n] = np.linalg.solve(_harmonics(self.schur, n, z), load[..., None])[..., 0]
-        q = np.fft.irfft(spectrum, n=z, axis=0)
+        """As ``interfaces`` for every sector 0..z-1 and one load (cut,): (z, cut)."""
+        half = len(self.cut) // 2
+        on_left = np.roll(self.links.all_ends(force[half:]), 1, axis=0)
+        q = self.links.all_ends(force[:half]) + on_left
         return np.concatenate([q, np.roll(q, -1, axis=0)], axis=1)
 
 
-def ring_of(mesh: SectorMesh, law: PlaneElasticity, reach: int = 1) -> Ring:
+def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     """Assemble, factorise and condense the sector, and solve the ring.
 
     Parameters
     ----------
     mesh : SectorMesh
     law : PlaneElasticity
-    reach : int
-        Teeth on either side of the loaded one whose displacements will be asked for.
     """
     from time import perf_counter
 
@@ -158,7 +146,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity, reach: int = 1) -> Ring:
     polar = csc_array(block_diag(list(turns)))
     schur = polar.T @ (polar.T @ (K_cc.toarray() - K_ic.T @ inner_by_cut)).T
     schur = 0.5 * (schur + schur.T)
-    green = _green(schur, mesh.teeth, reach)
+    links = ring_of_links(schur, mesh.teeth)
     condensed = perf_counter()
     return Ring(
         mesh,
@@ -174,7 +162,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity, reach: int = 1) -> Ring:
         inner_by_cut,
         polar,
         schur,
-        MappingProxyType(green),
+        links,
         MappingProxyType(
             {"assemble": assembled - began, "factor": factored - assembled, "condense": condensed - factored}
         ),
@@ -184,26 +172,3 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity, reach: int = 1) -> Ring:
 def _unknowns(nodes: Index) -> Index:
     unknowns: Index = (2 * nodes[:, None] + np.arange(2)).ravel()
     return unknowns
-
-
-def _harmonics(schur: Array, n: Index, teeth: int) -> NDArray[np.complex128]:
-    """Ring stiffness of the harmonics n: S_RR + S_LL + S_RL e^(i n phi) + S_LR e^(-i n phi)."""
-    half = len(schur) // 2
-    turn = np.exp(2j * np.pi * n / teeth)[:, None, None]
-    both = schur[:half, :half] + schur[half:, half:]
-    ring: NDArray[np.complex128] = both + schur[:half, half:] * turn + schur[half:, :half] / turn
-    return ring
-
-
-def _green(schur: Array, teeth: int, reach: int) -> dict[int, Array]:
-    """Displacement of interface j by a unit force on interface 0, |j| <= reach + 2."""
-    half = len(schur) // 2
-    j = np.arange(-reach - 2, reach + 3)
-    total = np.zeros((len(j), half, half))
-    for start in range(0, teeth // 2 + 1, 64):
-        n = np.arange(start, min(start + 64, teeth // 2 + 1))
-        inverse = np.linalg.inv(_harmonics(schur, n, teeth))
-        twice = np.where((n == 0) | (2 * n == teeth), 1.0, 2.0) / teeth
-        phase = np.exp(2j * np.pi * np.outer(j, n) / teeth) * twice
-        total += np.real(np.tensordot(phase, inverse, axes=1))
-    return dict(zip(j.tolist(), total, strict=True))

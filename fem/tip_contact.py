@@ -59,7 +59,7 @@ class TipStrips:
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
-    """Normal displacement of a half-plane's edge at strip middles by unit loads spread over strips.
+    """Displace a half-plane's edge, at strip middles, by unit loads spread over strips.
 
     The mean over strip j of -2/(pi E*) [ln(|x|/length) + (1 + nu*)/2].
     """
@@ -75,7 +75,7 @@ def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: flo
 
 
 def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStrips:
-    """Unit line loads at the middles of strips near the tip corner, and the displacements there.
+    """Load the middles of strips near the tip corner, and take the displacements there.
 
     The strips' widths are in geometric progression. Two strips nearer to the corner than the elements
     resolve see only the wedge, whose answer is the same at every scale but for c ln(scale): their regular
@@ -104,7 +104,7 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
 
 
 def _flat(at: FlankPoints, source: FlankPoints, law: PlaneElasticity, length: float) -> Array:
-    """Normal displacement that a flat edge would have at points (rows) under unit loads (columns)."""
+    """Displace a flat edge at points (rows) by unit loads (columns)."""
     gap = np.linalg.norm(at.points[:, None] - source.points[None, :], axis=2)
     gap = np.where(gap > 0, gap, length)
     flat: Array = -2 / (np.pi * law.plane_modulus) * (np.log(gap / length) + 0.5 * (1 + law.plane_poisson))
@@ -137,7 +137,7 @@ def unloaded_gap(
         Curvature radius of flank 1 there [m].
     """
     r1, r2 = base_radii
-    # line of action along x, gear 1's tangent point at the origin, its axis at (0, -r1), the other at (line, r2)
+    # line of action along x, gear 1's tangent point at the origin, axes at (0, -r1) and (line, r2)
     turn = (rho2[None, :] - (line - rho1[:, None])) / r2
     c, s = np.cos(turn), np.sin(turn)
     x = line + r2 * s - rho2 * c

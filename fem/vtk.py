@@ -54,7 +54,7 @@ def write_vtk_series(
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
     level = min(bodies.refinements, PICTURE_REFINEMENTS)
-    rings, _ = mesh_and_factor(pair, bodies.plane, bodies.sizes, level, bodies.reach)
+    rings, _ = mesh_and_factor(pair, bodies.plane, bodies.sizes, level)
     steps: list[tuple[float, list[Path]]] = []
     for done, row in enumerate(rows):
         files = []

@@ -54,6 +54,7 @@ class Sizes:
     layer_growth: float = 1.35
 
     def __post_init__(self) -> None:
+        """Refuse lengths that are not positive."""
         faults = [
             Fault(f"sizes.{name}", f"{value:g}", "finite and > 0 (modules)", "give a positive edge length")
             for name, value in vars(self).items()
@@ -77,8 +78,10 @@ class Curve:
         ``side_right``, ``root_right``, ``fillet_right``, ``flank_right``, ``chamfer_right``, ``top`` and so
         on down the left; ``bottom`` is the arc under the sector.
     start, end : float
-        Parameters where the anticlockwise run enters and leaves the curve: curvature radius rho [m] on
-        flanks, t on fillets and chamfers, polar angle from the centre line [rad] on arcs, radius [m] on sides.
+        Parameters where the anticlockwise run enters and leaves the curve: arc length from the base circle,
+        rho^2/(2 r_b) [m], on
+        flanks, t on fillets and chamfers, polar angle from the centre line [rad] on arcs, radius [m]
+        on sides.
     at : callable
         Points (n, 2) [m] at parameters (n,).
     size : callable
@@ -141,9 +144,14 @@ def sector_curves(
     def constant(length: float) -> Callable[[Array], Array]:
         def size(points: Array) -> Array:
             away = np.linalg.norm(points - corner, axis=-1)
-            return np.minimum(length * m, sizes.corner * m + sizes.growth * away)
+            return np.asarray(np.minimum(length * m, sizes.corner * m + sizes.growth * away))
 
         return size
+
+    def curved(points: Array) -> Array:
+        # towards the base circle the involute bends more and more, on the scale of the arc length from there
+        arc = np.maximum(np.sum(points**2, axis=-1) / profile.base_radius - profile.base_radius, 0.0) / 2
+        return np.minimum(constant(sizes.flank)(points), np.maximum(arc, sizes.corner * m))
 
     def bent(points: Array) -> Array:
         # a fillet edge turns by no more than about half a radian at its tightest place
@@ -173,13 +181,18 @@ def sector_curves(
             )
         )
     right.append(Curve("fillet_right", 0.0, 1.0, profile.fillet, bent))
-    right.append(Curve("flank_right", rho_form, rho_end, profile.involute, constant(sizes.flank)))
+    base2 = 2.0 * profile.base_radius
+
+    def involute(arc: Array) -> Array:
+        return np.asarray(profile.involute(np.sqrt(base2 * np.maximum(arc, 0.0))))
+
+    right.append(Curve("flank_right", rho_form**2 / base2, rho_end**2 / base2, involute, curved))
     if profile.flank_end_radius < profile.tip_radius * (1 - 1e-12):
         right.append(Curve("chamfer_right", 0.0, 1.0, profile.chamfer, constant(sizes.top)))
 
     def mirrored(curve: Curve) -> Curve:
         def at(t: Array, original: Callable[[Array], Array] = curve.at) -> Array:
-            return original(t) * mirror
+            return np.asarray(original(t) * mirror)
 
         return Curve(curve.name.replace("right", "left"), curve.end, curve.start, at, curve.size)
 

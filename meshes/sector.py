@@ -1,9 +1,10 @@
-"""Curved second-order mesh of one tooth sector, its refinement, and the whole annulus made of copies of it."""
+"""Curved second-order mesh of one tooth sector, and its refinement."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from meshes.errors import Fault, MeshError
 from meshes.gmsh_fill import triangulate
 from meshes.outline import Curve, Sizes, cut, polar, sector_curves
+from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
     from gears import ToothProfile
@@ -41,7 +43,7 @@ class SectorMesh:
         The curve's parameter at both ends of each edge; its mean belongs to the middle node.
     curves : mapping of str to Curve
     teeth : int
-    module : float
+    module, base_radius : float
         [m]
     coarser : SectorMesh or None
         The mesh that this one refines: its nodes are the first nodes here.
@@ -54,6 +56,7 @@ class SectorMesh:
     curves: Mapping[str, Curve]
     teeth: int
     module: float
+    base_radius: float
     coarser: SectorMesh | None = None
 
     @property
@@ -121,22 +124,21 @@ def mesh_sector(
             curves[-1].size,
         )
     ends["bore"], named["bore"] = ends.pop("bottom"), named.pop("bottom")
-    mesh = _second_order(points, triangles, ends, named, profile.teeth, m)
+    mesh = _second_order(points, triangles, ends, named, (profile.teeth, m, profile.base_radius))
     for _ in range(refinements):
         mesh = refined(mesh)
     return mesh
 
 
 def _layer_radii(rim: float, bore: float, sizes: Sizes, module: float) -> Array:
-    """Radii from the rim to the bore, heights in geometric growth."""
-    depth, g = rim - bore, sizes.layer_growth
-    first = sizes.rim * module
-    if g == 1.0:
-        layers = max(1, round(depth / first))
-    else:
-        layers = max(1, round(np.log1p(depth * (g - 1) / first) / np.log(g)))
-    heights = g ** np.arange(layers)
-    radii: Array = rim - depth * np.concatenate([[0.0], np.cumsum(heights) / np.sum(heights)])
+    """Radii from the rim to the bore: heights grow, but stay a part of the radius (strains grow inwards)."""
+    heights = [sizes.rim * module]
+    while sum(heights) < rim - bore:
+        left = rim - sum(heights)
+        heights.append(min(heights[-1] * sizes.layer_growth, 0.3 * left))
+    if len(heights) > 1 and sum(heights) - (rim - bore) > 0.5 * heights[-1]:
+        heights.pop()
+    radii: Array = rim - (rim - bore) * np.concatenate([[0.0], np.cumsum(heights) / sum(heights)])
     radii[-1] = bore
     return radii
 
@@ -159,7 +161,7 @@ def _add_layers(
         rows.append(np.arange(start, start + columns + 1))
         start += columns + 1
     quads = []
-    for upper, lower in zip(rows[:-1], rows[1:], strict=True):
+    for upper, lower in pairwise(rows):
         a, b, c, d = upper[:-1], upper[1:], lower[1:], lower[:-1]  # angles grow to the right
         leaning = np.arange(columns) < columns / 2
         quads.append(np.where(leaning[:, None], np.stack([a, d, c], 1), np.stack([a, d, b], 1)))
@@ -183,8 +185,7 @@ def _second_order(
     triangles: Index,
     ends: Mapping[str, tuple[Index, Array]],
     curves: Mapping[str, Curve],
-    teeth: int,
-    module: float,
+    gear: tuple[int, float, float],
 ) -> SectorMesh:
     """Mid-side nodes: half-way on inner edges, at the mean parameter on the curves."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
@@ -211,26 +212,12 @@ def _second_order(
         MappingProxyType(facets),
         MappingProxyType(parameters),
         MappingProxyType(dict(curves)),
-        teeth,
-        module,
+        *gear,
     )
 
 
-# derivatives of the six shape functions at the six nodes (xi, eta of the corners and the middles)
-_NODES = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
-
-
-def shape_gradients(xi: Array, eta: Array) -> Array:
-    """Gradients (..., 6, 2) of the P2 shape functions with respect to the reference coordinates."""
-    l0 = 1 - xi - eta
-    zero = np.zeros_like(xi)
-    d_xi = np.stack([1 - 4 * l0, 4 * xi - 1, zero, 4 * (l0 - xi), 4 * eta, -4 * eta], axis=-1)
-    d_eta = np.stack([1 - 4 * l0, zero, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (l0 - eta)], axis=-1)
-    return np.stack([d_xi, d_eta], axis=-1)
-
-
 def _refuse_inverted(points: Array, triangles: Index) -> None:
-    gradients = shape_gradients(_NODES[:, 0], _NODES[:, 1])
+    gradients = shape_gradients(NODES[:, 0], NODES[:, 1])
     jacobian = np.einsum("mix,qir->mqxr", points[triangles], gradients)
     determinant = np.linalg.det(jacobian)
     bad = np.flatnonzero(determinant.min(axis=1) <= 0)
@@ -259,5 +246,7 @@ def refined(mesh: SectorMesh) -> SectorMesh:
         half = t.mean(axis=1)
         nodes = np.stack([first, middle, middle, last], axis=1).reshape(-1, 2)
         ends[name] = (nodes, np.stack([t[:, 0], half, half, t[:, 1]], axis=1).reshape(-1, 2))
-    finer = _second_order(mesh.points, children, ends, mesh.curves, mesh.teeth, mesh.module)
+    finer = _second_order(
+        mesh.points, children, ends, mesh.curves, (mesh.teeth, mesh.module, mesh.base_radius)
+    )
     return replace(finer, coarser=mesh)
