@@ -252,7 +252,7 @@ def compliance(
     started = perf_counter()
     first, second = (tip_strips(*both) for both in zip(rings, pair.teeth_profiles, strict=True))
     parts["tips"] = perf_counter() - started
-    cost = Cost(perf_counter() - began, unknowns, 0, parts)
+    cost = Cost(perf_counter() - began, unknowns, 0, annuli, parts)
     return Compliance(
         pair, plane, *fine, (first, second), level, sizes, reach, error, cost, converged, message
     )

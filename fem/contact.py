@@ -182,7 +182,8 @@ def mesh_cycle(
         perf_counter() - began,
         bodies.cost.unknowns,
         share.iterations,
-        dict({**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready}),
+        bodies.cost.annulus_unknowns,
+        {**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready},
     )
     return MeshCycle(
         torque=float(torque),

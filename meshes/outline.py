@@ -151,7 +151,7 @@ def sector_curves(
     def curved(points: Array) -> Array:
         # towards the base circle the involute bends more and more, on the scale of the arc length from there
         arc = np.maximum(np.sum(points**2, axis=-1) / profile.base_radius - profile.base_radius, 0.0) / 2
-        return np.minimum(constant(sizes.flank)(points), np.maximum(arc, sizes.corner * m))
+        return np.asarray(np.minimum(constant(sizes.flank)(points), np.maximum(arc, sizes.corner * m)))
 
     def bent(points: Array) -> Array:
         # a fillet edge turns by no more than about half a radian at its tightest place
