@@ -48,6 +48,14 @@ class InputError(ValueError):
         super().__init__("\n".join(str(fault) for fault in self.faults))
 
 
+def told_by_a_floor(error: ValueError) -> InputError | None:
+    """Bring the error of a ground floor, which lists its faults as ours does, into ours; None for any other."""
+    faults = getattr(error, "faults", None)
+    if not isinstance(faults, tuple):
+        return None
+    return InputError(Fault(f.where, f.value, f.allowed, f.remedy) for f in faults)
+
+
 class SolverError(RuntimeError):
     """A solver did not reach a result that it believes; the message holds the remedy."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from flankfilm.cache import Cache, user_cache
-from flankfilm.faults import Fault, InputError
+from flankfilm.faults import Fault, InputError, told_by_a_floor
 from flankfilm.outputs import write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.scene import Scene
@@ -89,8 +89,11 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         progress(stage.title, len(done) - 1, max(len(done), len(wanted) + 2))
 
     engine = Engine(scene, STAGES, Cache(user_cache() / "results" if use_cache else None), announce)
-    for name in wanted:
-        engine[name]
+    try:
+        for name in wanted:
+            engine[name]
+    except ValueError as error:
+        raise told_by_a_floor(error) or error from error
     values = engine.results()
     files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, scene, values))
     if "vtk" in scene.wants:

@@ -29,7 +29,10 @@ def compliance(engine: Engine) -> Compliance:
     import fem
 
     split = ToleranceSplit.of(engine.scene.tolerance)
-    return fem.compliance(engine["pair"], tolerance=split.compliance, plane=engine.scene.stiffness.plane)
+    bodies = fem.compliance(engine["pair"], tolerance=split.compliance, plane=engine.scene.stiffness.plane)
+    if not bodies.converged:
+        raise SolverError(f"tooth compliance: {bodies.message}")
+    return bodies
 
 
 def fem_cycle(engine: Engine, positions: int, film: Any = None) -> MeshCycle:

@@ -60,8 +60,16 @@ def test_new_keeps_what_is_there(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "where"),
     [
-        ("profile_shift = 0.0, bore_mm = 33.5", "profile_shift = 1.5, bore_mm = 33.5", "pinion.profile_shift"),
-        ("profile_shift = 0.0, bore_mm = 33.5", "tip_alteration = 0.9, bore_mm = 33.5", "pinion.tip_alteration"),
+        (
+            "profile_shift = 0.0, bore_mm = 33.5",
+            "profile_shift = 1.5, bore_mm = 33.5",
+            "pinion.profile_shift",
+        ),
+        (
+            "profile_shift = 0.0, bore_mm = 33.5",
+            "tip_alteration = 0.9, bore_mm = 33.5",
+            "pinion.tip_alteration",
+        ),
         ("bore_mm = 33.5", "bore_mm = 70", "pair.pinion.bore_mm"),
         ("backlash_um = 50", "centre_distance_mm = 75.0", "pair.centre_distance_mm"),
         ("backlash_um = 50", "centre_distance_mm = 79.9", "contact_ratio"),

@@ -1,0 +1,121 @@
+"""The README's scene from TOML to report, against the numbers that are known for its pair."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCRIPT = Path(sys.executable).with_name("flankfilm")
+
+pytestmark = pytest.mark.xdist_group("article")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("article")
+    subprocess.run(
+        [str(SCRIPT), "run", str(EXAMPLES / "article.toml"), "--out", str(out / "first")],
+        check=True,
+        timeout=280,
+        env={**os.environ, "FLANKFILM_CACHE": str(out / "cache")},
+        capture_output=True,
+    )
+    return out
+
+
+@pytest.fixture(scope="module")
+def results(folder):
+    with xr.open_dataset(folder / "first" / "results.nc", engine="h5netcdf") as dataset:
+        yield dataset.load()
+
+
+def test_films_are_in_series_with_the_teeth_before_load_sharing(results):
+    share = results.lubricated_load_share.values
+    assert np.allclose(share.sum(axis=1), 1.0, atol=1e-9)
+    # the film at its own load: solved forces and shared forces agree
+    force = np.sort(results.lubricated_force.values[np.isfinite(results.lubricated_rho1.values)])
+    film = np.sort(results.film_load.values * 0.040)
+    force = force[force > 1e-3 * results.lubricated_force.values.sum(axis=1).max()]
+    assert np.allclose(force, film, rtol=2e-4)
+
+
+def test_the_film_softens_the_mesh_by_less_than_the_tolerance(results):
+    for kind in ("secant", "tangent"):
+        change = float(
+            results[f"lubricated_{kind}_stiffness"].mean() / results[f"dry_{kind}_stiffness"].mean() - 1
+        )
+        assert -0.006 < change < -0.002
+
+
+def test_the_tangent_is_the_series_of_teeth_and_films(results):
+    """One pair that carries nearly all: 1/k = 1/k_tooth + 1/k_film within the neighbours' small part."""
+    share = results.lubricated_load_share.values
+    position, column = np.unravel_index(np.nanargmax(share), share.shape)
+    at = int(np.argmin(np.abs(results.film_rho1.values - results.lubricated_rho1.values[position, column])))
+    film = float(results.film_stiffness_approach[at])
+    dry, wet = (float(results[f"{name}_tangent_stiffness"][position]) for name in ("dry", "lubricated"))
+    assert 1 / wet - 1 / dry == pytest.approx(1 / film, rel=0.25)
+
+
+def test_the_film_at_the_pitch_point_is_the_known_one(results):
+    """Independent reference at one pair carrying all: h_c 5.888, h_min 5.274 in Moes units; M^-1/8 takes the load."""
+    at = int(np.argmax(results.film_load.values))
+    u2 = 2 * 0.075 * 2.579 / (2.2e11 * 6.48e-3)
+    central = float(results.film_central_thickness[at]) / (6.48e-3 * np.sqrt(u2))
+    scaled = central * (float(results.film_load[at]) / 4.434e5) ** 0.13
+    assert scaled == pytest.approx(5.888, rel=0.01)
+
+
+def test_time_series_names_files_that_exist(folder):
+    index = folder / "first" / "mesh_cycle.pvd"
+    entries = ElementTree.parse(index).getroot().findall(".//DataSet")
+    assert len({entry.get("timestep") for entry in entries}) == 20
+    assert all((index.parent / str(entry.get("file"))).is_file() for entry in entries)
+
+
+def test_fields_open_in_vtk_with_sensible_names(folder):
+    code = (
+        "import sys, pyvista\n"
+        "grid = pyvista.read(sys.argv[1])\n"
+        "print(sorted(grid.point_data), grid.celltypes[0], float(grid['von_mises_Pa'].max()))\n"
+    )
+    file = sorted((folder / "first" / "vtk").glob("pinion*.vtu"))[0]
+    done = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True)
+    assert "von_mises_Pa" in done.stdout
+    assert "displacement_m" in done.stdout
+    assert " 22 " in done.stdout  # VTK's quadratic triangle
+    assert 2e8 < float(done.stdout.split()[-1]) < 2e9
+
+
+def test_a_second_run_takes_the_stages_from_the_cache_and_gives_the_same_numbers(folder, results):
+    done = subprocess.run(
+        [str(SCRIPT), "run", str(EXAMPLES / "article.toml"), "--out", str(folder / "second")],
+        check=True,
+        timeout=280,
+        env={**os.environ, "FLANKFILM_CACHE": str(folder / "cache")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.stderr == ""
+    assert "kept from an earlier run" in (folder / "second" / "report.html").read_text(encoding="utf-8")
+    with xr.open_dataset(folder / "second" / "results.nc", engine="h5netcdf") as again:
+        xr.testing.assert_identical(again.load(), results)
+
+
+def test_the_report_shows_every_section(folder):
+    page = (folder / "first" / "report.html").read_text(encoding="utf-8")
+    for title in (
+        "Geometry", "Mesh stiffness", "Oil film", "Loaded teeth", "Fourier stiffness",
+        "Physical and dimensionless", "Motion", "Error and cost", "Inputs",
+    ):  # fmt: skip
+        assert f"<h2>{title}</h2>" in page
+    assert page.count("<svg") >= 10
+    assert len(page) < 5e6
