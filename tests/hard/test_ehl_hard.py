@@ -143,8 +143,10 @@ def test_film_as_soft_as_the_tooth():
         assert (np.diff(stiffness[soft]) > 0).all()
         found = np.exp(np.interp(np.log(5.6e8), np.log(stiffness[soft]), np.log(forces[soft])))
         assert found == pytest.approx(crossing, rel=0.05)
-    # the propping hardly depends on the load where the bodies begin to flatten: nearly rigid, never negative
-    assert min(f.stiffness("approach") for f in films) > 0
+    # where the bodies begin to flatten the propping hardly depends on the load: the film is nearly rigid
+    slopes = np.array([f.prop_slope * f.contact.load / f.prop for f in films])
+    assert (slopes < 0).all()
+    assert slopes.max() > -0.05
 
 
 def test_load_share_jumping_between_a_half_and_one():
@@ -186,7 +188,8 @@ def test_random_contacts():
     films = [solve(random_contact(rng)) for _ in range(500)]
     for film in films:
         sound(film)
-        assert film.stiffness() > 0
+        # the propping falls with the load; near M = 0.8, L = 20 it stands still and the film is rigid
+        assert film.prop_slope * film.contact.load / film.prop < 0.02
     assert sum(f.cost.attempts == 1 for f in films) >= 498
     beyond = 0
     for film in films[:100]:

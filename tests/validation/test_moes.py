@@ -17,6 +17,28 @@ def quiet(contact, **options):
         return solve(contact, **options)
 
 
+def test_formula_by_hand():
+    # M = 20, L = 10: RI .15, EI 1.439664, RP 5.973725, EP 5.069603, s = 1.4 + 1.6 exp(-2 EI/RI) = 1.4
+    contact = LineContact.from_moes(20.0, 10.0)
+    isoviscous = (0.15 ** (7 / 3) + 1.439664 ** (7 / 3)) ** 0.6
+    piezoviscous = (5.973725**-3.5 + 5.069603**-3.5) ** -0.4
+    expected = (isoviscous + piezoviscous) ** (1 / 1.4)
+    assert moes_central(contact) / contact.moes_film == pytest.approx(expected, rel=1e-5)
+    # M = 0.1, L = 0: RI 30, EI 4.154005, s = 1.4 + 1.6 exp(-.276934)
+    contact = LineContact.from_moes(0.1, 0.0)
+    s = 1.4 + 1.6 * 0.758105
+    expected = (30 ** (7 / 3) + 4.154005 ** (7 / 3)) ** (3 / 7)
+    assert s == pytest.approx(2.61296, rel=1e-5)
+    assert moes_central(contact) / contact.moes_film == pytest.approx(expected, rel=1e-5)
+    # M = 1, L = 5: both halves matter, s = 1.4 + 1.6 exp(-2 * 2.621/3)
+    contact = LineContact.from_moes(1.0, 5.0)
+    s = 1.4 + 1.6 * 0.174238
+    isoviscous = (3 ** (7 / 3) + 2.621 ** (7 / 3)) ** (3 * s / 7)
+    piezoviscous = (3.763211**-3.5 + 4.383593**-3.5) ** (-2 * s / 7)
+    expected = (isoviscous + piezoviscous) ** (1 / s)
+    assert moes_central(contact) / contact.moes_film == pytest.approx(expected, rel=1e-4)
+
+
 @pytest.mark.parametrize("M", [5.0, 20.0, 100.0, 500.0])
 @pytest.mark.parametrize("L", [0.0, 2.5, 10.0, 20.0])
 def test_central_film_against_the_fit(M, L):
