@@ -10,10 +10,17 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from dynamics.attraction import Attractor as Attractor
+    from dynamics.attraction import BasinResult as BasinResult
+    from dynamics.attraction import basins as basins
+    from dynamics.continuation import Branch as Branch
+    from dynamics.continuation import continue_branch as continue_branch
     from dynamics.cost import Cost as Cost
     from dynamics.errors import DynamicsError as DynamicsError
     from dynamics.errors import DynamicsWarning as DynamicsWarning
     from dynamics.errors import Fault as Fault
+    from dynamics.exponents import LyapunovResult as LyapunovResult
+    from dynamics.exponents import lyapunov_exponents as lyapunov_exponents
     from dynamics.flow import Trajectory as Trajectory
     from dynamics.flow import period_map as period_map
     from dynamics.flow import trajectory as trajectory
@@ -33,6 +40,13 @@ if TYPE_CHECKING:
     from dynamics.sweeps import sweep as sweep
 
 _HOMES = {
+    "Attractor": "attraction",
+    "BasinResult": "attraction",
+    "Branch": "continuation",
+    "LyapunovResult": "exponents",
+    "basins": "attraction",
+    "continue_branch": "continuation",
+    "lyapunov_exponents": "exponents",
     "ContactGrazing": "grazing",
     "Cost": "cost",
     "DynamicsError": "errors",

@@ -45,6 +45,11 @@ class Tables:
     edge: FloatArray
 
     @property
+    def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What the kernels take."""
+        return self.par, self.coef, self.edge
+
+    @property
     def cells(self) -> int:
         """Cells per period."""
         return int(self.edge.shape[1])
@@ -189,7 +194,7 @@ def period_map(
     faults.raise_if_any()
     t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
     states, counts, jacobian = np.empty((n, 2)), np.zeros((n, 2), dtype=np.int64), np.eye(2)
-    flag = int(kernels.iterate(t.par, t.coef, t.edge, at, n_skip, True, jacobian, states, counts))
+    flag = int(kernels.iterate(t.arrays, at, n_skip, 1, jacobian, states, counts))
     if flag:
         states[:], jacobian[:] = np.nan, np.nan
     return MapResult(states, jacobian, counts, _REASONS.get(flag, ""))
@@ -285,9 +290,7 @@ def _walk(
     while True:
         samples = np.empty((periods * points + 1 if points else 0, 2))
         turns, events = np.empty((room, 5)), np.empty((room, 4))
-        flag, turned, happened = kernels.walk(
-            t.par, t.coef, t.edge, state.copy(), periods, points, samples, turns, events
-        )
+        flag, turned, happened = kernels.walk(t.arrays, state.copy(), periods, points, samples, turns, events)
         if flag:
             faults = Faults()
             faults.add(

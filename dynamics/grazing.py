@@ -118,6 +118,12 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     turns = turning_points(table, state)
     at = int(np.argmin(side * turns[:, 1])) if len(turns) else -1
     tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, state[0], 0.0)
+    if side * state[0] < side * nearest:  # nearest at tau = 0 itself, where the motion begins and ends
+        tau, nearest, acceleration = (
+            0.0,
+            state[0],
+            float(linear.force(0.0) - linear.stiffness(0.0) * state[0]),
+        )
     return ContactOrbit(
         state=state + np.array([side * oscillator.half_backlash, 0.0]),
         multipliers=floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(linear, 1)),

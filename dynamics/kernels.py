@@ -29,6 +29,7 @@ from numba import njit
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -249,27 +250,29 @@ def apply(e: FloatArray, jac: FloatArray) -> None:
 
 
 @kernel
+def straighten(jac: FloatArray) -> None:
+    """Make the columns of rows 0 and 1 orthonormal and add the logarithms of their lengths to row 2."""
+    area = jac[0, 0] * jac[1, 1] - jac[0, 1] * jac[1, 0]
+    length = math.hypot(jac[0, 0], jac[1, 0])
+    jac[2, 0] += math.log(length)
+    jac[2, 1] += math.log(abs(area) / length)
+    c, s = jac[0, 0] / length, jac[1, 0] / length
+    jac[0, 0], jac[1, 0] = c, s
+    jac[0, 1], jac[1, 1] = (-s, c) if area > 0.0 else (s, -c)
+
+
+@kernel
 def cell_step(
-    coef: FloatArray,
-    edge: FloatArray,
-    cell: int,
-    d: float,
-    h: float,
-    region: int,
-    y: float,
-    v: float,
-    want: bool,
-    jac: FloatArray,
-    work: FloatArray,
-    count: IntArray,
-) -> tuple[int, float, float, int]:
+    coef: FloatArray, edge: FloatArray, cell: int, d: float, h: float, region: int, y: float, v: float,
+    want: int, jac: FloatArray, work: FloatArray, count: IntArray,
+) -> tuple[int, float, float, int]:  # fmt: skip
     """State at the end of a cell, crossing every boundary on the way; counts exits and entries."""
     e = edge[0 if region != 0 else 1, cell]
     y_new = e[0] * y + e[1] * v + e[4]
     v_new = e[2] * y + e[3] * v + e[5]
     reach = e[6] * abs(y) + e[7] * abs(v) + e[8]
     if (region == 0 and d - max(abs(y), abs(y_new)) > reach) or min(region * y, region * y_new) > reach:
-        if want:
+        if want > 0:
             apply(e, jac)
         return region, y_new, v_new, FINE
     a, b, phi, later, slope = work[0], work[1], work[2], work[3], work[4]
@@ -284,13 +287,13 @@ def cell_step(
             expand(u, phi, s, y, v, h, a)
         t, hit = leave(region, d, a, b, slope, 1.0 - s, fresh)
         if hit == 0 and s == 0.0:
-            if want:
+            if want > 0:
                 apply(e, jac)
             return region, y_new, v_new, FINE
         y, v, _ = poly(a, 0, t)
         v /= h
         s = 1.0 if hit == 0 else s + t
-        if want:
+        if want > 0:
             basis(u, s - t, h, phi)
             basis(u, s, h, later)
             carry(phi, later, jac)
@@ -308,12 +311,10 @@ def cell_step(
 
 @kernel
 def iterate(
-    par: FloatArray,
-    coef: FloatArray,
-    edge: FloatArray,
+    table: Table,
     state: FloatArray,
     skip: int,
-    want: bool,
+    want: int,
     jac: FloatArray,
     states: FloatArray,
     counts: IntArray,
@@ -321,8 +322,10 @@ def iterate(
     """Carry `state` over `skip` periods, then fill `states` (periods, 2) and `counts` (periods, 2).
 
     Row i is the state after i + 1 further periods and the exits and entries during the last of them. `state`
-    and `jac` (updated if `want`, in place) end at the last period.
+    ends at the last period. `want` 1: the rows 0 and 1 of `jac` are multiplied by the derivative of the map;
+    2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2.
     """
+    par, coef, edge = table
     cells = edge.shape[1]
     d = par[HALF_BACKLASH]
     h = 2.0 * math.pi / par[FREQUENCY] / cells
@@ -337,6 +340,8 @@ def iterate(
             region, y, v, flag = cell_step(coef, edge, cell, d, h, region, y, v, want, jac, work, count)
             if flag != FINE:
                 return flag
+            if want == 2 and (cell % 8 == 7 or cell == cells - 1):
+                straighten(jac)
         if not (abs(y) < 1e150 and abs(v) < 1e150):
             return DIVERGED
         if period >= skip:
@@ -350,15 +355,21 @@ def iterate(
 
 
 @kernel
+def direction(a: FloatArray) -> int:
+    """Sign of the slope of the polynomial just after t = 0."""
+    for k in range(1, len(a)):
+        if a[k] != 0.0:
+            return 1 if a[k] > 0.0 else -1
+    return 0
+
+
+@kernel
 def next_turn(a: FloatArray, b: FloatArray, slope: FloatArray, end: float) -> float:
     """Smallest t in (0, end] at which the slope of the polynomial changes sign, -1 if it does not."""
     for k in range(len(a) - 1):
         b[k] = (k + 1) * a[k + 1]
     b[len(a) - 1] = 0.0
-    k = 0
-    while k < len(b) and b[k] == 0.0:
-        k += 1
-    if k < len(b) and b[k] < 0.0:
+    if direction(a) < 0:
         for i in range(len(b)):
             b[i] = -b[i]
     return first_exit(b, slope, end, 1)
@@ -366,22 +377,16 @@ def next_turn(a: FloatArray, b: FloatArray, slope: FloatArray, end: float) -> fl
 
 @kernel
 def walk(
-    par: FloatArray,
-    coef: FloatArray,
-    edge: FloatArray,
-    state: FloatArray,
-    periods: int,
-    points: int,
-    samples: FloatArray,
-    turns: FloatArray,
-    events: FloatArray,
-) -> tuple[int, int, int]:
+    table: Table, state: FloatArray, periods: int, points: int,
+    samples: FloatArray, turns: FloatArray, events: FloatArray,
+) -> tuple[int, int, int]:  # fmt: skip
     """Follow the motion closely; returns flag, number of turns and number of events.
 
     `samples`, (periods points + 1, 2): states at equal times. `turns`, (any, 5): time, X, X'', region and
     region just before, at every extremum of X. `events`, (any, 4): time, X, X', region entered. What does
     not fit in `turns` or `events` is counted, not stored.
     """
+    par, coef, edge = table
     cells = edge.shape[1]
     d = par[HALF_BACKLASH]
     h = 2.0 * math.pi / par[FREQUENCY] / cells
@@ -390,7 +395,7 @@ def walk(
     push = par[FORCE] + par[ERROR] * par[FREQUENCY] ** 2 * math.cos(par[PHASE])
     v = state[1]
     region, y = start(state[0], v, d, push)
-    filled = turned = happened = 0
+    filled = turned = happened = way = 0
     for global_cell in range(periods * cells):
         cell = global_cell % cells
         s = 0.0
@@ -413,9 +418,14 @@ def walk(
             for k in range(len(a)):
                 rest[k] = a[k]
             while len(turns) > 0:
-                step = next_turn(rest, b, slope, t - done)
-                if step <= 0.0:
-                    break
+                heading = direction(rest)
+                step = 0.0  # an extremum on the joint of two stretches belongs to neither
+                if heading * way != -1 or done > 0.0:
+                    way = heading if heading != 0 else way
+                    step = next_turn(rest, b, slope, t - done)
+                    if step <= 0.0:
+                        break
+                way = -way
                 for i in range(len(rest) - 1):
                     for k in range(len(rest) - 2, i - 1, -1):
                         rest[k] += step * rest[k + 1]
@@ -452,3 +462,36 @@ def walk(
     state[0] = y + region * d
     state[1] = v
     return FINE, turned, happened
+
+
+@kernel
+def settle(
+    table: Table, starts: FloatArray, homes: FloatArray, radius: float, limit: int, labels: IntArray
+) -> int:
+    """Follow every start with label -1 until it stays near a known attractor; `starts` become the last states.
+
+    `homes`, (any, 4): X, V, attractor and its period for every point of every attractor. A motion has arrived
+    when it is within `radius` of a point, in the largest norm, and no farther after one more round. Labels:
+    attractor, -1 not arrived within `limit` periods, -2 grown without bound. Returns periods used.
+    """
+    one, counts, jac = np.zeros((1, 2)), np.zeros((1, 2), dtype=np.int64), np.zeros((3, 2))
+    used = 0
+    for i in range(len(starts)):
+        state = starts[i]
+        home = wait = period = 0
+        distance = 0.0
+        while labels[i] == -1 and period < limit:
+            period += 1
+            if iterate(table, state, 0, 0, jac, one, counts) != FINE:
+                labels[i] = -2
+            wait -= 1
+            for k in range(
+                home if wait == 0 else 0, home + 1 if wait == 0 else len(homes) if wait < 0 else 0
+            ):
+                gap = max(abs(state[0] - homes[k, 0]), abs(state[1] - homes[k, 1]))
+                if wait == 0 and gap <= distance:
+                    labels[i] = int(homes[k, 2])
+                elif wait < 0 and gap < radius:
+                    home, distance, wait = k, gap, int(homes[k, 3])
+        used += period
+    return used

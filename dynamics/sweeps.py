@@ -201,7 +201,7 @@ def _follow(table: Tables, state: FloatArray, skip: int, states: FloatArray, cou
     from dynamics import kernels
 
     unused = np.eye(2)
-    return not kernels.iterate(table.par, table.coef, table.edge, state, skip, False, unused, states, counts)
+    return not kernels.iterate(table.arrays, state, skip, 0, unused, states, counts)
 
 
 def _map_error(oscillator: GearOscillator, before: FloatArray, after: FloatArray) -> float:
