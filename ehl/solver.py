@@ -235,14 +235,14 @@ def solve(
     half = (n + 1) // 2
     if old is None:
         coarse, fine = run.pair(half, n)
-        while nodes is None and not coarse.found.converged and n < _MOST_FIRST_NODES:
-            half, n = n, 2 * n - 1
-            coarse, fine = run.pair(half, n)
     else:
         same = old.plan is plan
         coarse = run.warm(old.coarse if same else old.fine, _same(old.coarse, half, same), half)
         before = old.fine if same and old.fine.grid.nodes.size == n else coarse
         fine = run.warm(before, _same(old.fine, n, same), n)
+    while nodes is None and n < _MOST_FIRST_NODES and not (coarse.found.converged and fine.found.converged):
+        half, n = n, 2 * n - 1
+        coarse, fine = run.pair(half, n)
     inlet = 0.0 if plan.fixed else (math.sqrt(plan.H_c) / (-1.0 - plan.domain[0])) ** 3
     return _refine(run, coarse, fine, tolerance if nodes is None else None, inlet)
 
@@ -253,15 +253,21 @@ def _same(level: Level, n: int, same: bool) -> Level | None:
 
 
 def _refine(run: _Run, coarse: Level, fine: Level, tolerance: float | None, inlet: float) -> Film:
-    """Double the grid until the estimate meets the tolerance, then report."""
+    """Double the grid until the estimate meets the tolerance, then report.
+
+    A grid that fails is passed over: the next one is compared with the last that gave in.
+    """
     while True:
+        n = 2 * fine.grid.nodes.size - 1
         if not (coarse.found.converged and fine.found.converged):
+            if coarse.found.converged and tolerance is not None and n <= _MOST_NODES:
+                fine = run.warm(coarse, None, n)
+                continue
             failed = fine if coarse.found.converged else coarse
             return _failed(run, fine, f"{failed.found.message}: {_remedy(run.plan)}")
         worst = _film_error(coarse, fine) + inlet
         if tolerance is None or worst <= tolerance:
             return _film(run, coarse, fine, worst, inlet)
-        n = 2 * fine.grid.nodes.size - 1
         if n > _MOST_NODES:
             message = f"error {worst:.2g} left on {fine.grid.nodes.size} nodes: {_remedy(run.plan)}"
             return _failed(run, fine, message, worst)
