@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -55,6 +56,8 @@ def run(
     """
     from flankfilm.cache import keep_compiled_code
 
+    # the matrices are small: threads cost more than they bring (must be said before numpy is loaded)
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     keep_compiled_code()
     from flankfilm.progress import console_progress
     from flankfilm.run import run_scene

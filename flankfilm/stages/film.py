@@ -199,7 +199,8 @@ def _law(engine: Engine, contacts: _Contacts, films: tuple[Film, ...], cycle: Me
     stiffness = np.array([width * film.stiffness(definition) for film in films])
     force[contacts.where] = solved
     prop[contacts.where] = props
-    exponent[contacts.where] = solved / (stiffness * props)
+    # at light loads of thin, soft contacts a film's slope can vanish or turn within its error: then a constant
+    exponent[contacts.where] = np.maximum(solved / (stiffness * props), 0.0)
     return FilmLaw(force, prop, exponent)
 
 
