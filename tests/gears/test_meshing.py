@@ -79,6 +79,10 @@ def test_outline_is_closed_anticlockwise_and_encloses_the_gear(article_pair):
     assert np.all(np.linalg.norm(np.diff(ring, axis=0), axis=1) > 0)
     # teeth and gaps are about equally wide at the reference circle, so the area is near that of its disc
     assert area(ring) == pytest.approx(math.pi * tooth.reference_radius**2, rel=0.02)
+    for part in (outline(tooth, teeth=1), outline(tooth, teeth=4)):
+        # mirror images: nearest point of the outline to each mirrored point
+        off = np.linalg.norm(part[:, None] * [-1, 1] - part[None], axis=-1).min(axis=1)
+        assert off.max() < 1e-12
     few = outline(tooth, teeth=5)
     sector = math.pi * tooth.bore_radius**2 * 5 / 36
     assert area(few) + sector == pytest.approx(area(ring) * 5 / 36, rel=1e-3)

@@ -21,3 +21,11 @@ def test_worked_values(z1, z2, c_th, c_prime, c_gamma):
     assert found.c_gamma == pytest.approx(c_gamma, abs=6e-4)
     turned = closed_form.iso6336(GearPair(Gear(z2), Gear(z1), 2e-3, 40e-3))
     assert turned.c_gamma == pytest.approx(found.c_gamma, rel=1e-12)
+
+
+def test_shifts_enter_term_by_term():
+    """q' of the standard's polynomial, its terms written out for x1 = 0.4, x2 = 0.15, z 20/50."""
+    terms = [0.04723, 0.15551 / 20, 0.25791 / 50, -0.00635 * 0.4, -0.11654 * 0.4 / 20]
+    terms += [-0.00193 * 0.15, -0.24188 * 0.15 / 50, 0.00529 * 0.16, 0.00182 * 0.0225]
+    found = closed_form.iso6336(GearPair(Gear(20, 0.4), Gear(50, 0.15), 2e-3, 40e-3))
+    assert 1 / found.c_th == pytest.approx(sum(terms), rel=1e-12)
