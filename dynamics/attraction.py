@@ -148,6 +148,8 @@ def basins(
     for part in np.array_split(np.arange(len(starts)), min(len(starts), 50)):
         mine, there = labels[part], starts[part]
         found.settle(there, wait, mine)
+        if any(orbit is not None for orbit in found.orbits):
+            found.settle(there, 2 * wait, mine)  # transient chaos outlives damping
         for i in np.flatnonzero(mine == UNDECIDED):
             mine[i] = found.follow(there[i], 0)
         labels[part] = mine

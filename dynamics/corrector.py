@@ -159,6 +159,8 @@ class BranchProblem:
             u, image, table, best = trial, image_there, table_there, size
             if size == 0.0:
                 break
+            if float(np.max(np.abs(step))) > 1e-6:  # an old slope would slow Newton's method down
+                slope = self.slope(u)
         if not best <= 64.0 * EPS * max(1.0, float(np.max(np.abs(image.jacobian)))):
             return None
         return self._point(u, image, table, slope, best, iterations)

@@ -42,7 +42,7 @@ class Crossing:
 
 def match_extrema(a: Point, b: Point) -> list[tuple[int, int]]:
     """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
-    pairs = []
+    pairs: list[tuple[int, int]] = []
     if len(a.extrema) == 0 or len(b.extrema) == 0:
         return pairs
     gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
@@ -109,7 +109,7 @@ def locate(problem: BranchProblem, a: Point, b: Point, crossing: Crossing) -> Sp
         speed = abs(b.value - a.value) if crossing.kind != "saddle-node" else abs(b.value - a.value) * off
         error += off * speed
     multipliers = floquet_multipliers(point.trace, point.determinant)
-    label = motion_label(problem.periods, point.counts, is_stable(multipliers))
+    label = motion_label(problem.periods, point.counts)  # marginal: neither stable nor unstable
     touch = {}
     if crossing.kind == "grazing":
         here = problem.at(point.u)

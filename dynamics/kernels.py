@@ -16,7 +16,7 @@ bound
   how far y departs from the chord of the cell: factor . (|y|, |v|, 1).
 
 The region is +1 above D, 0 in the dead zone, -1 below -D; the coordinate y belongs to it. With D = 0 there
-is no region 0. Kept in one file because a change in a helper elsewhere would leave stale compiled callers.
+is no region 0. One file, because a change in a helper elsewhere would leave stale compiled callers.
 """
 
 import math
@@ -61,7 +61,7 @@ def poly(c: FloatArray, first: int, t: float) -> tuple[float, float, float]:
 
 @kernel
 def find_root(c: FloatArray, first: int, low: float, high: float, f_low: float, f_high: float) -> float:
-    """Root of the polynomial c[first + k] t^k between two points of opposite sign (Halley)."""
+    """Root of the polynomial c[first + k] t^k between two points of opposite sign ."""
     rising = f_low < 0.0
     t = low + (high - low) * f_low / (f_low - f_high)
     before = high - low
@@ -73,12 +73,17 @@ def find_root(c: FloatArray, first: int, low: float, high: float, f_low: float, 
             low = t
         else:
             high = t
-        new = t - f * df / (df * df - 0.5 * f * ddf)
+        square = df * df - 2.0 * f * ddf
+        slope = df + (math.sqrt(square) if rising else -math.sqrt(square)) if square > 0.0 else 2.0 * df
+        new = (
+            t - 2.0 * f / slope if slope != 0.0 else low
+        )  # root of the parabola: good next to a double root too
+        step = abs(new - t)
+        if step <= 4.5e-16 * abs(t) or (step >= 0.5 * before and step < 1e-12 * abs(t)):
+            return t  # rounding; never the middle of a bracket that rounding has closed on one side only
         if not (low < new < high):
             new = 0.5 * (low + high)
-        step = abs(new - t)
-        if step <= 4.5e-16 * abs(t) or new == t or (step >= 0.5 * before and step < 1e-12 * abs(t)):
-            return new
+            step = abs(new - t)
         before = step
         t = new
     return t
@@ -459,8 +464,6 @@ def walk(
         samples[filled, 0] = y + region * d
         samples[filled, 1] = v
         filled += 1
-    state[0] = y + region * d
-    state[1] = v
     return FINE, turned, happened
 
 

@@ -28,7 +28,8 @@ class SpecialPoint:
     multipliers : ndarray, shape (2,)
         Floquet multipliers.
     label : str
-        Motion at the point; at a grazing the touch itself is not counted.
+        Motion at the point. At a grazing the touch itself is not counted and a U says that the motion is
+        unstable; at the other kinds it is marginal.
     error : float
         Estimated error of the parameter value, relative.
     boundary : int

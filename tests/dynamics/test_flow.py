@@ -7,7 +7,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dynamics import FourierStiffness, GearOscillator, period_map, trajectory, turning_points
@@ -100,7 +100,44 @@ def test_determinant_is_exact(osc, state):
 def test_degree_and_cells_do_not_matter(osc, state):
     image = period_map(osc, state)
     finer = period_map(tables(osc, refinement=3, degree=24), state)
-    np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=1e-13 * size(image))
+    np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=4 * EPS * osc.cells * size(image))
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    st.lists(st.floats(-2.0, 3.0), min_size=1, max_size=5),
+    st.floats(1e-7, 1e-1),
+    st.floats(0.1, 2.0),
+)
+def test_first_exit_finds_the_first_root(roots, apart, end):
+    """Polynomials with known real roots, one of them doubled at a small distance."""
+    from dynamics.kernels import first_exit, poly
+
+    roots = sorted([*roots, roots[0] + apart])
+    assume(all(abs(r) > 1e-3 and abs(r - end) > 1e-3 for r in roots))
+    assume(np.min(np.diff(roots)) > 0.9e-7)
+    c = np.zeros(17)
+    c[: len(roots) + 1] = np.polynomial.polynomial.polyfromroots(roots)
+    c *= np.sign(c[0])
+    found = first_exit(c, np.empty(17), end, 0)
+    inside = [r for r in roots if 0 < r < end]
+    if not inside:
+        assert found == -1.0
+        return
+    # the polynomial is zero at what is found, up to the rounding of its terms
+    assert abs(poly(c, 0, found)[0]) <= 4 * EPS * np.sum(np.abs(c) * found ** np.arange(17))
+    near = abs(np.prod([inside[0] - r for r in roots if r != inside[0]]))  # the slope there
+    assert found == pytest.approx(inside[0], rel=0, abs=1e-13 * np.sum(np.abs(c)) / near + 1e-15)
+
+
+def test_first_exit_at_a_boundary_just_crossed():
+    """Rounding of the slope's sign is not a second crossing; without that knowledge it is an exit at once."""
+    from dynamics.kernels import first_exit
+
+    c = np.zeros(17)
+    c[1:3] = -1e-18, 1.0
+    assert first_exit(c, np.empty(17), 1.0, 1) == -1.0
+    assert first_exit(c, np.empty(17), 1.0, 0) == 0.0
 
 
 def test_error_falls_with_the_degree_as_theory_says(article):
@@ -200,7 +237,9 @@ def test_sampled_motion_ends_where_the_map_does(osc, state):
     np.testing.assert_allclose(motion.poincare[1:], image.states, rtol=0, atol=1e-13 * size(image))
     exits = np.sum((motion.events[:, 1] == osc.half_backlash) & (motion.events[:, 3] < 1))
     near = np.min(np.abs(np.abs(motion.extrema[:, 1]) - osc.half_backlash), initial=1.0)
-    if osc.half_backlash > 0 and near > 1e-12:  # a touch up to rounding may be seen by one and not by the other
+    if (
+        osc.half_backlash > 0 and near > 1e-12
+    ):  # a touch up to rounding may be seen by one and not by the other
         assert exits == image.counts[:, 0].sum()
 
 

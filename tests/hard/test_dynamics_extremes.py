@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics import FourierStiffness, GearOscillator, contact_orbit, find_orbit, period_map, trajectory
+from dynamics import (
+    FourierStiffness,
+    GearOscillator,
+    contact_orbit,
+    continue_branch,
+    find_orbit,
+    period_map,
+    trajectory,
+)
 from dynamics.flow import tables
 
 
@@ -163,3 +171,34 @@ def test_thousand_periods_of_rest():
     """A state at rest inside the play, without any force, stays to the last bit."""
     osc = oscillator(mean_force=0.0, error_amplitude=0.0)
     assert period_map(osc, (0.1, 0.0), periods=1, skip=999).state.tolist() == [0.1, 0.0]
+
+
+def test_period_doubling_on_a_grazing():
+    """kappa = 0.179: both within 2e-9 of each other, where the trace has a square-root corner."""
+    osc = oscillator(kappa=0.179, frequency=0.5)
+    branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.5, 1.2))
+    assert branch.converged, branch.message
+    (doubling,) = branch.special("period-doubling")
+    touch = min(branch.special("grazing"), key=lambda p: abs(p.parameter - doubling.parameter))
+    assert abs(touch.parameter - doubling.parameter) < 1e-8
+    image = period_map(osc.with_parameter("frequency", doubling.parameter), doubling.state)
+    exact = np.exp(-2 * 0.05 * 2 * np.pi / doubling.parameter)
+    assert 1 + exact + np.trace(image.jacobian) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_newton_at_a_fold():
+    """Right at the saddle node the step halves every time, and the orbit is still found or refused, never guessed."""
+    osc = oscillator(frequency=0.6555759637891123)
+    orbit = find_orbit(osc, (0.43, 0.0))
+    if orbit.converged:
+        assert np.max(np.abs(period_map(osc, orbit.state).state - orbit.state)) < 1e-13
+    beyond = find_orbit(oscillator(frequency=0.6556), (0.43, 0.0))
+    assert not beyond.converged or beyond.label != "1-0-0"
+
+
+def test_branch_with_next_to_no_backlash():
+    osc = oscillator(half_backlash=1e-13, frequency=0.5)
+    branch = continue_branch(find_orbit(osc, (0.1, 0.0)), "frequency", (0.5, 0.8))
+    assert branch.converged, branch.message
+    touches = [p.parameter for p in branch.special("grazing") if p.boundary == 1]
+    assert touches[0] == pytest.approx(0.633533993217297, rel=0, abs=1e-12)

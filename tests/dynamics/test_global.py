@@ -1,0 +1,130 @@
+"""Lyapunov exponents and basins of attraction."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+from dynamics import (
+    DynamicsError,
+    FourierStiffness,
+    GearOscillator,
+    basins,
+    find_orbit,
+    lyapunov_exponents,
+    period_map,
+)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "zeta"), [(0.5, 0.05), (1.04, 0.05), (1.04, 0.01), (2.0, 0.0), (0.05, 0.05)]
+)
+def test_sum_is_exact(article, frequency, zeta):
+    result = lyapunov_exponents(article(frequency=frequency, damping_ratio=zeta), periods=2000, transient=500)
+    assert abs(np.asarray(result).sum() + 2 * zeta) <= 1e-13
+
+
+def test_exponents_of_a_node(article):
+    """Of a periodic orbit: logarithms of the multipliers over the period. 2-2-1 has real ones at 1.28."""
+    osc = article(frequency=0.64)
+    orbit = find_orbit(osc, (0.5, 0.2), transient=400)
+    assert orbit.stable
+    result = lyapunov_exponents(osc, periods=4000, state=orbit.state, transient=0)
+    exact = np.log(np.abs(orbit.multipliers)) / (orbit.periods * osc.period)
+    # the frame turns into the eigenvector once: an error of order 1 over the time
+    np.testing.assert_allclose(result.exponents, exact, rtol=0, atol=3.0 / (4000 * osc.period))
+    assert result.message == "periodic"
+
+
+def test_exponents_of_a_focus():
+    osc = GearOscillator(FourierStiffness(1.0), 0.07, 0.5, 0.1, 1.1, half_backlash=0.1)
+    result = lyapunov_exponents(osc, periods=5000)
+    np.testing.assert_allclose(result.exponents, [-0.07, -0.07], rtol=0, atol=1e-4)
+
+
+def test_chaos(article):
+    """Against a product of the period's Jacobians, made orthogonal by numpy."""
+    osc = article(frequency=1.04)
+    result = lyapunov_exponents(osc, periods=4000, state=(0.3, 0.0), transient=100)
+    assert result.message == "chaotic"
+    assert result.exponents[0] > 0.05
+    state, frame, total = np.array([0.3, 0.0]), np.eye(2), 0.0
+    for _ in range(20):  # few enough for two chaotic motions to stay together
+        image = period_map(osc, state)
+        frame, r = np.linalg.qr(image.jacobian @ frame)
+        total += np.log(abs(r[0, 0]))
+        state = image.state
+    short = lyapunov_exponents(osc, periods=20, state=(0.3, 0.0), transient=0)
+    assert short.exponents[0] == pytest.approx(total / (20 * osc.period), rel=1e-9)
+    other = lyapunov_exponents(osc, periods=4000, state=(-0.2, 0.3), transient=100)
+    spread = np.hypot(other.standard_error, result.standard_error)
+    assert abs(other.exponents[0] - result.exponents[0]) < 5 * spread
+
+
+def test_too_short_an_average_is_said(article):
+    with pytest.raises(DynamicsError, match="periods"):
+        lyapunov_exponents(article(), periods=5)
+    result = lyapunov_exponents(article(frequency=1.04), periods=20)
+    assert result.standard_error > 0
+
+
+@pytest.fixture(scope="module")
+def hysteresis():
+    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    return osc, basins(osc, x=(-1, 1, 40), v=(-1, 1, 30))
+
+
+def test_basins_in_the_hysteresis(hysteresis):
+    _, result = hysteresis
+    assert result.labels.shape == (40, 30)
+    assert result.converged
+    assert {a.label for a in result.attractors} == {"1-0-0", "1-1-1"}
+    assert sum(a.share for a in result.attractors) == pytest.approx(1.0)
+    assert pickle.loads(pickle.dumps(result)).labels.tolist() == result.labels.tolist()
+
+
+def test_every_start_is_where_it_ends(hysteresis):
+    """X along the first axis, and each label is the attractor that a plain iteration ends on."""
+    osc, result = hysteresis
+    for i in range(0, 40, 5):
+        for j in range(0, 30, 7):
+            end = period_map(osc, (result.x[i], result.v[j]), skip=400).state
+            apart = [np.min(np.max(np.abs(a.states - end), axis=1)) for a in result.attractors]
+            assert int(np.argmin(apart)) == result.labels[i, j]
+            assert min(apart) < 1e-9
+
+
+def test_basins_mirror(hysteresis):
+    osc, result = hysteresis
+    mirror = basins(osc.mirrored(), x=(-1, 1, 40), v=(-1, 1, 30))
+    names = np.array([a.label for a in result.attractors])[result.labels]
+    mirrored = np.array([a.label for a in mirror.attractors])[mirror.labels]
+    # exits above and entries below change places: 1-1-1 stays what it is, 1-0-0 rests on the other flank
+    assert np.array_equal(mirrored[::-1, ::-1], names)
+
+
+def test_basins_with_chaos(article):
+    result = basins(article(frequency=1.11), x=(-1, 1, 12), v=(-1, 1, 12))
+    assert {a.label for a in result.attractors} == {"aperiodic", "6-4-4"}
+    assert all(a.orbit is None or a.orbit.stable for a in result.attractors)
+
+
+def test_unbounded_starts():
+    osc = GearOscillator(FourierStiffness(1.0, (0.9,), (0.0,)), 0.0, 0.1, 0.2, 2.0, half_backlash=0.1)
+    result = basins(osc, x=(-1, 1, 3), v=(-1, 1, 3), limit=3000)
+    assert np.all(result.labels[[0, 0, 2, 2], [0, 2, 0, 2]] == -2)
+    assert "without bound" in result.message
+
+
+def test_bad_axes(article):
+    with pytest.raises(DynamicsError) as error:
+        basins(article(), x=(0, np.nan, 10), v=(0, 1, 0), radius=2.0)
+    assert {f.where for f in error.value.faults} == {"x[1]", "v[2]", "radius"}
+
+
+def test_progress(article):
+    seen = []
+    basins(article(), x=(0, 1, 5), v=(0, 1, 5), progress=lambda done, total: seen.append((done, total)))
+    assert seen[-1] == (25, 25)
