@@ -154,34 +154,3 @@ def _scene_fault(fault: GearFault) -> Fault:
     key = _KEYS.get(attribute, attribute)
     where = ".".join(part for part in ("pair", owner, key) if part)
     return Fault(where, fault.value, fault.allowed, fault.remedy[:1].upper() + fault.remedy[1:])
-
-
-def check_scene(scene: Scene) -> list[str]:
-    """Check what only the built geometry can tell, and say what a run would compute.
-
-    Returns
-    -------
-    list of str
-        Lines for a person.
-
-    Raises
-    ------
-    InputError
-        With every fault of the geometry.
-    """
-    import warnings
-
-    from flankfilm.stages.catalogue import STAGES, goals
-
-    told = [f"{scene.title or 'The scene'} is in order."]
-    if scene.pair is not None:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            pair = gear_pair(scene)
-        told.append(
-            f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
-            f"normal backlash {1e6 * pair.backlash:.1f} µm."
-        )
-        told += [f"Warning: {warning.message}" for warning in caught]
-    told.append("A run computes: " + ", ".join(STAGES[name].title for name in goals(scene)) + ".")
-    return told

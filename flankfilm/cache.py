@@ -19,7 +19,7 @@ from importlib import metadata, util
 from pathlib import Path
 from typing import Any
 
-from flankfilm.files import replacing
+from flankfilm.files import replacing, sweep_temporaries
 
 _LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
@@ -115,5 +115,6 @@ class Cache:
         try:
             with replacing(self.folder / key) as beside:
                 beside.write_bytes(hashlib.sha256(payload).hexdigest().encode() + b"\n" + payload)
+            sweep_temporaries(self.folder)
         except OSError as fault:
             warnings.warn(f"result cache: not kept ({fault.strerror})", CacheWarning, stacklevel=2)

@@ -60,6 +60,7 @@ def run(
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     keep_compiled_code()
     from flankfilm.progress import console_progress
+    from flankfilm.report.contents import summary
     from flankfilm.run import run_scene
     from flankfilm.scene import read_scene
 
@@ -69,7 +70,7 @@ def run(
     folder = out if out is not None else Path(f"{scene.stem}-results")
     with console_progress() as progress:
         results = run_scene(wanted, folder, use_cache=cache, progress=progress)
-    for line in results.summary():
+    for line in summary(results):
         print(line)
     return 0
 
@@ -83,7 +84,7 @@ def check(scene: Path, /) -> int:
     scene : Path
         The scene file (TOML).
     """
-    from flankfilm.build import check_scene
+    from flankfilm.check import check_scene
     from flankfilm.scene import read_scene
 
     wanted = read_scene(scene)

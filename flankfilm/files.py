@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -25,6 +27,18 @@ def replacing(path: Path) -> Iterator[Path]:
         beside.replace(path)
     finally:
         beside.unlink(missing_ok=True)
+
+
+def sweep_temporaries(folder: Path, older_than: float = 3600.0) -> None:
+    """Remove what killed runs left beside their targets, once it is older than `older_than` seconds."""
+    for path in folder.iterdir():
+        if _TEMPORARY.fullmatch(path.name):
+            with suppress(FileNotFoundError):  # another run may sweep, or rename, at the same time
+                if time.time() - path.stat().st_mtime > older_than:
+                    path.unlink()
+
+
+_TEMPORARY = re.compile(r"\..+\.[0-9a-f]{12}(\.\w+)?")
 
 
 def write_text(path: Path, text: str) -> None:

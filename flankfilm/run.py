@@ -3,54 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from flankfilm.cache import Cache, user_cache
 from flankfilm.faults import Fault, InputError, told_by_a_floor
+from flankfilm.files import sweep_temporaries
 from flankfilm.outputs import write_data
 from flankfilm.progress import Progress, silent
+from flankfilm.results import Results
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
-from flankfilm.stages.engine import Engine, Stage, StageRun
+from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.fields import write_vtk
-
-
-@dataclass(frozen=True)
-class Results:
-    """What a run gave.
-
-    Attributes
-    ----------
-    scene : Scene
-        What was asked for.
-    folder : Path
-        Where the files are.
-    values : mapping
-        Stage name to result.
-    runs : mapping
-        Stage name to how it came about.
-    files : tuple of Path
-        What was written.
-    seconds : float
-        Cost of the whole run [s].
-    """
-
-    scene: Scene
-    folder: Path
-    values: Mapping[str, Any]
-    runs: Mapping[str, StageRun]
-    files: tuple[Path, ...]
-    seconds: float
-
-    def summary(self) -> list[str]:
-        """Lines for the terminal: headline figures with errors, and the files."""
-        from flankfilm.report.contents import headlines
-
-        told = [f"{h.name}: {h.text}" + (f" ({h.note})" if h.note else "") for h in headlines(self)]
-        return [*told, f"{len(self.files)} files in {self.folder} after {self.seconds:.1f} s"]
 
 
 def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:
@@ -116,6 +81,7 @@ def _claim(folder: Path) -> None:
         probe = folder / ".flankfilm-probe"
         probe.touch()
         probe.unlink(missing_ok=True)
+        sweep_temporaries(folder)
     except OSError as fault:
         told = f"cannot be written: {fault.strerror}"
         raise InputError([Fault(str(folder), "", told, "Name another with --out")]) from fault

@@ -16,7 +16,7 @@ from flankfilm.report.text import percent
 from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
-    from flankfilm.run import Results
+    from flankfilm.results import Results
 
 
 def headlines(results: Results) -> list[Headline]:
@@ -38,6 +38,12 @@ def headlines(results: Results) -> list[Headline]:
         )
         told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
     return told
+
+
+def summary(results: Results) -> list[str]:
+    """Lines for the terminal: headline figures with errors, and the files."""
+    told = [f"{h.name}: {h.text}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    return [*told, f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s"]
 
 
 def final_cycle(results: Results) -> MeshStiffness | None:

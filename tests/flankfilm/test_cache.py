@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
 
@@ -78,6 +80,16 @@ def test_a_full_disk_is_a_warning(tmp_path, monkeypatch):
     with pytest.warns(CacheWarning, match="No space left"):
         Cache(tmp_path).put("entry", 1)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_killed_runs_left_is_swept(tmp_path):
+    left, young, mine = (tmp_path / n for n in (".entry.0123456789ab", ".entry.ba9876543210", ".entry"))
+    for path in (left, young, mine):
+        path.write_text("half")
+    for path in (left, mine):
+        os.utime(path, (0, 0))
+    Cache(tmp_path).put("entry", 1)
+    assert sorted(p.name for p in tmp_path.iterdir()) == [".entry", ".entry.ba9876543210", "entry"]
 
 
 def test_a_failed_write_keeps_the_old_file(tmp_path):

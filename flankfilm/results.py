@@ -1,0 +1,39 @@
+"""What a run gave, as the report and the command line take it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from flankfilm.scene import Scene
+from flankfilm.stages.engine import StageRun
+
+
+@dataclass(frozen=True)
+class Results:
+    """What a run gave.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked for.
+    folder : Path
+        Where the files are.
+    values : mapping
+        Stage name to result.
+    runs : mapping
+        Stage name to how it came about.
+    files : tuple of Path
+        What was written.
+    seconds : float
+        Cost of the whole run [s].
+    """
+
+    scene: Scene
+    folder: Path
+    values: Mapping[str, Any]
+    runs: Mapping[str, StageRun]
+    files: tuple[Path, ...]
+    seconds: float
