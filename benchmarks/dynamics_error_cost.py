@@ -12,7 +12,16 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dynamics import FourierStiffness, GearOscillator, period_map, sweep
+from dynamics import (
+    FourierStiffness,
+    GearOscillator,
+    basins,
+    continue_branch,
+    find_orbit,
+    lyapunov_exponents,
+    period_map,
+    sweep,
+)
 from dynamics.flow import tables
 
 START = (0.5, 0.2)
@@ -67,6 +76,18 @@ def main() -> None:
         result = sweep(osc, values=np.linspace(0.1, 2.1, 400), direction=direction)
         per_period = 1e6 * result.cost.seconds / result.cost.periods
         print(f"sweep of 400 values {direction}: {result.cost.seconds:.2f} s, {per_period:.2f} us/period")
+    start = find_orbit(osc.with_parameter("frequency", 0.5), (0.35, 0.0))
+    for repeat in ("first call", "again"):
+        branch = continue_branch(start, "frequency", (0.5, 1.2))
+        each = 1e3 * branch.cost.seconds / len(branch.values)
+        print(f"branch of {len(branch.values)} points ({repeat}): {branch.cost.seconds:.2f} s, {each:.2f} ms a point, "
+              f"{len(branch.points)} special points, largest error {branch.error:.0e}")  # fmt: skip
+    for repeat in ("first call", "again"):
+        result = basins(osc, x=(-1, 1, 100), v=(-1, 1, 100))
+        print(f"basins of 100 x 100 starts ({repeat}): {result.cost.seconds:.2f} s, {result.message}")
+    exponents = lyapunov_exponents(osc.with_parameter("frequency", 1.04), periods=10_000)
+    off = exponents.exponents.sum() + 2 * osc.damping_ratio
+    print(f"exponents over 10 000 periods: {exponents.cost.seconds:.2f} s, sum + 2 zeta = {off:.0e}")
 
 
 if __name__ == "__main__":
