@@ -79,14 +79,18 @@ def starved(frequency: float) -> GearOscillator:
 
 def test_starved_special_points():
     """Computed values have eight digits; the printed ones agree to six or more where the last column says so."""
-    contact = continue_branch(find_orbit(starved(0.4), (1.05, 0.0)), "frequency", (0.4, 0.5))
+    contact = continue_branch(find_orbit(starved(0.4), (1.05, 0.0)), "frequency", (0.3, 0.6))
     bumping = continue_branch(find_orbit(starved(1.8), (1.05, 0.0), transient=3000), "frequency", (0.4, 1.9))
+    second = continue_branch(find_orbit(starved(0.78), (1.118, 0.0135), periods=2), "frequency", (0.65, 0.9))
     third = sweep(starved(1.0), values=np.linspace(0.4, 2.0, 41))
     assert third.labels[-1] == "3-1-1"
     longer = find_orbit(starved(2.0), third.states[-1, -1], periods=3)
     longer = continue_branch(longer, "frequency", (1.45, 2.6))
     for branch, kind, label, computed, printed, apart in (
         (contact, "saddle-node", "1-1-0", 0.43701657, 0.43701658, 2e-8),
+        (contact, "period-doubling", "1-2-0", 0.43647822, 0.43647824, 3e-8),
+        (contact, "saddle-node", "1-1-0", 0.53528213, 0.53528214, 2e-8),
+        (second, "period-doubling", "2-1-0", 0.78450758, 0.78450762, 5e-8),
         (bumping, "period-doubling", "1-1-0", 0.53961770, 0.53961873, 2e-6),
         (bumping, "period-doubling", "1-1-0", 1.69095831, 1.691, 5e-5),
         (longer, "period-doubling", "3-1-1", 1.53393379, 1.53394281, 1e-5),
