@@ -225,8 +225,8 @@ def compliance(
         raise FemError(*faults)
     began = perf_counter()
     sizes = sizes or Sizes()
-    # every tooth that can carry load together with another one, tip edges just outside the path included
-    reach = ceil(pair.contact_ratio)
+    # every tooth that may touch together with another one, tip edges outside the path at both ends included
+    reach = ceil(pair.contact_ratio) + 1
     parts: dict[str, float] = {}
     level = 0 if refinements is None else refinements - 1
     error, coarse = np.inf, None

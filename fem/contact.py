@@ -173,11 +173,11 @@ def mesh_cycle(
     message = bodies.message
     if np.any(share.forces[edge] > 0):
         message += "; " + TIP_EDGE_MODEL
-    converged, deflection = bodies.converged, share.approach
+    converged, deflection, forces = bodies.converged, share.approach, share.forces
     if table is not None and np.any(share.forces[edge] / lever[edge] > table.force[:, -1]):
         converged = False
         message = "a tip edge presses over more than the strips cover; reduce the torque"
-        deflection = np.full_like(deflection, np.nan)
+        deflection, forces = np.full_like(deflection, np.nan), np.full_like(share.forces, np.nan)
     cost = Cost(
         perf_counter() - began,
         bodies.cost.unknowns,
@@ -193,8 +193,8 @@ def mesh_cycle(
         rho1=places,
         edge=edge,
         flank_rho=np.where(where.touchable, np.stack([rho1, rho2]), np.nan),
-        forces=share.forces / lever,
-        load_share=share.forces / force,
+        forces=forces / lever,
+        load_share=forces / force,
         gaps=gaps,
         approach=deflection,
         stiffness=np.where(np.isfinite(deflection), share.tangent, np.nan),

@@ -210,12 +210,56 @@ def edge_laws(pair: GearPair, strips: TipStrips, corner: int, rho1: Array, other
     gaps = gaps + flank.relief(touched)
     first = first + flank.relief(where[:, 0])
     kernel = strips.kernel + flat_kernel(strips.distance, strips.width, other, pair.module)
-    forces, approaches = [np.zeros(len(rho1))], [first]
-    ones = np.ones(len(strips.rho))
+    if profile.tip_relief is None and flank.tip_relief is None:
+        force, approach = _from_the_corner(kernel, gaps, first)
+    else:
+        force, approach = _from_the_nearest(kernel, gaps)
+    return EdgeLaw(force * pair.face_width, approach, where[:, 0])
+
+
+def _from_the_corner(kernel: Array, gaps: Array, first: Array) -> tuple[Array, Array]:
+    """Line load [N/m] and approach, (contacts, strips): the contact spreads inwards from the corner."""
+    forces, approaches = [np.zeros(len(gaps))], [first]
+    ones = np.ones(gaps.shape[1])
     for k in range(2, len(ones) + 1):
         both = np.linalg.solve(kernel[:k, :k], np.column_stack([ones[:k], gaps[:, :k].T]))
         x, y = both[:, 0], both[:, 1:]
         approach = y[-1] / x[-1]
-        forces.append((approach * x.sum() - y.sum(axis=0)) * pair.face_width)
+        forces.append(approach * x.sum() - y.sum(axis=0))
         approaches.append(approach)
-    return EdgeLaw(np.array(forces).T, np.array(approaches).T, where[:, 0])
+    return np.array(forces).T, np.array(approaches).T
+
+
+def _from_the_nearest(kernel: Array, gaps: Array) -> tuple[Array, Array]:
+    """As ``_from_the_corner`` for any gaps: with tip relief the corner need not be nearest.
+
+    From the nearest strip on, the approach grows until the next strip closes, and so on: each closing is a
+    point of the law. Strips that have closed stay closed.
+    """
+    contacts, strips = gaps.shape
+    closed = np.arange(strips) == gaps.argmin(axis=1)[:, None]
+    rows = np.arange(contacts)
+    force, approach = [np.zeros(contacts)], [gaps.min(axis=1)]
+    for _ in range(strips - 1):
+        both = closed[:, :, None] & closed[:, None, :]
+        sides = np.stack([closed.astype(float), np.where(closed, gaps, 0.0)], axis=2)
+        x, y = np.moveaxis(
+            np.linalg.solve(np.where(both, kernel, np.eye(strips) * kernel[0, 0]), sides), 2, 0
+        )
+        x, y = np.where(closed, x, 0.0), np.where(closed, y, 0.0)
+        nearing = np.where(
+            closed, 0.0, 1.0 - x @ kernel
+        )  # a strip that moves as fast as the rest never closes
+        closing = np.where(
+            nearing > 1e-9, (gaps - y @ kernel) / np.where(nearing > 1e-9, nearing, 1.0), np.inf
+        )
+        # two strips that close together make one step of the law, not a vertical one
+        closing = np.maximum(closing, approach[-1][:, None] + 1e-12)
+        following = closing.argmin(axis=1)
+        level = closing[rows, following]
+        more = np.isfinite(level)  # else the same strips go on bearing
+        level = np.where(more, level, 2 * approach[-1] - approach[0] + 1e-9)
+        closed = closed | ((np.arange(strips) == following[:, None]) & more[:, None])
+        force.append(np.maximum(level * x.sum(axis=1) - y.sum(axis=1), force[-1] * (1 + 1e-12)))
+        approach.append(level)
+    return np.array(force).T, np.array(approach).T

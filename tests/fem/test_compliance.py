@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import fem
+from gears import BasicRack, Gear, GearPair, Material
+from meshes import Sizes
+
+PAIRS = {
+    "article": GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04),
+    "form circle": GearPair(Gear(17), Gear(43), 2e-3, 0.04),
+    "high contact ratio": GearPair(Gear(60), Gear(80), 2e-3, 0.04, BasicRack(1.3, 1.55, 0.3, np.radians(18))),
+    "chamfer": GearPair(Gear(30, tip_chamfer=2e-4), Gear(40, tip_chamfer=2e-4), 2e-3, 0.04),
+}
+
+
+@pytest.mark.parametrize("name", list(PAIRS))
+def test_error_estimate_covers_the_true_error_and_is_not_idle(name):
+    pair = PAIRS[name]
+    coarse, fine = (fem.compliance(pair, refinements=n) for n in (1, 2))
+    rho1 = np.linspace(pair.points.A, pair.points.E, 30)
+    force = pair.normal_force(600.0)
+    k, reference = (fem.single_pair_stiffness(pair, force, rho1, bodies) for bodies in (coarse, fine))
+    true = np.max(np.abs(k / reference - 1))
+    assert fine.error < coarse.error < 1e-3
+    assert true < 2 * coarse.error  # an estimate, not a bound
+    assert true > coarse.error / 50
+
+
+def test_tolerance_chooses_the_mesh(article_pair):
+    loose, tight = fem.compliance(article_pair, 0.01), fem.compliance(article_pair, 1e-4)
+    assert loose.refinements < tight.refinements
+    assert loose.error <= 0.01
+    assert tight.error <= 1e-4
+    assert loose.converged
+    assert tight.converged
+
+
+def test_a_tolerance_that_cannot_be_met_is_said_so(article_pair, monkeypatch):
+    import sys
+
+    monkeypatch.setattr(sys.modules["fem.compliance"], "FINEST", 1)
+    bodies = fem.compliance(article_pair, 1e-7)
+    assert not bodies.converged
+    assert "above the tolerance" in bodies.message
+
+
+def test_coarser_elements_are_within_their_own_estimate(article_pair, article_bodies):
+    crude = fem.compliance(article_pair, sizes=Sizes(flank=0.6, fillet=0.5, root=0.6, rim=1.2, corner=0.05))
+    rho1 = np.linspace(article_pair.points.A, article_pair.points.E, 30)
+    change = crude.own(rho1) / article_bodies.own(rho1) - 1
+    assert np.max(np.abs(change)) < 3 * (crude.error + article_bodies.error)
+
+
+def test_bulk_matrix_is_symmetric_positive_and_coupled(article_pair, article_bodies):
+    start = np.linspace(article_pair.points.A, article_pair.points.E - article_pair.base_pitch, 7)
+    rho1 = np.stack([start, start + article_pair.base_pitch], axis=1)
+    bulk = article_bodies.bulk(rho1)
+    np.testing.assert_array_equal(bulk, bulk.swapaxes(1, 2))
+    assert np.all(np.linalg.eigvalsh(bulk) > 0)
+    # the neighbour moves by more than the hubs' turn, and less than the loaded tooth
+    turn = sum(article_bodies.hub_windup)
+    assert np.all(bulk[:, 0, 1] > turn)
+    assert np.all(bulk[:, 0, 1] < 0.6 * bulk[:, 0, 0])
+
+
+def test_equal_gears_are_the_same_seen_from_either_side():
+    pair = GearPair(Gear(28), Gear(28), 2e-3, 0.04)
+    bodies = fem.compliance(pair)
+    rho1 = np.linspace(pair.points.A, pair.points.E, 11)
+    np.testing.assert_allclose(bodies.own(rho1), bodies.own(rho1)[::-1], rtol=1e-12)
+    k = fem.single_pair_stiffness(pair, 1e4, rho1, bodies)
+    np.testing.assert_allclose(k, k[::-1], rtol=1e-12)
+
+
+def test_stiffness_per_face_width_is_free_of_size(article_pair):
+    small = GearPair(Gear(36), Gear(40), 1e-3, 0.02)
+    large = GearPair(Gear(36), Gear(40), 5e-3, 0.1)
+    k = []
+    for pair, force in ((small, 1e4), (large, 25e4)):  # the same pressure on similar shapes
+        rho1 = np.linspace(pair.points.A, pair.points.E, 5)
+        k.append(fem.single_pair_stiffness(pair, force, rho1) / pair.face_width)
+    np.testing.assert_allclose(k[0], k[1], rtol=2e-5)
+
+
+def test_two_materials_lie_between_one(article_pair):
+    steel, bronze = Material(206e9, 0.3, 7850.0), Material(110e9, 0.34, 8800.0)
+    rho1 = [article_pair.points.C]
+    k = [
+        float(fem.single_pair_stiffness(GearPair(Gear(36), Gear(40), 2e-3, 0.04, material=m), 1e4, rho1)[0])
+        for m in (bronze, (steel, bronze), steel)
+    ]
+    assert k[0] < k[1] < k[2]
+    assert 1 / k[1] == pytest.approx(0.5 * (1 / k[0] + 1 / k[2]), rel=0.02)
+
+
+def test_plane_stress_is_softer_by_nearly_the_plane_modulus(article_pair):
+    rho1 = [article_pair.points.C]
+    strain = fem.single_pair_stiffness(article_pair, 1e4, rho1)[0]
+    stress = fem.single_pair_stiffness(article_pair, 1e4, rho1, plane="stress")[0]
+    assert 0.91 < stress / strain < 0.96  # shear and the hub's turn do not know E*
+
+
+def test_hub_windup_is_named(article_pair, article_bodies):
+    first, second = article_bodies.hub_windup
+    G = 206e9 / 2.6
+    r_b, r_f, r_h = article_pair.base_radii[0], article_pair.root_radii[0], article_pair.bore_radii[0]
+    assert first == pytest.approx(r_b**2 / (4 * np.pi * G * 0.04) * (1 / r_h**2 - 1 / r_f**2), rel=1e-12)
+    assert second > 0
+
+
+def test_both_ends_of_the_path_are_finite(article_pair, article_bodies):
+    points = article_pair.points
+    k = fem.single_pair_stiffness(article_pair, 1e4, [points.A, points.E], article_bodies)
+    assert np.all(np.isfinite(k))
+    assert np.all(k > 0.5 * fem.single_pair_stiffness(article_pair, 1e4, [points.C], article_bodies))
+
+
+def test_results_travel_between_processes(article_pair, article_bodies):
+    back = pickle.loads(pickle.dumps(article_bodies))
+    rho1 = np.array([article_pair.points.C])
+    np.testing.assert_array_equal(back.own(rho1), article_bodies.own(rho1))
+
+
+def test_all_faults_at_once(article_pair):
+    with pytest.raises(fem.FemError) as caught:
+        fem.compliance(article_pair, tolerance=0.0, plane="shell", refinements=9)
+    assert [fault.where for fault in caught.value.faults] == ["tolerance", "plane", "refinements"]
+    with pytest.raises(fem.FemError) as caught:
+        fem.single_pair_stiffness(article_pair, float("nan"), [1.0], fem.compliance(article_pair))
+    assert [fault.where for fault in caught.value.faults] == ["force", "rho1"]
+
+
+def test_cost_says_what_was_solved(article_bodies):
+    cost = article_bodies.cost
+    assert {"mesh", "assemble", "factor", "condense", "solve", "tips"} <= set(cost.parts)
+    assert sum(cost.parts.values()) <= cost.seconds
+    assert cost.annulus_unknowns > 30 * cost.unknowns

@@ -1,0 +1,178 @@
+"""Load sharing over a base pitch: balance, symmetry, tangent against finite difference, gaps and film."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import fem
+from gears import Gear, GearPair, TipRelief
+
+
+@pytest.fixture(scope="module")
+def path_only(article_pair, article_bodies):
+    return fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False)
+
+
+@pytest.fixture(scope="module")
+def free(article_pair, article_bodies):
+    return fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_shares_add_up_and_deflections_are_equal(article_pair, article_bodies, beyond):
+    cycle = fem.mesh_cycle(article_pair, 600.0, 23, article_bodies, beyond_path=beyond)
+    np.testing.assert_allclose(cycle.load_share.sum(axis=1), 1.0, atol=1e-12)
+    assert np.all(cycle.load_share >= 0)
+    for row in range(23):
+        on = np.flatnonzero((cycle.forces[row] > 0) & ~cycle.edge[row])
+        if np.any(cycle.edge[row] & (cycle.forces[row] > 0)):
+            continue
+        rho1, force = cycle.rho1[row, on], cycle.forces[row, on]
+        deflection = article_bodies.bulk(rho1) @ force + article_bodies.hertz(rho1).approach(force)
+        np.testing.assert_allclose(deflection, cycle.approach[row], rtol=1e-9)
+
+
+def test_one_pair_alone_is_the_single_pair(article_pair, article_bodies, path_only):
+    alone = np.flatnonzero((path_only.forces > 0).sum(axis=1) == 1)
+    assert len(alone) == 12  # .297 of a base pitch
+    for row in alone:
+        rho1 = path_only.rho1[row, path_only.forces[row] > 0]
+        k = fem.single_pair_stiffness(article_pair, path_only.force, rho1, article_bodies)
+        assert path_only.secant_stiffness[row] == pytest.approx(float(k[0]), rel=1e-9)
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_tangent_is_the_derivative_of_the_force(article_pair, article_bodies, beyond):
+    step = 0.01
+    less, here, more = (
+        fem.mesh_cycle(article_pair, torque, 40, article_bodies, beyond_path=beyond)
+        for torque in (600.0 - step, 600.0, 600.0 + step)
+    )
+    slope = (more.force - less.force) / (more.approach - less.approach)
+    same = np.all((less.forces > 0) == (more.forces > 0), axis=1)
+    assert same.sum() >= 38
+    np.testing.assert_allclose(here.stiffness[same], slope[same], rtol=2e-4 if beyond else 1e-6)
+    assert np.all(here.stiffness > here.secant_stiffness)  # Hertz and taking in more contact both stiffen
+
+
+def test_equal_gears_give_a_cycle_that_reads_the_same_backwards():
+    pair = GearPair(Gear(28), Gear(28), 2e-3, 0.04)
+    bodies = fem.compliance(pair)
+    for beyond in (False, True):
+        cycle = fem.mesh_cycle(pair, 400.0, 400, bodies, beyond_path=beyond)
+        # the mirror about the pitch point takes a pair at A + s to E - s
+        s = (pair.points.E - pair.points.A) / pair.base_pitch - cycle.position
+        mirrored = np.interp(np.mod(s, 1.0), cycle.position, cycle.approach, period=1.0)
+        # Where a pair enters or leaves, the approach steps or bends within an interval. A tip edge of the
+        # pinion presses with a shorter lever about the pinion's axis, one of the wheel about the wheel's:
+        # with the pinion's torque given the two differ by their share times the change of the lever.
+        away = np.abs((cycle.position[:, None] - [0.0, pair.contact_ratio - 1.0, 1.0])).min(axis=1) > 0.01
+        np.testing.assert_allclose(cycle.approach[away], mirrored[away], rtol=3e-2 if beyond else 1e-4)
+
+
+def test_positions_are_midpoints_of_equal_intervals(article_pair, path_only):
+    np.testing.assert_allclose(path_only.position, (np.arange(40) + 0.5) / 40)
+    np.testing.assert_allclose(
+        path_only.rho1[:, 0], article_pair.points.A + path_only.position * article_pair.base_pitch
+    )
+
+
+def test_tip_edges_only_add_stiffness_and_leave_the_double_zone_alone(path_only, free):
+    idle = np.all(free.forces[free.edge].reshape(-1) >= 0) and ~np.any((free.forces > 0) & free.edge, axis=1)
+    assert idle.sum() >= 5
+    np.testing.assert_allclose(free.approach[idle], path_only.approach[idle], rtol=1e-10)
+    assert np.all(free.approach <= path_only.approach * (1 + 1e-12))
+    assert np.any(free.approach < 0.8 * path_only.approach)
+
+
+def test_no_step_where_pairs_enter_and_leave(article_pair, article_bodies):
+    """With tip edges the approach changes by less than a thousandth where a pair passes A or E."""
+    cycle = fem.mesh_cycle(article_pair, 600.0, 4000, article_bodies)
+    around = np.append(cycle.approach, cycle.approach[0])
+    typical = np.abs(np.diff(around))
+    jump = typical[[3999, int((article_pair.contact_ratio - 1) * 4000)]]
+    assert np.all(jump < 1e-3 * cycle.approach.mean())
+    held = fem.mesh_cycle(article_pair, 600.0, 4000, article_bodies, beyond_path=False).approach
+    assert np.abs(np.diff(np.append(held, held[0]))).max() > 0.2 * held.mean()
+
+
+def test_light_load_forgets_the_tip_edges(article_pair, article_bodies):
+    one, two = (fem.mesh_cycle(article_pair, 0.01, 40, article_bodies, beyond_path=b) for b in (False, True))
+    assert np.mean(two.secant_stiffness) == pytest.approx(np.mean(one.secant_stiffness), rel=3e-3)
+
+
+def test_load_dependence_of_one_pair(article_pair, article_bodies):
+    k = [
+        float(fem.single_pair_stiffness(article_pair, f, [article_pair.points.C], article_bodies)[0])
+        for f in (17736.3, 8868.0, 1773.6)
+    ]
+    assert k[0] > k[1] > k[2] > 0.9 * k[0]
+
+
+def test_tip_relief_is_a_gap():
+    plain = GearPair(Gear(36), Gear(40), 2e-3, 0.04)
+    relief = TipRelief(amount=15e-6, length=2e-3)
+    eased = GearPair(Gear(36, tip_relief=relief), Gear(40, tip_relief=relief), 2e-3, 0.04)
+    a, b = (fem.mesh_cycle(pair, 300.0, 40, beyond_path=False) for pair in (plain, eased))
+    # single contact near the pitch point: no relief there, the same stiffness
+    single = np.flatnonzero((a.forces > 0).sum(axis=1) == 1)
+    np.testing.assert_allclose(b.approach[single], a.approach[single], rtol=1e-3)
+    # a pair entering at A carries little, and the gaps add to the transmission error
+    assert b.load_share[0, 0] < 0.5 * a.load_share[0, 0]
+    assert np.all(b.approach >= a.approach * (1 - 1e-3))
+    first, second = eased.teeth_profiles
+    wanted = first.relief(b.rho1[3, 0]) + second.relief(eased.line_of_action - b.rho1[3, 0])
+    assert b.gaps[3, 0] == pytest.approx(float(wanted), rel=1e-12)
+
+
+def test_film_is_in_series_with_each_pair_before_sharing(article_pair, article_bodies, path_only):
+    """A film as a linear spring of k_f: each pair's flexibility grows by 1/k_f, its prop cancels out."""
+    k_film = 2e9
+
+    class Spring:
+        def __call__(self, rho1, forces):
+            return 30e-6 - forces / k_film, np.full_like(forces, -1 / k_film)
+
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False, film=Spring())
+    row = int(np.flatnonzero((path_only.forces > 0).sum(axis=1) == 1)[3])
+    assert 1 / cycle.stiffness[row] == pytest.approx(1 / path_only.stiffness[row] + 1 / k_film, rel=1e-9)
+    more = cycle.approach[row] - path_only.approach[row]
+    assert more == pytest.approx(cycle.force / k_film - 30e-6, rel=1e-9)
+    double = np.flatnonzero((path_only.forces > 0).sum(axis=1) == 2)
+    spread = np.abs(cycle.load_share[double, 0] - 0.5) / np.abs(path_only.load_share[double, 0] - 0.5)
+    assert np.all(spread < 1.0)  # springs in series level the shares
+
+
+def test_a_given_compliance_makes_a_further_torque_cheap(article_pair, article_bodies):
+    cycle = fem.mesh_cycle(article_pair, 500.0, 40, article_bodies)
+    assert set(cycle.cost.parts) == {"contact"}
+    assert cycle.cost.seconds < 0.1  # about 5 ms; room for a busy machine
+    assert cycle.error == article_bodies.error
+
+
+def test_result_travels_and_message_names_the_model(free, path_only):
+    assert pickle.loads(pickle.dumps(free)).force == free.force
+    assert "sharp corners" in free.message
+    assert "sharp corners" not in path_only.message
+
+
+def test_all_faults_at_once(article_pair, article_bodies):
+    other = GearPair(Gear(20), Gear(40), 2e-3, 0.04)
+    with pytest.raises(fem.FemError) as caught:
+        fem.mesh_cycle(other, float("inf"), 0, article_bodies)
+    assert [fault.where for fault in caught.value.faults] == ["torque", "positions", "compliance"]
+    for torque in (0.0, -5.0, float("nan")):
+        with pytest.raises(fem.FemError, match="torque"):
+            fem.mesh_cycle(article_pair, torque, 40, article_bodies)
+
+
+def test_a_load_beyond_the_strips_is_refused_not_guessed(article_pair, article_bodies):
+    cycle = fem.mesh_cycle(article_pair, 2e6, 8, article_bodies)
+    assert not cycle.converged
+    assert np.all(np.isnan(cycle.approach))
+    assert np.all(np.isnan(cycle.stiffness))
+    assert np.all(np.isnan(cycle.forces))
+    assert "reduce the torque" in cycle.message

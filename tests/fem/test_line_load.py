@@ -1,0 +1,150 @@
+"""Line loads by singularity subtraction: symmetries that any error in sign, frame or quadrature breaks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem import FemError
+from fem.elasticity import PlaneElasticity
+from fem.flamant import hertz_indentation
+from fem.flexibility import corner_logarithm, flexibility
+from fem.line_load import flank_points, line_loads
+from fem.ring import ring_of
+from gears import Gear, GearPair
+from meshes import mesh_sector
+
+LAW = PlaneElasticity("strain", 206e9, 0.3)
+PAIR = GearPair(Gear(24, profile_shift=0.3), Gear(31), 2e-3, 0.04)
+PROFILE = PAIR.teeth_profiles[0]
+RHO = np.linspace(PAIR.points.A, PROFILE.flank_rho[1] - 1e-4, 9)
+
+
+@pytest.fixture(scope="module")
+def ring():
+    return ring_of(mesh_sector(PROFILE, refinements=1), LAW)
+
+
+@pytest.fixture(scope="module")
+def loads(ring):
+    return line_loads(ring, flank_points(ring.mesh, RHO))
+
+
+def test_flank_points_lie_on_the_involute_with_its_normal(ring):
+    at = flank_points(ring.mesh, RHO)
+    mirror = np.array([-1.0, 1.0])
+    np.testing.assert_allclose(at.points, PROFILE.involute(RHO) * mirror, rtol=0, atol=2e-5 * PROFILE.module)
+    np.testing.assert_allclose(at.inward, -PROFILE.normal(RHO) * mirror, rtol=0, atol=2e-3)
+    np.testing.assert_allclose(at.weights.sum(axis=1), 1.0)
+
+
+def test_the_tip_corner_stays_on_the_flank_and_beyond_it_is_refused(ring):
+    end = PROFILE.flank_rho[1]
+    at = flank_points(ring.mesh, np.array([end]))
+    # the flank's normal there, not the top land's
+    assert at.inward[0] @ (-PROFILE.normal(end) * [-1, 1]) > 0.999
+    with pytest.raises(FemError, match="rho"):
+        flank_points(ring.mesh, np.array([end * 1.001]))
+
+
+def test_reciprocity_of_neighbouring_teeth(loads):
+    """Maxwell and Betti: load here and displacement there may be exchanged."""
+    at = loads.at
+    for k in (1, 2, 5):
+        there, back = loads.on_tooth(k, at), loads.on_tooth(-k, at)
+        np.testing.assert_allclose(there, back.T, rtol=2e-4)
+
+
+def test_reciprocity_on_the_own_flank(loads):
+    at = loads.at
+    own = loads.on_tooth(0, at) + loads.singular(at)
+    off = ~np.eye(len(RHO), dtype=bool)
+    np.testing.assert_allclose(own[off], own.T[off], rtol=5e-4)
+
+
+def test_right_and_left_flank_are_mirror_images(loads):
+    mesh = mesh_sector(PROFILE, refinements=1, working="right")
+    mirrored = line_loads(ring_of(mesh, LAW), flank_points(mesh, RHO, "right"))
+    np.testing.assert_allclose(mirrored.regular_at_load(), loads.regular_at_load(), rtol=2e-4)
+    at = flank_points(mesh, RHO, "right")
+    np.testing.assert_allclose(mirrored.on_tooth(-1, at), loads.on_tooth(1, loads.at), rtol=2e-4)
+
+
+def test_length_of_the_logarithm_does_not_matter(ring):
+    """The near field's zero of displacement is arbitrary: u_r takes up what the indentation gives."""
+    other = replace(ring, mesh=replace(ring.mesh, module=7 * ring.mesh.module))
+    total = [
+        line_loads(one, flank_points(one.mesh, RHO)).regular_at_load()
+        + hertz_indentation(1e-4, LAW, one.mesh.module)
+        for one in (ring, other)
+    ]
+    np.testing.assert_allclose(total[1], total[0], rtol=1e-5)
+
+
+def test_displacement_scales_neither_with_size_nor_with_modulus(loads):
+    """Per line load, displacement times modulus is a number of the shape alone."""
+    big = GearPair(Gear(24, profile_shift=0.3), Gear(31), 2e-1, 4.0).teeth_profiles[0]
+    law = PlaneElasticity("strain", 70e9, 0.3)
+    mesh = mesh_sector(big, refinements=1)
+    other = line_loads(ring_of(mesh, law), flank_points(mesh, 100 * RHO))
+    np.testing.assert_allclose(other.regular_at_load() * 70e9, loads.regular_at_load() * 206e9, rtol=1e-4)
+
+
+def test_convergence_under_refinement():
+    """Order above two, which the error estimate of a compliance takes for granted."""
+    values = []
+    for level in range(4):
+        mesh = mesh_sector(PROFILE, refinements=level)
+        values.append(line_loads(ring_of(mesh, LAW), flank_points(mesh, RHO)).regular_at_load())
+    errors = [np.sqrt(np.mean((v - values[-1]) ** 2)) for v in values[:-1]]
+    assert errors[1] < 5e-4 * values[-1].min()
+    assert np.log2(errors[0] / errors[2]) / 2 > 2.0, errors
+
+
+def test_loads_near_the_corner_grow_as_the_wedge_says(ring):
+    angle, c = corner_logarithm(ring.mesh, LAW)
+    # corner between flank and top land: a right angle plus the pressure angle at the tip, less half the land
+    tip = np.arccos(PROFILE.base_radius / PROFILE.tip_radius)
+    assert angle == pytest.approx(0.5 * np.pi + tip, abs=2e-3)
+    away = np.array([0.02, 0.04]) * PROFILE.module  # arc length from the corner
+    rho = np.sqrt(PROFILE.flank_rho[1] ** 2 - 2 * PROFILE.base_radius * away)
+    near = line_loads(ring, flank_points(ring.mesh, rho)).regular_at_load()
+    assert near[1] - near[0] == pytest.approx(c * np.log(2), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "number"),
+    [(180.0, 0.0), (90.0, 2 / np.pi - 0.5 / (np.pi / 4 + 0.5) - 0.5 / (np.pi / 4 - 0.5))],
+)
+def test_wedge_coefficient(degrees, number):
+    """Half-plane: nothing to add; right angle: by hand from Michell's solution."""
+    half = np.radians(degrees) / 2
+
+    class Corner:
+        points = np.array(
+            [
+                [0.0, 0.0],
+                [0.0, -2.0],
+                [0.0, -1.0],
+                2 * np.array([np.sin(2 * half), -np.cos(2 * half)]),
+                np.array([np.sin(2 * half), -np.cos(2 * half)]),
+            ]
+        )
+        facets = {"flank_right": np.array([[1, 0, 2]]), "top": np.array([[0, 3, 4]])}  # noqa: RUF012
+        parameters = {"flank_right": np.array([[0.0, 1.0]])}  # noqa: RUF012
+
+    angle, c = corner_logarithm(Corner, LAW, "right")
+    assert angle == pytest.approx(2 * half, abs=1e-7)
+    assert c * LAW.plane_modulus == pytest.approx(number, abs=1e-9)
+
+
+def test_fit_along_the_flank(ring, loads):
+    flexible = flexibility(ring, PROFILE, PAIR.points.A)
+    np.testing.assert_allclose(flexible.own(RHO), loads.regular_at_load(), rtol=1e-3)
+    load, point = np.meshgrid(RHO, RHO)
+    np.testing.assert_allclose(flexible.cross(1, load, point), loads.on_tooth(1, loads.at), rtol=1e-3)
+    # the body's turning is part of everything
+    assert np.all(flexible.own(RHO) > flexible.hub_windup)
+    assert np.all(flexible.cross(1, load, point) > flexible.hub_windup)

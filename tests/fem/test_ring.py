@@ -1,0 +1,145 @@
+"""One sector and the ring of links must give what the whole annulus, factorised at once, gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from fem import FemError
+from fem.chain import ring_of_links
+from fem.elasticity import PlaneElasticity, stiffness_matrix
+from fem.line_load import _edge_points, flank_points, line_loads
+from fem.ring import ring_of
+from gears import Gear, GearPair
+from meshes import Sizes, gear_mesh, mesh_sector
+from meshes.annulus import turned
+
+LAW = PlaneElasticity("strain", 206e9, 0.3)
+SMALL = GearPair(Gear(18, profile_shift=0.2), Gear(24), 2e-3, 0.04)
+
+
+@pytest.fixture(scope="module")
+def ring():
+    return ring_of(mesh_sector(SMALL.teeth_profiles[0]), LAW)
+
+
+def harmonics(stiffness, links, j):
+    """Readable twin of ``ring_of_links``: discrete Fourier transform of the block-circulant matrix."""
+    n = len(stiffness) // 2
+    total = np.zeros((n, n), dtype=complex)
+    for k in range(links):
+        turn = np.exp(2j * np.pi * k / links)
+        ring = stiffness[:n, :n] + stiffness[n:, n:] + stiffness[:n, n:] * turn + stiffness[n:, :n] / turn
+        total += np.linalg.inv(ring) * turn**j / links
+    assert np.abs(total.imag).max() < 1e-9 * np.abs(total.real).max()
+    return total.real
+
+
+def test_chain_of_links_is_the_fourier_sum(ring):
+    links = ring_of_links(ring.schur, ring.mesh.teeth)
+    size = np.abs(links.influence(0)).max()
+    for j in (-2, -1, 0, 1, 2, 9, 17, 18):
+        np.testing.assert_allclose(
+            links.influence(j), harmonics(ring.schur, 18, j), rtol=0, atol=1e-12 * size
+        )
+
+
+@pytest.mark.parametrize("links", [3, 5, 6, 7])
+def test_chain_of_few_links_is_the_dense_ring(links):
+    rng = np.random.default_rng(links)
+    half = rng.normal(size=(8, 8))
+    link = half @ half.T + 0.1 * np.eye(8)
+    n, ring = 4, np.zeros((4 * links, 4 * links))
+    for k in range(links):
+        both = np.r_[n * k : n * k + n, n * ((k + 1) % links) : n * ((k + 1) % links) + n]
+        ring[np.ix_(both, both)] += link
+    exact = np.linalg.inv(ring)[:, :n]
+    closed = ring_of_links(link, links)
+    for j in range(links):
+        np.testing.assert_allclose(closed.influence(j), exact[n * j : n * j + n], rtol=0, atol=1e-11)
+    force = rng.normal(size=n)
+    np.testing.assert_allclose(closed.all_ends(force).ravel(), exact @ force, rtol=0, atol=1e-11)
+
+
+def test_a_ring_that_nothing_holds_is_refused():
+    free = np.kron(np.array([[1.0, -1.0], [-1.0, 1.0]]), np.eye(3))
+    with pytest.raises((FemError, np.linalg.LinAlgError)):
+        ring_of_links(free, 12)
+
+
+def whole_annulus(profile, sector, others=None):
+    gear = gear_mesh(sector, others=others)
+    K = stiffness_matrix(gear.points, gear.triangles, LAW)
+    hub = np.unique(gear.facets["bore"])
+    free = np.setdiff1d(np.arange(2 * len(gear.points)), np.concatenate([2 * hub, 2 * hub + 1]))
+    options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    factor = splu(csc_array(K[free][:, free]), **options)
+
+    def solve(force):
+        u = np.zeros(2 * len(gear.points))
+        u[free] = factor.solve(force.ravel()[free])
+        return u.reshape(-1, 2)
+
+    return gear, solve
+
+
+def test_forces_on_any_tooth_give_the_whole_annulus_displacements(ring):
+    """Forces on the tops of two teeth, condensed by hand, against the factorised annulus."""
+    sector, z = ring.mesh, ring.mesh.teeth
+    gear, solve = whole_annulus(SMALL.teeth_profiles[0], sector)
+    rng = np.random.default_rng(4)
+    top = np.unique(sector.facets["top"])
+    pull = rng.normal(size=(len(top), 2))
+    for tooth in (0, 5):
+        local = np.zeros((len(sector.points), 2))
+        local[top] = pull
+        force = np.zeros((len(gear.points), 2))
+        force[gear.nodes[tooth]] += turned(local, tooth * 2 * np.pi / z)
+        exact = solve(force)
+        inner = ring.factor.solve(local.ravel()[ring.inner])
+        cut_force = ring.polar.T @ (-ring.inner_by_cut.T @ local.ravel()[ring.inner])
+        cuts = np.roll(ring.all_interfaces(cut_force), tooth, axis=0)
+        for k in (0, 1, 4, 5, 6, 17):
+            moved = np.zeros(sector.unknowns)
+            on_cut = ring.polar @ cuts[k]
+            moved[ring.cut] = on_cut
+            moved[ring.inner] = (inner if k == tooth else 0.0) - ring.inner_by_cut @ on_cut
+            mine = turned(moved.reshape(-1, 2), k * 2 * np.pi / z)
+            np.testing.assert_allclose(mine, exact[gear.nodes[k]], rtol=0, atol=1e-11 * np.abs(exact).max())
+            np.testing.assert_allclose(
+                ring.interfaces(cut_force[:, None], k - tooth)[:, 0],
+                cuts[k],
+                rtol=0,
+                atol=1e-12 * np.abs(cuts).max(),
+            )
+
+
+def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
+    """No singularity taken out: the pressure itself on elements of a fifth of its half-width."""
+    profile = SMALL.teeth_profiles[0]
+    rho, a = 0.5 * sum(profile.flank_rho), 0.09 * profile.module
+    fine = mesh_sector(profile, Sizes(flank=0.018))
+    gear, solve = whole_annulus(profile, mesh_sector(profile), {0: fine})
+    edges, arcs = gear.nodes[0][fine.facets["flank_left"]], fine.parameters["flank_left"]
+    middle = rho**2 / (2 * profile.base_radius)
+    near = (arcs.max(axis=1) > middle - a) & (arcs.min(axis=1) < middle + a)
+    t, weight = np.polynomial.legendre.leggauss(60)
+    t, weight = 0.5 * (t + 1), 0.5 * weight
+    force = np.zeros((len(gear.points), 2))
+    for edge, (start, end) in zip(edges[near], arcs[near], strict=True):
+        _, along, shape = _edge_points(gear.points, np.broadcast_to(edge, (60, 3)), t)
+        off = start + t * (end - start) - middle
+        pressure = 2 / (np.pi * a) * np.sqrt(np.maximum(1 - (off / a) ** 2, 0.0))
+        inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        force[edge] += np.einsum("q,qk,qa->ka", weight * pressure, shape, inward)
+    at = flank_points(fine, np.array([rho]))
+    force /= np.abs(np.sum(force, axis=0) @ at.inward[0])
+    resolved = float(at.normal_part(solve(force)[gear.nodes[0]])[0])
+    from fem.flamant import hertz_indentation
+
+    sector = mesh_sector(profile, refinements=1)
+    loads = line_loads(ring_of(sector, LAW), flank_points(sector, np.array([rho])))
+    mine = float(loads.regular_at_load()[0] + hertz_indentation(a, LAW, profile.module))
+    assert mine == pytest.approx(resolved, rel=6e-4)

@@ -1,0 +1,211 @@
+"""The law of a tip edge: exact gaps, the wedge's own scaling, and Hertz where the corner does not matter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fem
+from fem.compliance import mesh_and_factor
+from fem.elasticity import PlaneElasticity
+from fem.local_law import Table
+from fem.tip_contact import edge_laws, flat_kernel, lever_ratio, tip_strips, unloaded_gap
+from gears.placement import mirrored, turned
+from meshes import Sizes
+
+LAW = PlaneElasticity("strain", 206e9, 0.3)
+
+
+def placed_flank(pair, gear, rho, rho1):
+    """Left flank of a gear in the common frame, by the profile and the placement: no formula of ours."""
+    place = pair.placement(float(pair.points.C))
+    points = mirrored(pair.teeth_profiles[gear].involute(rho))
+    # both gears turned back or forth from the pitch point by the way along the line of action
+    turn = (rho1 - pair.points.C) / pair.base_radii[gear]
+    if gear == 0:
+        return turned(points, place.pinion_angle + turn)
+    return turned(points, place.wheel_angle - turn) + place.wheel_centre
+
+
+@pytest.mark.parametrize("way", [-0.3e-3, -1.1e-3])
+def test_gap_before_A_is_that_of_the_placed_teeth(article_pair, way):
+    rho1 = article_pair.points.A + way
+    end = article_pair.teeth_profiles[1].flank_rho[1]
+    rho2 = np.array([end, end - 1e-4, end - 5e-4])
+    gap, where = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, np.array([rho1]), rho2)
+    corner = placed_flank(article_pair, 1, rho2, rho1)
+    radius = np.linalg.norm(corner, axis=1)
+    np.testing.assert_allclose(where[0], np.sqrt(radius**2 - article_pair.base_radii[0] ** 2), rtol=1e-9)
+    flank = placed_flank(article_pair, 0, where[0], rho1)
+    angle = np.arctan2(corner[:, 1], corner[:, 0]) - np.arctan2(flank[:, 1], flank[:, 0])
+    # the pinion turns anticlockwise by this angle until its flank meets the corner
+    np.testing.assert_allclose(gap[0], angle * article_pair.base_radii[0], rtol=1e-6)
+    assert np.all(np.diff(gap[0]) > 0)  # the corner is nearest
+
+
+def test_gap_on_the_path_is_a_parabola_around_the_contact(article_pair):
+    line, C = article_pair.line_of_action, article_pair.points.C
+    rho2 = line - C + np.array([-2e-4, 0.0, 2e-4])
+    gap, where = unloaded_gap(article_pair.base_radii, line, np.array([C]), rho2)
+    assert gap[0, 1] == pytest.approx(0.0, abs=1e-16)
+    assert where[0, 1] == pytest.approx(C, rel=1e-12)
+    arc = (line - C) / article_pair.base_radii[1] * 2e-4
+    R = float(article_pair.path_at(C).radius[0])
+    np.testing.assert_allclose(gap[0, [0, 2]], arc**2 / (2 * R), rtol=0.05)
+
+
+def test_unloaded_gaps_at_the_pitch_point(article_pair):
+    """17.9 and 19.7 um beyond A and E with a pair at C, from an independent study."""
+    line, points = article_pair.line_of_action, article_pair.points
+    ends = [profile.flank_rho[1] for profile in article_pair.teeth_profiles]
+    radii = article_pair.base_radii
+    before, _ = unloaded_gap(radii, line, np.array([points.C - article_pair.base_pitch]), np.array([ends[1]]))
+    after, _ = unloaded_gap(
+        radii[::-1], line, np.array([line - points.C - article_pair.base_pitch]), np.array([ends[0]])
+    )
+    assert before[0, 0] * 1e6 == pytest.approx(17.9, abs=0.05)
+    assert after[0, 0] * 1e6 == pytest.approx(19.7, abs=0.05)
+
+
+def test_lever_is_the_distance_of_the_flanks_normal_from_the_axis(article_pair):
+    rho1, rho2 = article_pair.points.E + 8e-4, article_pair.line_of_action - article_pair.points.E + 3e-4
+    kappa = lever_ratio(article_pair, np.array([rho2]), np.array([rho1]))[0]
+    here, near = placed_flank(article_pair, 1, np.array([rho2, rho2 + 1e-8]), rho1)
+    along = (near - here) / np.linalg.norm(near - here)
+    assert kappa * article_pair.base_radii[0] == pytest.approx(abs(here @ along), rel=1e-6)
+    # a force on the line of action itself has the base radius for lever
+    unit = lever_ratio(article_pair, np.array([article_pair.line_of_action - rho1]), np.array([rho1]))[0]
+    assert unit == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.fixture(scope="module")
+def wheel_tip(article_pair):
+    rings, _ = mesh_and_factor(article_pair, "strain", Sizes(), 1)
+    return rings[1], tip_strips(rings[1], article_pair.teeth_profiles[1])
+
+
+def test_kernel_is_symmetric_and_definite(wheel_tip):
+    _, strips = wheel_tip
+    mean = flat_kernel(strips.distance, strips.width, LAW, 2e-3)
+    regular = strips.kernel - mean
+    np.testing.assert_allclose(regular, regular.T, rtol=1e-3)
+    both = strips.kernel + mean
+    assert np.all(np.linalg.eigvalsh(0.5 * (both + both.T)) > 0)
+
+
+def test_kernel_far_from_the_corner_is_own_of_the_flank(article_pair, article_bodies, wheel_tip):
+    _, strips = wheel_tip
+    regular = np.diag(strips.kernel - flat_kernel(strips.distance, strips.width, LAW, 2e-3))
+    some = strips.distance > 0.02 * 2e-3
+    np.testing.assert_allclose(regular[some], article_bodies.wheel.own(strips.rho[some]), rtol=1e-3)
+
+
+def test_flat_kernel_is_the_mean_over_the_strip():
+    distance, width = np.array([1.0, 3.0]), np.array([0.5, 1.0])
+    kernel = flat_kernel(distance, width, LAW, 2.0)
+    x = np.linspace(2.5, 3.5, 200001)
+    mean = (
+        -2
+        / (np.pi * LAW.plane_modulus)
+        * (np.mean(np.log(np.abs(1.0 - x) / 2.0)) + 0.5 * (1 + LAW.plane_poisson))
+    )
+    assert kernel[0, 1] == pytest.approx(mean, rel=1e-5)
+
+
+def test_at_A_the_law_meets_hertz(article_pair, article_bodies):
+    """Half of the contact is cut off there, so the two differ, but by a per cent or two at usual loads."""
+    law = edge_laws(article_pair, article_bodies.tips[1], 1, np.array([article_pair.points.A - 1e-7]), LAW)
+    force = np.array([2e3, 5e3, 1e4])
+    edge = np.interp(force, law.force[0], law.approach[0])
+    A = np.full(3, article_pair.points.A)
+    wheel = article_bodies.wheel.own(article_pair.line_of_action - A) / article_pair.face_width
+    hertz = article_bodies.hertz(A).approach(force) + wheel * force
+    np.testing.assert_allclose(edge, hertz, rtol=0.03)
+
+
+def test_finer_strips_change_little(article_pair, article_bodies, monkeypatch):
+    import sys
+
+    tip = sys.modules["fem.tip_contact"]
+    rings, _ = mesh_and_factor(article_pair, "strain", Sizes(), 1)
+    place = np.array([article_pair.points.C - article_pair.base_pitch])
+    approach = []
+    for ratio in (1.25, 1.1):
+        monkeypatch.setattr(tip, "RATIO", ratio)
+        law = edge_laws(article_pair, tip_strips(rings[1], article_pair.teeth_profiles[1]), 1, place, LAW)
+        table = Table.through(law.force, law.approach)
+        approach.append(table.value_and_slope(np.array([1100.0]))[0][0] - law.approach[0, 0])
+    assert approach[1] == pytest.approx(approach[0], rel=0.01)
+
+
+def test_closing_strip_by_strip_gives_the_same_law_without_relief(article_pair, article_bodies):
+    import sys
+
+    tip = sys.modules["fem.tip_contact"]
+    strips = article_bodies.tips[1]
+    kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
+    places = article_pair.points.A - np.array([1e-4, 5e-4, 1.2e-3])
+    gaps, _ = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, places, strips.rho)
+    force, approach = tip._from_the_nearest(kernel, gaps)
+    other = tip._from_the_corner(kernel, gaps, gaps[:, 0])
+    assert np.all(np.diff(force, axis=1) > 0)
+    for row in range(3):
+        same = np.interp(force[row, 3:-3], other[0][row], other[1][row])
+        np.testing.assert_allclose(approach[row, 3:-3], same, rtol=2e-3)
+
+
+def test_relieved_tips_touch_inside_the_corner(article_pair, article_bodies):
+    """Any gap: the law is the solution of the contact conditions, checked by their signs."""
+    import sys
+
+    tip = sys.modules["fem.tip_contact"]
+    strips = article_bodies.tips[1]
+    kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
+    gaps = 1e-6 + 0.03 * np.abs(strips.distance - 0.1e-3)[None]
+    force, approach = tip._from_the_nearest(kernel, gaps)
+    level = approach[0, 12]
+    closed = np.zeros(len(strips.rho), dtype=bool)
+    # the strips that are closed at that level, found anew by a plain active-set search
+    closed[gaps[0].argmin()] = True
+    for _ in range(200):
+        pressure = np.zeros(len(closed))
+        pressure[closed] = np.linalg.solve(kernel[np.ix_(closed, closed)], level - gaps[0, closed])
+        open_by = kernel @ pressure + gaps[0] - level
+        new = (closed & (pressure > 0)) | (~closed & (open_by < -1e-15))
+        if np.array_equal(new, closed):
+            break
+        closed = new
+    # the strip that closes at this very level bears nothing yet
+    assert pressure.sum() == pytest.approx(force[0, 12], rel=1e-9)
+
+
+def test_law_grows_and_starts_at_the_gap(article_pair, article_bodies):
+    places = article_pair.points.A - np.array([1e-4, 5e-4, 1.2e-3])
+    law = edge_laws(article_pair, article_bodies.tips[1], 1, places, LAW)
+    assert np.all(np.diff(law.force, axis=1) > 0)
+    assert np.all(np.diff(law.approach, axis=1) > 0)
+    end = np.array([article_pair.teeth_profiles[1].flank_rho[1]])
+    gap, _ = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, places, end)
+    np.testing.assert_allclose(law.approach[:, 0], gap[:, 0])
+
+
+def test_table_passes_through_its_points_and_its_slope_is_its_derivative():
+    x = np.array([[0.0, 1.0, 2.5, 4.0], [0.0, 0.5, 3.0, 9.0]])
+    table = Table.through(x, np.sqrt(x + 1))
+    for k in range(4):
+        np.testing.assert_allclose(table.value_and_slope(x[:, k])[0], np.sqrt(x[:, k] + 1))
+    for at in (np.array([0.3, 1.7]), np.array([3.9, 20.0])):
+        ahead, behind = (table.value_and_slope(at + h)[0] for h in (1e-6, -1e-6))
+        np.testing.assert_allclose(table.value_and_slope(at)[1], (ahead - behind) / 2e-6, rtol=1e-6)
+
+
+def test_cycle_uses_lever_and_gap(article_pair, article_bodies):
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    pressed = (cycle.forces > 0) & cycle.edge
+    assert pressed.any()
+    ahead = pressed & (cycle.pair_offset[None, :] > 0)
+    # after E the lever is shorter, so the forces add up to more than the torque over the base radius
+    assert np.all(cycle.forces[ahead.any(axis=1)].sum(axis=1) > cycle.force)
+    behind = pressed & (cycle.pair_offset[None, :] < 0)
+    rows = behind.any(axis=1) & ~ahead.any(axis=1)
+    np.testing.assert_allclose(cycle.forces[rows].sum(axis=1), cycle.force, rtol=1e-12)
