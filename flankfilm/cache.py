@@ -19,7 +19,7 @@ from importlib import metadata, util
 from pathlib import Path
 from typing import Any
 
-from flankfilm.files import replacing, sweep_temporaries
+from meshes.atomic import replacing, sweep_temporaries
 
 _LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh")
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flankfilm.files import replacing
+from meshes.atomic import replacing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,6 +81,12 @@ def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
         writer = csv.writer(file)
         writer.writerow(listed)
         writer.writerows(zip(*listed.values(), strict=True))
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replace the file `path` by `text` in UTF-8."""
+    with replacing(path) as beside:
+        beside.write_text(text, encoding="utf-8")
 
 
 def provenance(scene_json: str) -> dict[str, str]:

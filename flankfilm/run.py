@@ -8,7 +8,6 @@ from pathlib import Path
 
 from flankfilm.cache import Cache, user_cache
 from flankfilm.faults import Fault, InputError, told_by_a_floor
-from flankfilm.files import sweep_temporaries
 from flankfilm.outputs import write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.results import Results
@@ -16,6 +15,7 @@ from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
 from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.fields import write_vtk
+from meshes.atomic import sweep_temporaries
 
 
 def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:

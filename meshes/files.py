@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -13,31 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.annulus import GearMesh
+from meshes.atomic import replacing
 
-__all__ = ["replacing", "write_mesh", "write_pvd", "write_vtu"]
+__all__ = ["write_mesh", "write_pvd", "write_vtu"]
 
 Array = NDArray[np.float64]
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Give a temporary path in the same folder; rename it to ``path`` on success, remove it on failure.
-
-    Whoever is killed in between leaves the old file or the new one, never a part of one.
-    """
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
-    beside = Path(name)
-    try:
-        yield beside
-        with beside.open("rb+") as written:
-            os.fsync(written.fileno())
-        beside.chmod(0o644)
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def write_vtu(

@@ -6,8 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.dataset import provenance
-from flankfilm.files import write_text
+from flankfilm.dataset import provenance, write_text
 from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
 from flankfilm.report import film_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Headline, Part, render

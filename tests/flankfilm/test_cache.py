@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from flankfilm.cache import Cache, CacheWarning, code_digest
-from flankfilm.files import replacing, write_text
+from flankfilm.dataset import write_text
+from meshes.atomic import replacing
 
 
 def test_a_kept_value_comes_back(tmp_path):

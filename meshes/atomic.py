@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+__all__ = ["replacing", "sweep_temporaries"]
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
@@ -39,9 +41,3 @@ def sweep_temporaries(folder: Path, older_than: float = 3600.0) -> None:
 
 
 _TEMPORARY = re.compile(r"\..+\.[0-9a-f]{12}(\.\w+)?")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Replace the file `path` by `text` in UTF-8."""
-    with replacing(path) as beside:
-        beside.write_text(text, encoding="utf-8")
