@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from meshes import gear_mesh, mesh_sector
-from meshes.files import replacing, write_mesh, write_pvd, write_vtu
+from meshes.atomic import replacing
+from meshes.files import write_mesh, write_pvd, write_vtu
 
 
 def test_fields_read_back(tmp_path, article_profile):
