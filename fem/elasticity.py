@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,7 @@ from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
+    from skfem import MeshTri2
 
     from gears import Material
 
@@ -78,11 +79,8 @@ class PlaneElasticity:
         return self.nu * trace if self.plane == "strain" else np.zeros_like(trace)
 
 
-# six points, exact to degree 4 on the triangle (Dunavant 1985, doi:10.1002/nme.1620210612)
-_A, _B = 0.445948490915965, 0.091576213509771
-_XI = np.array([_A, 1 - 2 * _A, _A, _B, 1 - 2 * _B, _B])
-_ETA = np.array([_A, _A, 1 - 2 * _A, _B, _B, 1 - 2 * _B])
-_WEIGHT = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
+INTEGRATION = 4
+"""Order of the quadrature: exact for the stiffness of straight elements with room for curved ones."""
 
 
 def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) -> tuple[Array, Array]:
@@ -98,7 +96,7 @@ def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) 
 
 
 def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:
-    """Stiffness matrix per unit thickness [Pa] of isoparametric P2 triangles.
+    """Stiffness matrix per unit thickness [Pa] of isoparametric P2 triangles, assembled by scikit-fem.
 
     K_(ia)(jb) = integral of lambda d_a N_i d_b N_j + mu (d_b N_i d_a N_j + delta_ab grad N_i . grad N_j).
     Unknown 2 i + a is component a of node i.
@@ -115,22 +113,33 @@ def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> c
     scipy.sparse.csc_array, (2n, 2n)
     """
     from scipy.sparse import coo_array
+    from skfem import Basis, ElementTriP2, ElementVector
+    from skfem.models.elasticity import linear_elasticity
 
-    lam, mu = law.lame
-    gradient, determinant = _physical_gradients(points, triangles, _XI, _ETA)
-    m, q = determinant.shape
-    # (m, 12, q*2) products are far faster through matmul than through one einsum over all indices
-    weighted = (gradient * (_WEIGHT * determinant)[..., None, None]).transpose(0, 2, 3, 1).reshape(m, 12, q)
-    outer = np.matmul(weighted, gradient.transpose(0, 1, 2, 3).reshape(m, q, 12)).reshape(m, 6, 2, 6, 2)
-    element = lam * outer + mu * outer.transpose(0, 1, 4, 3, 2)
-    dot = outer[:, :, 0, :, 0] + outer[:, :, 1, :, 1]
-    element[:, :, 0, :, 0] += mu * dot
-    element[:, :, 1, :, 1] += mu * dot
-    unknown = (2 * triangles[:, :, None] + np.arange(2)).reshape(m, 12)
-    rows = np.repeat(unknown, 12, axis=1).ravel()
-    columns = np.tile(unknown, (1, 12)).ravel()
+    basis = Basis(_curved_mesh(points, triangles), ElementVector(ElementTriP2()), intorder=INTEGRATION)
+    matrix = linear_elasticity(*law.lame).assemble(basis).tocoo()
+    unknown = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 12)
+    ours = np.empty(matrix.shape[0], dtype=np.int64)
+    ours[basis.element_dofs.T] = unknown
     size = 2 * len(points)
-    return coo_array((element.reshape(m, -1).ravel(), (rows, columns)), shape=(size, size)).tocsc()
+    return coo_array((matrix.data, (ours[matrix.row], ours[matrix.col])), shape=(size, size)).tocsc()
+
+
+def _curved_mesh(points: Array, triangles: Index) -> MeshTri2:
+    """Hand the triangles to scikit-fem with their middles where they are, on the exact curves.
+
+    The triangles keep their corners' order (``sort_t=False``), since ours gives the middles' order too.
+    """
+    from skfem import MeshTri1, MeshTri2
+
+    corners, local = np.unique(triangles[:, :3], return_inverse=True)
+    flat = MeshTri1(
+        np.ascontiguousarray(points[corners].T), np.ascontiguousarray(local.reshape(-1, 3).T), sort_t=False
+    )
+    straight = MeshTri2.from_mesh(flat)
+    places = straight.doflocs.copy()
+    places[:, straight.dofs.element_dofs.T.ravel()] = points[triangles].reshape(-1, 2).T
+    return replace(straight, doflocs=places)
 
 
 def nodal_stress_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:

@@ -50,7 +50,9 @@ def test_no_file_holds_too_much(package: str):
 
 def loaded_by(code: str) -> set[str]:
     report = "import sys; print(' '.join({n.partition('.')[0] for n in sys.modules}))"
-    done = subprocess.run([sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, check=True
+    )
     return set(done.stdout.split())
 
 

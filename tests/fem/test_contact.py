@@ -69,7 +69,7 @@ def test_equal_gears_give_a_cycle_that_reads_the_same_backwards():
         # Where a pair enters or leaves, the approach steps or bends within an interval. A tip edge of the
         # pinion presses with a shorter lever about the pinion's axis, one of the wheel about the wheel's:
         # with the pinion's torque given the two differ by their share times the change of the lever.
-        away = np.abs((cycle.position[:, None] - [0.0, pair.contact_ratio - 1.0, 1.0])).min(axis=1) > 0.01
+        away = np.abs(cycle.position[:, None] - [0.0, pair.contact_ratio - 1.0, 1.0]).min(axis=1) > 0.01
         np.testing.assert_allclose(cycle.approach[away], mirrored[away], rtol=3e-2 if beyond else 1e-4)
 
 

@@ -108,7 +108,7 @@ def test_greatest_mises_is_below_the_contact_as_hertz_says(article_pair, cycle, 
 
 def test_free_edges_are_free(article_pair, cycle, rings, state):
     """Top land: stress across the edge vanishes; fillet: the larger principal stress runs along it."""
-    row, fields = state
+    _, fields = state
     peak = max(field.von_mises_Pa.max() for field in fields)
     for gear, field in enumerate(fields):
         centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.axis_distance])

@@ -79,7 +79,7 @@ def test_mcewen_is_flamant_spread_over_the_pressure():
         spread = np.zeros((2, 2))
         for i in range(2):
             for j in range(2):
-                f = lambda s, i=i, j=j: (  # noqa: E731
+                f = lambda s, i=i, j=j, point=point: (  # noqa: E731
                     peak * np.sqrt(1 - s**2) * flamant.stress(point, LOAD + a * s * SIDE, INWARD)[0, i, j]
                 )
                 spread[i, j] = quad(f, -1, 1, epsabs=1e-6 * peak, limit=200)[0] * a
