@@ -62,7 +62,7 @@ def main() -> None:
     sweep(osc, values=[0.6], keep=32)
     print(f"{'method':32s} {'error':>9s} {'us/period':>10s}")
     many = 20_000
-    for degree in (6, 8, 10, 12, 14, 16, 20):
+    for degree in (6, 8, 10, 12, 14, 16, 18, 20):
         table = tables(osc, degree=degree)
         error = np.max(np.abs(period_map(table, START, PERIODS).state - exact))
         took = seconds(lambda table=table: period_map(table, START, many)) / many

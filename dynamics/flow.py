@@ -24,7 +24,7 @@ __all__ = [
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-DEGREE = 16  # of the Taylor tables; with half a radian per cell the remainder is below rounding
+DEGREE = 18  # of the Taylor tables; with half a radian per cell the remainder is below rounding
 _REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
 
 
@@ -144,7 +144,7 @@ def tables(oscillator: GearOscillator, refinement: int = 1, degree: int = DEGREE
 
     faults = Faults()
     faults.whole("refinement", refinement, 1, 1000, "2 is enough for an error estimate")
-    faults.whole("degree", degree, 6, 60, "16 leaves rounding alone")
+    faults.whole("degree", degree, 6, 60, "18 leaves rounding alone")
     faults.raise_if_any()
     o = oscillator
     par = np.array(

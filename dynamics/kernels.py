@@ -6,14 +6,11 @@ affine map that is known beforehand; only the instants at which a boundary is cr
 Arrays that travel together:
 
 - `par`, (7,): mean stiffness, zeta, F_m, eps, omega, error phase, D.
-- `coef`, (2, cells, 3, degree + 1): Taylor coefficients, in time counted from the start of the cell and
-measured
-  in cells, of the solution started with (1, 0), of that started with (0, 1) and of the forced one started
-  with (0, 0). First index: 0 with the stiffness (in contact, y = X -+ D), 1 without (in the dead zone, y =
-  X).
+- `coef`, (2, cells, 3, degree + 1): Taylor coefficients, in time from the start of the cell and measured in
+  cells, of the solutions started with (1, 0) and (0, 1) and of the forced one started with (0, 0). First
+  index: 0 with the stiffness (in contact, y = X -+ D), 1 without (in the dead zone, y = X).
 - `edge`, (2, cells, 9): the map over the whole cell, A (4, row by row) and b (2), then three factors which
-bound
-  how far y departs from the chord of the cell: factor . (|y|, |v|, 1).
+  bound how far y departs from the chord of the cell: factor . (|y|, |v|, 1).
 
 The region is +1 above D, 0 in the dead zone, -1 below -D; the coordinate y belongs to it. With D = 0 there
 is no region 0. One file, because a change in a helper elsewhere would leave stale compiled callers.
@@ -41,9 +38,8 @@ def kernel(function: F) -> F:
 
 MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH = range(7)
 FINE, DIVERGED, CROWDED = range(3)  # what a kernel returns: all well, not finite, too many events in a cell
-MAX_EVENTS = (
-    10_000  # in one cell; a cell holds a fraction of an oscillation, so that this is never met in earnest
-)
+MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
+ZERO, ONE = cast(int, np.int64(0)), cast(int, np.int64(1))  # a literal would have numba compile callees twice
 
 
 @kernel
@@ -282,7 +278,7 @@ def cell_step(
         return region, y_new, v_new, FINE
     a, b, phi, later, slope = work[0], work[1], work[2], work[3], work[4]
     s = 0.0
-    fresh = 0
+    fresh = ZERO
     for _ in range(MAX_EVENTS):
         u = coef[0 if region != 0 else 1, cell]
         if s == 0.0:
@@ -295,7 +291,7 @@ def cell_step(
             if want > 0:
                 apply(e, jac)
             return region, y_new, v_new, FINE
-        y, v, _ = poly(a, 0, t)
+        y, v, _ = poly(a, ZERO, t)
         v /= h
         s = 1.0 if hit == 0 else s + t
         if want > 0:
@@ -377,7 +373,7 @@ def next_turn(a: FloatArray, b: FloatArray, slope: FloatArray, end: float) -> fl
     if direction(a) < 0:
         for i in range(len(b)):
             b[i] = -b[i]
-    return first_exit(b, slope, end, 1)
+    return first_exit(b, slope, end, ONE)
 
 
 @kernel
@@ -404,7 +400,7 @@ def walk(
     for global_cell in range(periods * cells):
         cell = global_cell % cells
         s = 0.0
-        fresh = 0
+        fresh = ZERO
         for event in range(MAX_EVENTS + 1):
             if event == MAX_EVENTS:
                 return CROWDED, turned, happened
@@ -415,7 +411,7 @@ def walk(
                 at = filled * (cells / points) - global_cell - s
                 if at > t:
                     break
-                f, df, _ = poly(a, 0, max(at, 0.0))
+                f, df, _ = poly(a, ZERO, max(at, 0.0))
                 samples[filled, 0] = f + region * d
                 samples[filled, 1] = df / h
                 filled += 1
@@ -443,7 +439,7 @@ def walk(
                     turns[turned, 3] = region
                     turns[turned, 4] = rest[0]
                 turned += 1
-            y, v, _ = poly(a, 0, t)
+            y, v, _ = poly(a, ZERO, t)
             v /= h
             s = 1.0 if hit == 0 else s + t
             if hit == 0:
@@ -485,7 +481,7 @@ def settle(
         distance = 0.0
         while labels[i] == -1 and period < limit:
             period += 1
-            if iterate(table, state, 0, 0, jac, one, counts) != FINE:
+            if iterate(table, state, ZERO, ZERO, jac, one, counts) != FINE:
                 labels[i] = -2
             wait -= 1
             for k in range(
