@@ -63,7 +63,7 @@ def test_new_keeps_what_is_there(tmp_path):
         (
             "profile_shift = 0.0, bore_mm = 33.5",
             "profile_shift = 1.5, bore_mm = 33.5",
-            "pinion.profile_shift",
+            "wheel.tip_radius",
         ),
         (
             "profile_shift = 0.0, bore_mm = 33.5",
