@@ -31,8 +31,8 @@ def timed(call):
 
 def main():
     fem.compliance(next(iter(PAIRS.values())))
-    head = f"{'pair':22s} {'mesh':>12s} {'unknowns':>9s} {'annuli':>10s} {'seconds':>8s} {'estimate':>9s} {'k error':>9s} {'TE error':>9s}"
-    print(head)
+    names = ("pair", "mesh", "unknowns", "annuli", "seconds", "estimate", "k error", "TE error")
+    print("{:22s} {:>12s} {:>9s} {:>10s} {:>8s} {:>9s} {:>9s} {:>9s}".format(*names))
     for name, pair in PAIRS.items():
         rho1 = np.linspace(pair.points.A, pair.points.E, 41)[1:-1]
         force, torque = pair.normal_force(300.0), 300.0
@@ -57,9 +57,8 @@ def main():
     bodies = fem.compliance(pair)
     for beyond in (False, True):
         cycle, seconds = timed(lambda b=beyond: fem.mesh_cycle(pair, 500.0, 40, bodies, beyond_path=b))
-        print(
-            f"a further torque, 40 positions, tip edges {beyond}: {1e3 * seconds:.1f} ms, {cycle.cost.iterations} Newton steps"
-        )
+        steps = cycle.cost.iterations
+        print(f"a further torque, tip edges {beyond}: {1e3 * seconds:.1f} ms, {steps} Newton steps")
     parts = ", ".join(f"{stage} {seconds:.3f}" for stage, seconds in bodies.cost.parts.items())
     print(f"seconds by stage at a tolerance of 0.1 % (two meshes, both gears): {parts}")
     return 0
