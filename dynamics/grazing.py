@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.cost import Cost
-from dynamics.errors import DynamicsWarning, Faults
+from dynamics.errors import DynamicsError, DynamicsWarning, Faults
 from dynamics.flow import period_map, tables, turning_points
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import EPS, exact_determinant, floquet_multipliers
 from dynamics.special import SpecialPoint
 
-__all__ = ["ContactGrazing", "ContactOrbit", "contact_grazing", "contact_orbit"]
+__all__ = ["ContactGrazing", "ContactOrbit", "ResonanceError", "contact_grazing", "contact_orbit"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -81,6 +81,10 @@ class ContactGrazing:
         return np.array([p.parameter for p in self.points]).astype(dtype if dtype is not None else np.float64)
 
 
+class ResonanceError(DynamicsError):
+    """The linear equation has no bounded periodic solution: a multiplier is one."""
+
+
 def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1) -> ContactOrbit:
     """Periodic solution that feels no backlash: a linear problem, solved without iteration.
 
@@ -95,8 +99,10 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
 
     Raises
     ------
-    DynamicsError
+    ResonanceError
         If there is none, because a Floquet multiplier of the linear equation is one.
+    DynamicsError
+        If an argument is out of range.
     """
     faults = Faults()
     if side not in (1, -1):
@@ -106,11 +112,12 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     table = tables(linear, refinement)
     image = period_map(table, np.zeros(2))
     matrix = np.eye(2) - image.jacobian
-    if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e14:
+    stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
+    if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
         faults.add(
             "oscillator", "multiplier 1", "a linear equation without resonance", "change the frequency"
         )
-        faults.raise_if_any()
+        raise ResonanceError(tuple(faults.found))
     state = np.linalg.solve(matrix, image.state)
     state += np.linalg.solve(
         matrix, period_map(table, state).state - state
@@ -178,20 +185,24 @@ def contact_grazing(
     def clearance(value: float, refinement: int = 1) -> float:
         nonlocal evaluations
         evaluations += 1
-        return contact_orbit(oscillator.with_parameter(parameter, value), side, refinement).clearance
+        here = oscillator.with_parameter(parameter, value)
+        try:
+            return contact_orbit(here, side, refinement).clearance
+        except ResonanceError:
+            return math.nan
 
     grid = np.linspace(low, high, n)
     gap = np.array([clearance(float(value)) for value in grid])
-    scale = max(float(np.max(np.abs(gap))), 1e-300)
+    scale = max(float(np.max(np.abs(gap[np.isfinite(gap)]), initial=0.0)), 1e-300)
     found: list[SpecialPoint] = []
     poles = 0
     for i in range(n - 1):
-        if gap[i] == 0.0 or gap[i] * gap[i + 1] >= 0.0:
+        if not gap[i] * gap[i + 1] < 0.0:  # also past a resonance, where there is no clearance
             continue
         root = float(brentq(clearance, grid[i], grid[i + 1], xtol=1e-300, rtol=4.0 * EPS, maxiter=200))
         here = oscillator.with_parameter(parameter, root)
         orbit = contact_orbit(here, side)
-        if abs(orbit.clearance) > 1e-9 * scale:
+        if abs(orbit.clearance) > 1e-6 * max(abs(gap[i]), abs(gap[i + 1])):
             poles += 1  # a resonance: the orbit changes side through infinity
             continue
         slope = (gap[i + 1] - gap[i]) / (grid[i + 1] - grid[i])
@@ -202,7 +213,7 @@ def contact_grazing(
                 orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
             )
         )  # fmt: skip
-    if not found and float(np.max(np.abs(gap))) <= 64.0 * EPS:
+    if not found and scale <= 64.0 * EPS:
         warnings.warn(
             "the contact orbit lies on the limit throughout: no load", DynamicsWarning, stacklevel=2
         )

@@ -114,6 +114,15 @@ def test_grazing_in_other_parameters_is_the_same_point(article):
         assert min(abs(p.parameter / value - 1) for p in found) < 1e-12, parameter
 
 
+def test_resonance_in_the_range_is_passed(article):
+    """Without damping the contact orbit is infinite at omega = 1: amplitude eps w^2/|1 - w^2| on either side."""
+    osc = article(kappa=0.0, damping_ratio=0.0, error_amplitude=0.05)
+    result = contact_grazing(osc, bounds=(0.5, 1.5), points=101)
+    assert np.isnan(result.clearance[50])  # omega = 1 is a value of the scan
+    # eps w^2 = F_m |1 - w^2|
+    np.testing.assert_allclose(np.asarray(result), np.sqrt([0.1 / 0.15, 0.1 / 0.05]), rtol=1e-12)
+
+
 def test_touch_is_a_touch(article):
     point = contact_grazing(article(), bounds=(0.4, 1.5)).points[0]
     osc = article(frequency=point.parameter)
