@@ -35,7 +35,8 @@ class MeshStiffness:
     transmission_error : ndarray, shape (n,)
         Deflection along the line of action [m].
     error : float or None
-        Estimated relative numerical error of the mean; None where the model's error is unknown.
+        Estimated relative numerical error of the mean, compliance and sampling together; None where the
+        model's error is unknown.
     seconds : float
         Cost [s].
     contact : MeshCycle or None
