@@ -56,7 +56,7 @@ class Cost:
     parts: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Compliance:
     """Flexibility of both gears of a pair as functions of the contact's place.
 

@@ -39,7 +39,7 @@ CORNER_CLEARANCE = 0.01
 SAMPLES, DEGREE, CROSS_DEGREE = 28, 11, 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GearFlexibility:
     """What a gear's flank yields per unit line load, without the local indentation.
 

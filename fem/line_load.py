@@ -28,7 +28,7 @@ _GAUSS, _GAUSS_WEIGHT = np.polynomial.legendre.leggauss(5)
 _GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlankPoints:
     """Points of the finite-element flank.
 
@@ -105,7 +105,7 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     return FlankPoints(rho, points, inward, edges[which], weights)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LineLoads:
     """Unit line loads (1 N per metre of face, one at a time) on tooth 0 of a ring.
 

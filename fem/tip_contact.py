@@ -38,7 +38,7 @@ FIRST_EDGE, RATIO, REACH, RESOLVED = 1e-4, 1.25, 0.5, 0.01
 below which the finite elements are not asked (all in modules of arc length)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TipStrips:
     """Answer of a tooth's tip to pressure on strips of its flank.
 
@@ -162,7 +162,7 @@ def lever_ratio(pair: GearPair, rho2: Array, rho1: Array) -> Array:
     return np.asarray(((r1 + r2) * np.cos(turn) - pair.line_of_action * np.sin(turn) - r2) / r1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EdgeLaw:
     """Approach against force of tip-edge contacts, one row per contact.
 

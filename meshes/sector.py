@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SectorMesh:
     """One pitch of a gear in second-order triangles; tooth along +y, gear axis at the origin.
 
