@@ -209,3 +209,30 @@ def test_cycle_uses_lever_and_gap(article_pair, article_bodies):
     behind = pressed & (cycle.pair_offset[None, :] < 0)
     rows = behind.any(axis=1) & ~ahead.any(axis=1)
     np.testing.assert_allclose(cycle.forces[rows].sum(axis=1), cycle.force, rtol=1e-12)
+
+
+def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies):
+    """Way along each pair's own normal, kappa D, against forces and flexibilities put together anew."""
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    pressed = (cycle.forces > 0) & cycle.edge & (cycle.pair_offset[None, :] > 0)
+    rows = np.flatnonzero(pressed.any(axis=1) & ((cycle.forces > 0).sum(axis=1) == 2))
+    assert len(rows) >= 4
+    pinion = article_bodies.pinion
+    corner = float(pinion.own(np.array([pinion.rho_end]))[0]) / article_pair.face_width
+    for row in rows:
+        on = np.flatnonzero(cycle.forces[row] > 0)
+        edge = cycle.edge[row, on]
+        first, second = (cycle.flank_rho[gear, row, on] for gear in (0, 1))
+        force = cycle.forces[row, on]
+        bulk = article_bodies.bulk(first, second)
+        bulk[edge, edge] -= corner  # the law of the edge has its own tooth in it
+        way = bulk @ force
+        here = article_pair.points.A + (cycle.position[row] + cycle.pair_offset[on]) * article_pair.base_pitch
+        law = edge_laws(article_pair, article_bodies.tips[0], 0, here[edge], LAW)
+        way[edge] += Table.through(law.force, law.approach).value_and_slope(force[edge])[0]
+        way[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
+        kappa = np.ones(len(on))
+        kappa[edge] = lever_ratio(article_pair, law.where, here[edge])
+        np.testing.assert_allclose(way, kappa * cycle.approach[row], rtol=1e-6)
+        assert np.all(kappa[edge] < 0.999)
+        assert kappa @ force == pytest.approx(cycle.force, rel=1e-10)
