@@ -183,3 +183,8 @@ def test_repeat_after():
     wave = np.cos(2 * np.pi * np.arange(30) / 3)[:, None] * [1.0, 2.0]
     assert repeat_after(wave, 8) == 3
     assert repeat_after(np.cos(np.arange(30.0))[:, None] * [1.0, 2.0], 8) == 0
+
+
+def test_small_subharmonic_is_a_longer_period():
+    wave = np.array([[1.0, 2.0]]) + 1e-3 * (-1.0) ** np.arange(40)[:, None]
+    assert repeat_after(wave, 8) == 2
