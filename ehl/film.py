@@ -106,6 +106,11 @@ class Film:
             - ``"dowson-central"``: 10 w/h_c with the Dowson-Toyoda central film.
             - ``"dowson-minimum"``: w/(0.13 h_m) with the Dowson-Higginson minimum film.
 
+        Returns
+        -------
+        float
+            NaN without convergence, and for the formulas where the viscosity does not rise with pressure.
+
         Raises
         ------
         EhlInputError
@@ -115,7 +120,8 @@ class Film:
         if definition not in DEFINITIONS:
             allowed = "one of " + ", ".join(DEFINITIONS)
             raise EhlInputError([Fault("definition", repr(definition), allowed, "choose one of these")])
-        if not self.converged:
+        without_formula = definition.startswith("dowson") and self.contact.G == 0.0
+        if not self.converged or without_formula:
             return math.nan
         if definition == "approach":
             return -1.0 / self.prop_slope

@@ -104,11 +104,19 @@ class FormulaFilm:
 def dowson(contact: LineContact) -> FormulaFilm:
     """Return central and minimum film by Dowson's formulas.
 
+    Raises
+    ------
+    EhlInputError
+        For a constant viscosity, which the formulas do not know.
+
     Warns
     -----
     EhlWarning
         Outside the elastic, piezoviscous regime, taken here as alpha p_H < 1, where the formulas do not hold.
     """
+    if contact.G == 0.0:
+        allowed = "above 0 for Dowson's film formulas"
+        raise EhlInputError([Fault("pressure_viscosity", "0", allowed, "solve the contact with ehl.solve")])
     if contact.lubricant.pressure_viscosity * contact.peak_pressure < 1.0:
         warnings.warn(
             f"Dowson's film formulas at alpha p_H = "

@@ -35,8 +35,7 @@ class MeshStiffness:
     transmission_error : ndarray, shape (n,)
         Deflection along the line of action [m].
     error : float or None
-        Estimated relative numerical error of the mean, compliance and sampling together; None where the
-        model's error is unknown.
+        Estimated relative numerical error at each position; None where the model's error is unknown.
     seconds : float
         Cost [s].
     contact : MeshCycle or None
@@ -54,6 +53,11 @@ class MeshStiffness:
     error: float | None
     seconds: float
     contact: MeshCycle | None = None
+
+    @property
+    def mean_error(self) -> float | None:
+        """Estimated relative numerical error of the mean secant: that of the positions and of their number."""
+        return None if self.error is None else self.error + sampling_error(self.secant)
 
     def stiffness(self, kind: str) -> Array:
         """Curve named `kind`: ``"secant"`` or ``"tangent"`` [N/m]."""

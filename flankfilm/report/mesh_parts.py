@@ -112,7 +112,7 @@ def stiffness(
             number(scale * cycle.tangent.mean(), 5),
             f"{scale * cycle.secant.min():.4g} to {scale * cycle.secant.max():.4g}",
             number(1e6 * float(np.ptp(cycle.transmission_error)), 4),
-            percent(cycle.error),
+            percent(cycle.mean_error),
         )
         for cycle in cycles
     )
@@ -180,7 +180,7 @@ def headlines(cycle: MeshStiffness, face_width: float) -> list[Headline]:
         Headline(
             "mean mesh stiffness (secant)",
             f"{scale * cycle.secant.mean():.4g} N/(mm µm)",
-            f"error {percent(cycle.error)}, {cycle.label}",
+            f"error {percent(cycle.mean_error)}, {cycle.label}",
         ),
         Headline(
             "mean mesh stiffness (tangent)",

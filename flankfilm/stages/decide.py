@@ -39,6 +39,10 @@ def film_model(engine: Engine) -> FilmDecision:
         return FilmDecision("ehl", "the film itself is wanted")
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
         return FilmDecision("none", "the scene has no lubricant or no speed")
+    if scene.lubricant.pressure_viscosity_per_GPa == 0.0:
+        return FilmDecision(
+            "ehl", "the formula that would estimate its part does not know a constant viscosity"
+        )
     from ehl import LineContact, dowson
 
     pair = engine["pair"]

@@ -61,7 +61,7 @@ def from_fem(cycle: MeshCycle, label: str) -> MeshStiffness:
         secant=cycle.secant_stiffness,
         tangent=cycle.stiffness,
         transmission_error=cycle.transmission_error,
-        error=cycle.error + sampling_error(cycle.secant_stiffness),
+        error=cycle.error,
         seconds=cycle.cost.seconds,
         contact=cycle,
     )

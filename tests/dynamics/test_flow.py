@@ -72,6 +72,8 @@ def test_dead_zone_closed_form():
 @settings(max_examples=25, deadline=None)
 @given(oscillators(), states)
 def test_agrees_with_step_by_step(integrate, osc, state):
+    # at rest on the limit the derivative of the flow is not defined
+    assume(abs(abs(state[0]) - osc.half_backlash) > 1e-6 or abs(state[1]) > 1e-6)
     image = period_map(osc, state, periods=2)
     there, jacobian, counts = integrate(osc, state, 2 * osc.period)
     # the integrator is good to some 1e-13 a stretch; the jacobian feels an error in the instant of a slow
