@@ -42,7 +42,9 @@ def step_by_step(osc: GearOscillator, state, duration: float):
         events = [upper] if region == 1 else [lower] if region == -1 else [upper, lower]
         if d == 0.0:
             events = None  # f(X) = X: nothing to cross
-        done = solve_ivp(rhs, (now, duration), y, method="DOP853", rtol=3e-14, atol=1e-15, events=events)
+        done = solve_ivp(
+            rhs, (now, duration), y, method="DOP853", rtol=3e-14, atol=1e-15, events=events, max_step=0.05
+        )
         y = done.y[:, -1].copy()
         now = done.t[-1]
         if done.status != 1:
