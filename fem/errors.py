@@ -13,6 +13,10 @@ class FemError(GearsError):
     def __init__(self, *faults: Fault) -> None:
         super().__init__(faults)
 
+    def __reduce__(self) -> tuple[type, tuple[Fault, ...]]:
+        """Let workers hand the error back: its faults are its arguments."""
+        return type(self), self.faults
+
 
 class FemWarning(UserWarning):
     """A result that can be computed, but outside the range where it is trusted."""
