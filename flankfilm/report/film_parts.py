@@ -33,7 +33,8 @@ def film(pair: GearPair, stage: FilmStage, tolerance: float) -> Part:
             drawing(
                 film_figures.film_profiles(stage.profiles),
                 "filmprofile",
-                "Pressure and film thickness through the contact at points of the path; oil enters at the left.",
+                "Pressure and film thickness through the contact at points of the path; oil enters at the left. The "
+                "error estimate covers the thicknesses; the height of the pressure spike is not held to it.",
             )
         )
     at_pitch = int(np.argmin(np.abs(stage.rho1 - pair.points.C)))

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float | None) -> Part:
     """Fourier stiffness with its remainder."""
     series = stage.stiffness
+    unit = "N/m" if stage.fit is not None or series.mean != 1.0 else "-"
     rows = tuple(
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
@@ -28,9 +29,10 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
     notes: tuple[str, ...] = ("Phases refer to tau = 0, the instant when a pair is at A.",)
     if stage.fit is not None and cycle is not None and face_width is not None:
         harmonics = np.asarray(stage.fit.harmonics[:12])
-        fits = {f"{stage.kind}, order {len(series.amplitudes)}": stage.fit}
+        order = f"order {len(series.amplitudes)}"
+        fits = {f"{stage.kind}, {order}": stage.fit}
         if stage.other is not None:
-            fits["tangent" if stage.kind == "secant" else "secant"] = stage.other
+            fits[f"{'tangent' if stage.kind == 'secant' else 'secant'}, {order}"] = stage.other
         figures = (
             drawing(
                 stiffness_figures.fourier(cycle, fits, harmonics, face_width),
@@ -47,11 +49,11 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
             "The tangent stiffness belongs to small vibration about the load, the secant to motion with "
             "separation.",
         )
-    heads = ("harmonic", "amplitude", "over the mean", "phase [deg]")
+    heads = ("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]")
     return Part(
         "fourier",
         "Fourier stiffness",
-        (f"Mean {number(series.mean, 6)}.",),
+        (f"Mean {number(series.mean, 6)} {unit}.",),
         figures,
         (Table(heads, rows),),
         notes,
