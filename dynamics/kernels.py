@@ -287,7 +287,7 @@ def cell_step(
         else:
             expand(u, phi, s, y, v, h, a)
         t, hit = leave(region, d, a, b, slope, 1.0 - s, fresh)
-        if hit == 0 and s == 0.0:
+        if hit == 0 and fresh == 0:  # nothing happened: the map of the whole cell holds
             if want > 0:
                 apply(e, jac)
             return region, y_new, v_new, FINE
