@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,8 +65,7 @@ def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
 
 
 def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    import gmsh
-
+    gmsh = _load_gmsh()
     began = not gmsh.isInitialized()
     if began:
         # interruptible=False: gmsh otherwise sets a signal handler, which only the main thread may do
@@ -87,6 +87,23 @@ def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     finally:
         if began:
             gmsh.finalize()
+
+
+def _load_gmsh() -> Any:
+    """Load gmsh; where its shared libraries are missing say which, and what installs them."""
+    try:
+        import gmsh
+    except OSError as fault:
+        packages = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
+        raise MeshError(
+            Fault(
+                "gmsh",
+                str(fault),
+                "the shared libraries that gmsh loads",
+                f"on Debian or Ubuntu: sudo apt-get install --no-install-recommends {packages}",
+            )
+        ) from fault
+    return gmsh
 
 
 def _mesh_polygon(
