@@ -67,6 +67,16 @@ def _deeper(
                 "Or drop vtk",
             )
         )
+    elif "vtk" in listed and stiffness.get("pairs", "coupled") != "coupled":
+        remedy = "Independent pairs have no common field; or drop vtk"
+        faults.append(
+            Fault("stiffness.pairs", "'independent'", 'must be "coupled" for the wanted vtk', remedy)
+        )
+    if "film" in listed and stiffness.get("model") == "given":
+        allowed = "has no load share, which the wanted film needs"
+        faults.append(
+            Fault("stiffness.model", "'given'", allowed, 'Take "fem" or a closed form, or drop film')
+        )
     dynamics = _table(raw, "dynamics")
     if "sweep" in listed and "dynamics" in raw and "sweep" not in dynamics:
         faults.append(

@@ -82,6 +82,21 @@ def test_a_fault_names_key_and_remedy(old: str, new: str, where: str, said: str)
     assert said in found[where]
 
 
+@pytest.mark.parametrize(
+    ("new", "where", "said"),
+    [
+        ('pairs = "independent"', "stiffness.pairs", "wanted vtk"),
+        ('pairs = "coupled"\nmodel = "given"\namplitudes = [0.1]', "stiffness.model", "wanted film"),
+    ],
+)
+def test_wants_that_a_model_cannot_give_are_refused(new: str, where: str, said: str):
+    text = changed('pairs = "coupled"', new)
+    if "given" in new:
+        text = text.replace('model = "fem"', "", 1).replace('"vtk", ', "", 1)
+    found = faults(text)
+    assert said in found[where]
+
+
 def test_all_faults_come_at_once():
     text = template()
     for old, new in (
