@@ -5,7 +5,7 @@ Nothing heavy is imported before something is computed.
 
 from fem.compliance import Compliance, Cost, compliance, single_pair_stiffness
 from fem.contact import MeshCycle, mesh_cycle
-from fem.errors import Fault, FemError, FemWarning
+from fem.errors import Fault, FemError
 from fem.local_law import Film
 
 __all__ = [
@@ -13,7 +13,6 @@ __all__ = [
     "Cost",
     "Fault",
     "FemError",
-    "FemWarning",
     "Film",
     "MeshCycle",
     "compliance",

@@ -1,10 +1,10 @@
-"""What fem refuses, with every fault named at once, and what it warns of."""
+"""What fem refuses, with every fault named at once."""
 
 from __future__ import annotations
 
 from gears import Fault, GearsError
 
-__all__ = ["Fault", "FemError", "FemWarning"]
+__all__ = ["Fault", "FemError"]
 
 
 class FemError(GearsError):
@@ -16,7 +16,3 @@ class FemError(GearsError):
     def __reduce__(self) -> tuple[type, tuple[Fault, ...]]:
         """Let workers hand the error back: its faults are its arguments."""
         return type(self), self.faults
-
-
-class FemWarning(UserWarning):
-    """A result that can be computed, but outside the range where it is trusted."""

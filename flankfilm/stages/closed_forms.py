@@ -39,15 +39,12 @@ class SinglePairs:
         Label to single-pair stiffness, shape (n,) [N/m].
     iso : object
         Mean stiffnesses by ISO 6336-1.
-    parts : mapping
-        Parts of Ishikawa's deflection per force, each of shape (n,) [m/N].
     """
 
     position: Array
     rho1: Array
     curves: Mapping[str, Array]
     iso: Any
-    parts: Mapping[str, Array]
 
 
 def closed_form(model: str, pair: GearPair, path: Any, force: float) -> Any:
@@ -85,5 +82,4 @@ def closed_forms(engine: Engine, n: int = 81) -> SinglePairs:
         rho1=path.rho1,
         curves=curves,
         iso=forms.iso6336(pair, force=force),
-        parts=dict(forms.ishikawa(pair, path).parts),
     )

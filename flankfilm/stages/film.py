@@ -59,8 +59,8 @@ class FilmStage:
         Largest estimated relative error of the films' thicknesses.
     seconds : float
         Cost of the films [s].
-    iterations, unknowns : int
-        Newton steps in all; unknowns of the largest film.
+    unknowns : int
+        Of the largest film.
     rounds : int
         Times that films and load share were brought into agreement.
     mismatch : float
@@ -81,7 +81,6 @@ class FilmStage:
     change_tangent: float
     error: float | None
     seconds: float
-    iterations: int
     unknowns: int
     rounds: int
     mismatch: float
@@ -242,7 +241,6 @@ def _gather(
         change_tangent=float(cycle.tangent.mean() / dry.tangent.mean() - 1),
         error=max(film.error for film in films) if model == "ehl" else None,
         seconds=seconds,
-        iterations=sum(film.cost.iterations for film in films) if model == "ehl" else 0,
         unknowns=max(film.cost.unknowns for film in films) if model == "ehl" else 0,
         rounds=rounds,
         mismatch=mismatch,
