@@ -1,6 +1,7 @@
 """Spur-gear geometry, path of contact, load sharing and closed-form tooth deflection; loads numpy only."""
 
 from gears import closed_form
+from gears.deviations import GearDeviations, PitchDeviations, ProfileDeviation
 from gears.errors import (
     Fault,
     GearsError,
@@ -27,6 +28,7 @@ __all__ = [
     "BasicRack",
     "Fault",
     "Gear",
+    "GearDeviations",
     "GearPair",
     "GearsError",
     "GeometryError",
@@ -38,7 +40,9 @@ __all__ = [
     "ModelRangeWarning",
     "PathOfContact",
     "PathPoints",
+    "PitchDeviations",
     "Placement",
+    "ProfileDeviation",
     "TipRelief",
     "ToothProfile",
     "check_meshing",

@@ -51,28 +51,30 @@ class LoadShare:
 
 
 def share_load(
-    force: float,
+    force: float | Array,
     bulk: ArrayLike,
     hertz: DeflectionLaw,
     gaps: ArrayLike,
     film: DeflectionLaw | None = None,
+    levers: ArrayLike | None = None,
 ) -> LoadShare:
     """Share a force among coupled tooth pairs.
 
-    Find F_i >= 0 and D with sum F_i = F and, for every pair,
+    Find F_i >= 0 and D with sum l_i F_i = F and, for every pair,
 
         g_i = sum_j bulk_ij F_j + hertz(F)_i - s_i(F_i) + gap_i - D >= 0,   F_i g_i = 0.
 
-    This is the minimum of a convex energy, so the solution is unique. Newton's method runs on the pairs in
+    With l_i = 1 this is the minimum of a convex energy, so the solution is unique. Newton's method runs on the pairs in
     contact, at first the one with the smallest gap; a pair that would overlap is taken in with a small force.
     hertz is concave, so from too small a force Newton rises monotonically; a step that would make a force
     negative releases the pair only if it stands clear at zero force, else keeps a tenth of the force.
-    Leading dimensions are mesh positions, all solved together.
+    Leading dimensions are torques, mesh positions and so on, all solved together; arguments need only have
+    those that they depend on.
 
     Parameters
     ----------
-    force : float
-        F, sum of the normal forces, at least 0 [N].
+    force : float or (...) array
+        F, sum of the normal forces, all above 0 or all 0 [N].
     bulk : (..., pairs, pairs) array
         Linear compliance of teeth and bodies, symmetric and positive semidefinite [m/N].
     hertz : DeflectionLaw
@@ -82,6 +84,8 @@ def share_load(
     film : DeflectionLaw or None
         s_i(F_i) >= 0, what an oil film props the flanks apart, finite at zero force, with slope <= 0; None is
         dry.
+    levers : (..., pairs) array or None
+        l_i > 0, lever arms of the forces over that for which F is given; 1 unless friction tilts them.
 
     Returns
     -------
@@ -96,22 +100,26 @@ def share_load(
     Notes
     -----
     Differentiating g_i = 0 over the pairs in contact gives J dF/dD = 1 with J = bulk + diag(hertz' - s'), so
-    the tangent is 1^T J^-1 1.
+    the tangent is l^T J^-1 1.
     """
     stiff, clear = np.asarray(bulk, dtype=float), np.asarray(gaps, dtype=float)
-    _check(force, stiff, clear)
+    whole = np.asarray(force, dtype=float)
+    arms = np.ones(clear.shape[-1:]) if levers is None else np.asarray(levers, dtype=float)
+    _check(whole, stiff, clear, arms)
+    each = whole[..., None]
+    clear = clear + np.zeros_like(each + arms)
     touchable = np.isfinite(clear)
     nothing = np.zeros_like(clear)
     at_zero = clear if film is None else clear - _finite(film.approach(nothing))
-    if force == 0.0:
-        return _first_touch(stiff, hertz, film, at_zero)
+    if not whole.any():
+        return _first_touch(stiff, hertz, film, at_zero, arms)
     clear = np.where(touchable, clear, 0.0)
     active = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
-    loads, approach = np.where(active, force, 0.0), at_zero.min(axis=-1)
+    loads, approach = np.where(active, each / arms, 0.0), at_zero.min(axis=-1)
     for iteration in range(1, _ITERATIONS + 1):
         jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
         overlap = deflection - approach[..., None]
-        step, lift, tangent = _newton_step(jacobian, overlap, loads, active, force)
+        step, lift, tangent = _newton_step(jacobian, overlap, loads, active, whole, arms)
         approach = approach + lift
         moved = np.where(active, loads + step, 0.0)
         negative = active & (moved <= 0.0)
@@ -120,9 +128,9 @@ def share_load(
         size = np.abs(deflection).max(where=active, initial=0.0, axis=-1) + np.abs(approach)
         released = negative & (unloaded >= 0.0)
         taken = touchable & ~active & (unloaded < -_ROUNDING * size[..., None])
-        settled = np.abs(moved - loads).max(axis=-1) <= _STEP * force + _ROUNDING * size * tangent
+        settled = np.abs(moved - loads).max(axis=-1) <= _STEP * whole + _ROUNDING * size * tangent
         loads = np.where(negative & ~released, _BACKOFF * loads, kept)
-        loads = np.where(taken, _START * force, loads)
+        loads = np.where(taken, _START * each, loads)
         active = (active & ~released) | taken
         if settled.all() and not (negative.any() or taken.any()):
             return LoadShare(loads, approach, tangent, iteration)
@@ -154,12 +162,12 @@ def _linearise(
 
 
 def _newton_step(
-    jacobian: Array, residual: Array, loads: Array, active: NDArray[np.bool_], force: float
+    jacobian: Array, residual: Array, loads: Array, active: NDArray[np.bool_], force: Array, levers: Array
 ) -> tuple[Array, Array, Array]:
     """Step of the active forces, step of the approach and tangent stiffness.
 
     Two right-hand sides, J a = 1 and J b = residual on the active pairs, give the bordered system's solution
-    dF = a dD - b with dD from the sum of the forces.
+    dF = a dD - b with dD from the sum of the moments.
     """
     both = active[..., :, None] & active[..., None, :]
     matrix = np.where(both, jacobian, np.eye(loads.shape[-1]))
@@ -167,17 +175,21 @@ def _newton_step(
     sides = np.stack((np.where(active, 1.0, 0.0), np.where(active, residual / scale, 0.0)), axis=-1)
     solved = np.linalg.solve(np.where(both, matrix / scale, matrix), sides)
     unit, response = solved[..., 0], solved[..., 1]
-    total = unit.sum(axis=-1)
-    reduced = (force - np.where(active, loads, 0.0).sum(axis=-1) + response.sum(axis=-1)) / total
+    total = (levers * unit).sum(axis=-1)
+    carried = (levers * np.where(active, loads, 0.0)).sum(axis=-1)
+    reduced = (force - carried + (levers * response).sum(axis=-1)) / total
     return unit * reduced[..., None] - response, reduced * scale, total / scale
 
 
-def _first_touch(bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, at_zero: Array) -> LoadShare:
+def _first_touch(
+    bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, at_zero: Array, levers: Array
+) -> LoadShare:
     """Share at zero force: the approach at which the first pair touches, and the stiffness there."""
     approach = at_zero.min(axis=-1)
     nothing = np.zeros_like(at_zero)
     slope = hertz.slope(nothing) if film is None else hertz.slope(nothing) - film.slope(nothing)
     compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + slope
+    compliance = (compliance + np.zeros_like(at_zero)) / levers
     first = np.take_along_axis(compliance, at_zero.argmin(axis=-1)[..., None], axis=-1)[..., 0]
     return LoadShare(nothing, approach, np.asarray(1.0 / first), 0)
 
@@ -190,12 +202,25 @@ def _finite(prop: Array) -> Array:
     return prop
 
 
-def _check(force: float, bulk: Array, gaps: Array) -> None:
+def _fit(*shapes: tuple[int, ...]) -> bool:
+    """Whether leading dimensions agree, those of length 1 counted as any."""
+    try:
+        np.broadcast_shapes(*shapes)
+    except ValueError:
+        return False
+    return True
+
+
+def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
     faults = []
-    if not (np.isfinite(force) and force >= 0.0):
-        faults.append(Fault("force", repr(force), "a finite force of at least 0 N", "give the force's size"))
-    if gaps.ndim < 1 or gaps.shape[-1] < 1 or bulk.shape != (*gaps.shape, gaps.shape[-1]):
+    if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
+        allowed = "finite forces, all above 0 N or all 0 N"
+        faults.append(Fault("force", str(force), allowed, "give the forces' sizes"))
+    pairs = gaps.shape[-1:]
+    if not (
+        gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
+    ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
         shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
         faults.append(
             Fault("bulk, gaps", shapes, "(..., pairs, pairs) and (..., pairs)", "give one row for each pair")
@@ -211,6 +236,9 @@ def _check(force: float, bulk: Array, gaps: Array) -> None:
         )
     elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
         faults.append(Fault("gaps", "inf for all pairs", "a finite gap", "one pair at least must touch"))
+    if not np.all((levers > 0.0) & np.isfinite(levers)):
+        remedy = "reduce the friction, which tilts a force past the axis"
+        faults.append(Fault("levers", "not above 0", "finite and > 0", remedy))
     if not np.all(np.isfinite(bulk)):
         faults.append(Fault("bulk", "not finite", "finite compliances", "check the compliance matrix"))
     if faults:
