@@ -1,102 +1,31 @@
-"""Loaded tooth contact over one base pitch: load share, approach, secant and tangent stiffness."""
+"""Loaded tooth contact over base pitches: load share, approach, secant and tangent stiffness."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from fem.compliance import Compliance, Cost
 from fem.compliance import compliance as _compliance
-from fem.errors import Fault, FemError
+from fem.cycle import MeshCycle
+from fem.errors import Fault
 from fem.local_law import Film, FilmLaw, PairLaws, Table
-from fem.tip_contact import edge_laws, lever_ratio
+from fem.meshing import REACHES, Deviations, Meshing, Setting, meshing, setting
+from fem.tip_contact import edge_laws
 
 if TYPE_CHECKING:
-    from gears import GearPair
+    from gears import GearPair, LoadShare
 
-__all__ = ["MeshCycle", "mesh_cycle"]
+__all__ = ["MeshCycle", "mesh_cycle", "torque_sweep"]
 
 Array = NDArray[np.float64]
 
-TIP_EDGE_MODEL = (
-    "tip edges outside the path touch as sharp corners without friction; the shares that they take are "
-    "uncertain by several per cent for real, rounded edges"
-)
-
-
-@dataclass(frozen=True, eq=False)
-class MeshCycle:
-    """One base pitch of a loaded pair; rows are positions, columns pairs in order of growing rho1.
-
-    Attributes
-    ----------
-    torque, force : float
-        Of the pinion [N m], and torque over base radius [N].
-    position : (n,) array
-        Way from A over the base pitch, of the pair that entered last: midpoints of equal intervals.
-    pair_offset : (pairs,) array of int
-        Base pitches that each column is ahead of that pair.
-    rho1 : (n, pairs) array
-        Curvature radius on the pinion [m]; nan where there is no contact between A and E.
-    edge : (n, pairs) boolean array
-        Candidates outside the path, where a tip edge touches if it carries force.
-    flank_rho : (2, n, pairs) array
-        Curvature radii of pinion's and wheel's flank at the contact, tip edges included [m].
-    forces : (n, pairs) array
-        Normal forces [N]; zero where unloaded.
-    load_share : (n, pairs) array
-        Share of the torque; rows sum to one.
-    gaps : (n, pairs) array
-        Unloaded gaps along the line of action [m]; inf for pairs that cannot touch.
-    approach : (n,) array
-        D [m]: turn of the pinion times its base radius, hubs' turn, the wheel's hub held. Positive when the
-        teeth yield.
-    stiffness : (n,) array
-        Tangent dF/dD [N/m]: small vibration about the load.
-    secant_stiffness : (n,) array
-        F/D [N/m].
-    plane : str
-    beyond_path : bool
-    error : float
-        Estimated relative numerical error of stiffness and deflection.
-    cost : Cost
-        Of this cycle, and of the compliance if it was computed here.
-    converged : bool
-    message : str
-    """
-
-    torque: float
-    force: float
-    position: Array
-    pair_offset: NDArray[np.int64]
-    rho1: Array
-    edge: NDArray[np.bool_]
-    flank_rho: Array
-    forces: Array
-    load_share: Array
-    gaps: Array
-    approach: Array
-    stiffness: Array
-    secant_stiffness: Array
-    plane: str
-    beyond_path: bool
-    error: float
-    cost: Cost
-    converged: bool
-    message: str
-
-    @property
-    def transmission_error(self) -> Array:
-        """Loaded static transmission error, the approach D along the line of action (n,) [m].
-
-        It contains tip relief (as gaps) and all deflection; positive when the wheel lags.
-        """
-        return self.approach
+MOST_FRICTION = 0.5
 
 
 def mesh_cycle(
@@ -108,8 +37,14 @@ def mesh_cycle(
     film: Film | None = None,
     tolerance: float = 0.001,
     plane: str = "strain",
+    *,
+    deviations: Deviations | None = None,
+    pitches: int = 1,
+    first_teeth: tuple[int, int] = (0, 0),
+    tip_rounding: float | tuple[float, float] = 0.0,
+    friction: float = 0.0,
 ) -> MeshCycle:
-    """Share the load among all pairs at midpoints of equal intervals of one base pitch, from A.
+    """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
     For every loaded pair D = sum_j bulk_ij F_j + Hertz(F_i) - s_i(F_i) + gap_i, with sum F_i = torque/r_b1.
 
@@ -119,7 +54,7 @@ def mesh_cycle(
     torque : float
         Of the pinion [N m], > 0.
     positions : int
-        Intervals of the base pitch.
+        Intervals of a base pitch.
     compliance : Compliance, optional
         Of this pair; computed to ``tolerance`` in ``plane`` unless given.
     beyond_path : bool
@@ -128,6 +63,21 @@ def mesh_cycle(
         What the oil props the flanks apart, in series with each pair before the load is shared.
     tolerance, plane
         As for ``fem.compliance``.
+    deviations : (gears.GearDeviations or None, gears.GearDeviations or None), optional
+        Profile and pitch deviations of pinion and wheel, on top of tip relief.
+    pitches : int
+        Base pitches, one after another: the pinion's teeth for its revolution, the least common multiple of
+        both numbers of teeth until all repeats. Without pitch deviations every pitch is the same.
+    first_teeth : (int, int)
+        Numbers of the teeth of pinion and wheel that meet at A first.
+    tip_rounding : float or (float, float)
+        Radius of the tip edges, of both gears or of each [m]; tangent to the flank, so the path is a little
+        shorter. 0 is sharp.
+    friction : float
+        Coefficient of friction mu, 0 to 0.5. The pinion drives: before C (approach) its flank is the slower
+        one and the friction on it points towards its tip, after C (recess) towards its root, so
+        sum F_i (lever_i + mu sign(u1 - u2) arm_i) = torque. Only these lever arms are changed: that teeth
+        also yield to the tangential forces is left out.
 
     Returns
     -------
@@ -136,150 +86,294 @@ def mesh_cycle(
     Raises
     ------
     FemError
-        Torque or positions that make no sense, or the compliance of another pair.
+        Input that makes no sense, or the compliance of another pair.
     """
-    from gears.load_sharing import share_load
+    return torque_sweep(
+        pair,
+        (torque,),
+        positions,
+        compliance,
+        beyond_path,
+        film,
+        tolerance,
+        plane,
+        deviations=deviations,
+        pitches=pitches,
+        first_teeth=first_teeth,
+        tip_rounding=tip_rounding,
+        friction=friction,
+    )[0]
 
-    faults = []
-    if not (np.isfinite(torque) and torque > 0):
-        faults.append(
-            Fault("torque", f"{torque!r}", "finite and > 0 (N m)", "the pinion drives; give its torque")
-        )
-    if isinstance(positions, bool) or not isinstance(positions, (int, np.integer)) or positions < 1:
-        faults.append(
-            Fault("positions", f"{positions!r}", "a whole number >= 1", "40 resolve the usual harmonics")
-        )
-    if compliance is not None and compliance.pair != pair:
-        faults.append(Fault("compliance", "of another pair", "of this pair", "compute it anew"))
-    if faults:
-        raise FemError(*faults)
+
+def torque_sweep(
+    pair: GearPair,
+    torques: ArrayLike,
+    positions: int = 40,
+    compliance: Compliance | None = None,
+    beyond_path: bool = True,
+    film: Film | None = None,
+    tolerance: float = 0.001,
+    plane: str = "strain",
+    *,
+    deviations: Deviations | None = None,
+    pitches: int = 1,
+    first_teeth: tuple[int, int] = (0, 0),
+    tip_rounding: float | tuple[float, float] = 0.0,
+    friction: float = 0.0,
+) -> tuple[MeshCycle, ...]:
+    """Mesh cycles at several torques; all that does not depend on the torque is computed once.
+
+    Parameters
+    ----------
+    torques : (k,) array
+        Of the pinion [N m], > 0, in any order; all other parameters as for ``mesh_cycle``.
+
+    Returns
+    -------
+    tuple of MeshCycle
+        One for each torque; ``cost`` is that of the whole sweep.
+
+    Raises
+    ------
+    FemError
+        Input that makes no sense, or the compliance of another pair.
+    """
+    wanted = np.atleast_1d(np.asarray(torques, dtype=float)).ravel()
+    given = setting(
+        pair,
+        positions,
+        pitches,
+        first_teeth,
+        beyond_path,
+        tip_rounding,
+        deviations,
+        _faults(pair, wanted, compliance, friction),
+    )
     began = perf_counter()
     bodies = compliance if compliance is not None else _compliance(pair, tolerance, plane)
     ready = perf_counter()
-    force = torque / pair.base_radii[0]
-    where = _candidates(pair, int(positions), beyond_path)
-    rho1, rho2, edge = where.rho1.copy(), where.rho2.copy(), where.edge
-    lever, gaps, table = _edge_contacts(bodies, where, rho1, rho2)
-    first, second = pair.teeth_profiles
-    on_path = where.touchable & ~edge
-    gaps[on_path] = first.relief(rho1[on_path]) + second.relief(rho2[on_path])
-    matrix = bodies.bulk(rho1, rho2)
-    _leave_out_corner(bodies, matrix, where)
-    matrix /= lever[..., :, None] * lever[..., None, :]
-    middle = pair.points.A + 0.5 * (pair.points.E - pair.points.A)
-    laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), edge, table)
-    places = np.where(on_path, rho1, np.nan)
-    share = share_load(force, matrix, laws, gaps, None if film is None else FilmLaw(film, places))
-    message = bodies.message
-    if np.any(share.forces[edge] > 0):
-        message += "; " + TIP_EDGE_MODEL
-    converged, deflection, forces = bodies.converged, share.approach, share.forces
-    if table is not None and np.any(share.forces[edge] / lever[edge] > table.force[:, -1]):
-        converged = False
-        message = "a tip edge presses over more than the strips cover; reduce the torque"
-        deflection, forces = np.full_like(deflection, np.nan), np.full_like(share.forces, np.nan)
+    contact = _share(given, bodies, wanted / pair.base_radii[0], film, friction)
     cost = Cost(
         perf_counter() - began,
         bodies.cost.unknowns,
-        share.iterations,
+        contact.share.iterations,
         bodies.cost.annulus_unknowns,
         {**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready},
     )
-    return MeshCycle(
-        torque=float(torque),
-        force=float(force),
-        position=where.position,
-        pair_offset=where.offset,
-        rho1=places,
-        edge=edge,
-        flank_rho=np.where(where.touchable, np.stack([rho1, rho2]), np.nan),
-        forces=forces / lever,
-        load_share=forces / force,
-        gaps=gaps,
-        approach=deflection,
-        stiffness=np.where(np.isfinite(deflection), share.tangent, np.nan),
-        secant_stiffness=force / deflection,
-        plane=bodies.plane,
-        beyond_path=beyond_path,
-        error=bodies.error,
-        cost=cost,
-        converged=converged,
-        message=message,
-    )
+    return tuple(_result(given, bodies, contact, k, float(t), friction, cost) for k, t in enumerate(wanted))
+
+
+def _faults(
+    pair: GearPair, torques: Array, compliance: Compliance | None, friction: float
+) -> Sequence[Fault]:
+    faults = []
+    if not torques.size:
+        faults.append(Fault("torques", "none", "at least one", "give torques in N m"))
+    faults += [
+        Fault("torque", f"{torque!r}", "finite and > 0 (N m)", "the pinion drives; give its torque")
+        for torque in torques.tolist()
+        if not (np.isfinite(torque) and torque > 0)
+    ]
+    if compliance is not None and compliance.pair != pair:
+        faults.append(Fault("compliance", "of another pair", "of this pair", "compute it anew"))
+    if not (np.isfinite(friction) and 0 <= friction <= MOST_FRICTION):
+        allowed = f"0 to {MOST_FRICTION}"
+        faults.append(Fault("friction", f"{friction!r}", allowed, "dry steel has about 0.2, oiled 0.05"))
+    return faults
 
 
 @dataclass(frozen=True, eq=False)
-class _Candidates:
-    """Pairs that might touch: places on the line of action of the unlimited involutes."""
+class _Contact:
+    """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one)."""
 
-    position: Array
-    offset: NDArray[np.int64]
-    rho1: Array
-    rho2: Array
-    touchable: NDArray[np.bool_]
-    edge: NDArray[np.bool_]
-
-    def corners(self, start: float) -> tuple[tuple[int, NDArray[np.bool_]], ...]:
-        """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
-        before = self.edge & (self.rho1 < start)
-        return (1, before), (0, self.edge & ~before)
+    where: Meshing
+    share: LoadShare
+    kappa: Array
+    levers: Array
+    largest: Array
+    crowded: bool
 
 
-def _candidates(pair: GearPair, positions: int, beyond_path: bool) -> _Candidates:
-    position = (np.arange(positions) + 0.5) / positions
-    last = ceil(pair.contact_ratio)
-    offset = np.arange(-1, last + 1) if beyond_path else np.arange(last)
-    points = pair.points
-    rho1 = points.A + (position[:, None] + offset) * pair.base_pitch
-    outside = (rho1 < points.A) | (rho1 > points.E)
-    near = np.maximum(points.A - rho1, rho1 - points.E) < 0.6 * pair.base_pitch
-    edge = outside & near if beyond_path else np.zeros_like(outside)
-    touchable = ~outside | edge
-    centre = 0.5 * (points.A + points.E)
-    # places of pairs that cannot touch are never used, but must be places
-    rho1 = np.where(touchable, rho1, centre)
-    return _Candidates(position, offset, rho1, pair.line_of_action - rho1, touchable, edge)
+def _share(given: Setting, bodies: Compliance, force: Array, film: Film | None, friction: float) -> _Contact:
+    """Solve, with candidates farther out if the approach reaches beyond the first ones."""
+    from gears.load_sharing import share_load
+
+    for reach in REACHES:
+        where = meshing(given, reach)
+        kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
+        table, largest = _edge_table(given, bodies, where, kappa)
+        rho1, rho2 = where.rho
+        matrix = bodies.bulk(rho1, rho2)
+        _leave_out_corner(bodies, matrix, where)
+        # A force along another normal than the line of action has the lever kappa r_b1 about the pinion's
+        # axis. In F' = kappa F the equations keep their form, with gap/kappa, bulk_ij/(kappa_i kappa_j) and
+        # law(F'/kappa)/kappa.
+        matrix /= kappa[..., :, None] * kappa[..., None, :]
+        on_path = where.touchable & ~where.edge
+        middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
+        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table)
+        oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
+        levers = _levers(given, where, friction) / kappa
+        touch = where.gap.min(axis=-1)
+        share = share_load(
+            force[:, None, None],
+            matrix,
+            laws,
+            where.gap - touch[..., None],
+            oil,
+            levers if friction else None,
+        )
+        crowded = bool(np.max(share.approach + touch) > where.reach_gap)
+        if not crowded:
+            break
+    return _Contact(where, share, kappa, levers, largest, crowded)
 
 
-def _edge_contacts(
-    bodies: Compliance, where: _Candidates, rho1: Array, rho2: Array
-) -> tuple[Array, Array, Table | None]:
-    """Levers, gaps and laws of tip edges; ``rho1`` and ``rho2`` are moved to where the flanks are touched.
+def _levers(given: Setting, where: Meshing, friction: float) -> Array:
+    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
+    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
+    first, second = given.pair.base_radii
+    arm = np.where(where.touchable, arm, 0.0)
+    return np.asarray(lever[0] + friction * np.sign(arm[0] / first - arm[1] / second) * arm[0] / first)
 
-    A force along another normal than the line of action has another lever about the pinion's axis, kappa
-    r_b1. With F' = kappa F the equations keep their form: gap/kappa, bulk_ij/(kappa_i kappa_j) and
-    law(F'/kappa)/kappa.
-    """
-    pair, points = bodies.pair, bodies.pair.points
-    gaps = np.where(where.touchable, 0.0, np.inf)
-    lever = np.ones_like(gaps)
+
+def _edge_table(
+    given: Setting, bodies: Compliance, where: Meshing, kappa: Array
+) -> tuple[Table | None, Array]:
+    """Laws of all tip edges in row-major order, and the largest forces that they cover [N]."""
     if not where.edge.any():
-        return lever, gaps, None
+        return None, np.zeros(0)
     places: list[NDArray[np.int64]] = []
-    forces: list[Array] = []
-    approaches: list[Array] = []
-    for corner, chosen in where.corners(points.A):
+    laws: list[tuple[Array, Array]] = []
+    for corner, chosen in where.corners():
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
-        law = edge_laws(pair, bodies.tips[corner], corner, where.rho1[chosen], touched)
-        kappa = lever_ratio(pair, law.where, where.rho1[chosen]) if corner == 0 else np.ones(len(law.where))
-        end = pair.teeth_profiles[corner].flank_rho[1]
-        rho1[chosen], rho2[chosen] = (law.where, end) if corner == 1 else (end, law.where)
-        lever[chosen] = kappa
-        gaps[chosen] = law.approach[:, 0] / kappa
+        law = edge_laws(
+            given.pair,
+            bodies.tips[corner],
+            corner,
+            where.place[chosen],
+            touched,
+            given.rounds[corner],
+            given.removed,
+        )
+        lever = kappa[chosen][:, None]
         places.append(np.flatnonzero(chosen).astype(np.int64))
-        forces.append(law.force * kappa[:, None])
-        approaches.append((law.approach - law.approach[:, :1]) / kappa[:, None])
+        laws.append((law.force * lever, (law.approach - law.approach[:, :1]) / lever))
+    points = max(force.shape[1] for force, _ in laws)
     order = np.argsort(np.concatenate(places))
-    force, approach = np.concatenate(forces)[order], np.concatenate(approaches)[order]
-    return lever, gaps, Table.through(force, approach)
+    force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
+    approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
+    largest = np.concatenate([force[:, -1] for force, _ in laws])[order]
+    return Table.through(force, approach), largest
 
 
-def _leave_out_corner(bodies: Compliance, matrix: Array, where: _Candidates) -> None:
+def _extended(values: Array, points: int) -> Array:
+    """Rows continued in a straight line to a number of points."""
+    more = np.arange(1, points - values.shape[1] + 1)
+    beyond = values[:, -1:] + more * (values[:, -1:] - values[:, -2:-1])
+    return np.concatenate([values, beyond], axis=1)
+
+
+def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
     """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
-    points = bodies.pair.points
     width = bodies.pair.face_width
-    for corner, chosen in where.corners(points.A):
+    for corner, chosen in where.corners():
         gear = (bodies.pinion, bodies.wheel)[corner]
-        at_end = float(gear.own(np.array([gear.rho_end]))[0]) / width
         position, column = np.nonzero(chosen)
+        at_end = gear.own(where.rho[corner][position, column]) / width
         matrix[position, column, column] -= at_end
+
+
+def _result(
+    given: Setting,
+    bodies: Compliance,
+    contact: _Contact,
+    number: int,
+    torque: float,
+    friction: float,
+    cost: Cost,
+) -> MeshCycle:
+    where, pairs = contact.where, len(contact.where.offset)
+    force = torque / given.pair.base_radii[0]
+    turned = contact.share.forces[number]  # kappa F
+    deflection = contact.share.approach[number].ravel()
+    touch = where.gap.min(axis=-1).ravel()
+    refusal = _refusal(contact, turned, deflection + touch)
+    bad = np.nan if refusal else 0.0
+    forces = (turned / contact.kappa).reshape(-1, pairs) + bad
+    edge = np.tile(where.edge, (given.pitches, 1))
+    on_path = where.touchable & ~where.edge
+    rho = np.where(where.touchable, where.rho, np.nan)
+    return MeshCycle(
+        torque=torque,
+        force=force,
+        position=where.position,
+        pair_offset=where.offset,
+        rho1=np.tile(np.where(on_path, where.rho[0], np.nan), (given.pitches, 1)),
+        edge=edge,
+        flank_rho=np.tile(rho, (1, given.pitches, 1)),
+        forces=forces,
+        load_share=(turned * contact.levers).reshape(-1, pairs) / force + bad,
+        gaps=where.gap.reshape(-1, pairs),
+        approach=deflection + touch + bad,
+        stiffness=contact.share.tangent[number].ravel() + bad,
+        secant_stiffness=force / deflection + bad,
+        plane=bodies.plane,
+        beyond_path=given.beyond_path,
+        error=bodies.error,
+        cost=cost,
+        converged=bodies.converged and not refusal,
+        message=refusal
+        or "; ".join([bodies.message, *_remarks(given, where, forces, edge, deflection, friction)]),
+        pair=given.pair,
+        meshing=where,
+        friction=float(friction),
+    )
+
+
+def _refusal(contact: _Contact, turned: Array, approach: Array) -> str:
+    """Why a solution is not to be believed, empty if it is."""
+    edge = contact.where.edge
+    if edge.any() and np.any(turned[..., edge] > contact.largest):
+        return "a tip edge presses over more than the strips cover; reduce the torque"
+    if np.max(approach) > contact.where.reach_gap:
+        return (
+            "the approach closes gaps more than a base pitch outside the path, where no contact was looked for; "
+            "reduce the torque or the deviations"
+        )
+    if np.any(turned[..., contact.where.chamfered] > 0):
+        return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
+    return ""
+
+
+def _remarks(
+    given: Setting,
+    where: Meshing,
+    forces: Array,
+    edge: NDArray[np.bool_],
+    deflection: Array,
+    friction: float,
+) -> list[str]:
+    """What a reader of the figures should know."""
+    remarks = []
+    if np.any(forces[edge] > 0):
+        sharp = [one.radius == 0.0 for one in given.rounds]
+        form = (
+            "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
+        )
+        remarks.append(
+            f"tip edges outside the path touch as {form} without friction; the shares that they take are "
+            "uncertain by several per cent for real edges"
+            if not friction
+            else f"tip edges outside the path touch as {form}, tilted by the same friction as flanks; the shares "
+            "that they take are uncertain by several per cent for real edges"
+        )
+    if friction:
+        remarks.append("friction changes the lever arms only, not the flexibility")
+    if np.min(where.back_gap) < 0:
+        remarks.append("the teeth jam: their back flanks overlap by the deviations; give more backlash")
+    elif np.min(where.back_gap - deflection) < 0:
+        remarks.append(
+            "the backlash is less than the deflection, so back flanks might touch, which is left out"
+        )
+    return remarks

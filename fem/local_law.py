@@ -67,9 +67,9 @@ class Table:
         return cls(force, approach, steepness)
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
-        """Approach [m] and derivative [m/N] at one force (n,) [N] for each row."""
-        rows, last = np.arange(len(force)), self.force.shape[1] - 1
-        cell = np.clip((self.force <= force[:, None]).sum(axis=1) - 1, 0, last - 1)
+        """Approach [m] and derivative [m/N] at forces (..., n) [N], one of each row."""
+        rows, last = np.arange(len(self.force)), self.force.shape[1] - 1
+        cell = np.clip((self.force <= force[..., None]).sum(axis=-1) - 1, 0, last - 1)
         f0, f1 = self.force[rows, cell], self.force[rows, cell + 1]
         d0, d1 = self.approach[rows, cell], self.approach[rows, cell + 1]
         s0, s1 = self.steepness[rows, cell], self.steepness[rows, cell + 1]
@@ -107,14 +107,14 @@ class PairLaws:
         """Local deflection (positions, pairs) [m]."""
         local = self.hertz.approach(force)
         if self.table is not None:
-            local[self.edge] = self.table.value_and_slope(force[self.edge])[0]
+            local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[0]
         return local
 
     def slope(self, force: Array) -> Array:
         """Its derivative [m/N]."""
         local = self.hertz.slope(force)
         if self.table is not None:
-            local[self.edge] = self.table.value_and_slope(force[self.edge])[1]
+            local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[1]
         return local
 
 
@@ -142,9 +142,16 @@ class FilmLaw:
     rho1: Array
 
     def approach(self, force: Array) -> Array:
-        """Prop (positions, pairs) [m]."""
-        return np.where(np.isfinite(self.rho1), self.film(self.rho1, force)[0], 0.0)
+        """Prop (..., positions, pairs) [m]."""
+        return self._asked(force, 0)
 
     def slope(self, force: Array) -> Array:
         """Its derivative [m/N]."""
-        return np.where(np.isfinite(self.rho1), self.film(self.rho1, force)[1], 0.0)
+        return self._asked(force, 1)
+
+    def _asked(self, force: Array, which: int) -> Array:
+        """Ask the film with all leading dimensions as positions."""
+        places = np.broadcast_to(self.rho1, force.shape)
+        flat = (-1, force.shape[-1])
+        answer = np.reshape(self.film(places.reshape(flat), force.reshape(flat))[which], force.shape)
+        return np.where(np.isfinite(places), answer, 0.0)

@@ -9,7 +9,9 @@ import fem
 from fem.compliance import mesh_and_factor
 from fem.elasticity import PlaneElasticity
 from fem.local_law import Table
-from fem.tip_contact import edge_laws, flat_kernel, lever_ratio, tip_strips, unloaded_gap
+from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
+from fem.tip_contact import edge_laws, tip_strips
+from fem.tip_geometry import lever_ratio, unloaded_gap
 from gears.placement import mirrored, turned
 from meshes import Sizes
 
@@ -139,15 +141,12 @@ def test_finer_strips_change_little(article_pair, article_bodies, monkeypatch):
 
 
 def test_closing_strip_by_strip_gives_the_same_law_without_relief(article_pair, article_bodies):
-    import sys
-
-    tip = sys.modules["fem.tip_contact"]
     strips = article_bodies.tips[1]
     kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
     places = article_pair.points.A - np.array([1e-4, 5e-4, 1.2e-3])
     gaps, _ = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, places, strips.rho)
-    force, approach = tip._from_the_nearest(kernel, gaps)
-    other = tip._from_the_corner(kernel, gaps, gaps[:, 0])
+    force, approach = from_the_nearest(kernel, gaps)
+    other = from_the_corner(kernel, gaps, gaps[:, 0])
     assert np.all(np.diff(force, axis=1) > 0)
     for row in range(3):
         same = np.interp(force[row, 3:-3], other[0][row], other[1][row])
@@ -156,13 +155,10 @@ def test_closing_strip_by_strip_gives_the_same_law_without_relief(article_pair, 
 
 def test_relieved_tips_touch_inside_the_corner(article_pair, article_bodies):
     """Any gap: the law is the solution of the contact conditions, checked by their signs."""
-    import sys
-
-    tip = sys.modules["fem.tip_contact"]
     strips = article_bodies.tips[1]
     kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
     gaps = 1e-6 + 0.03 * np.abs(strips.distance - 0.1e-3)[None]
-    force, approach = tip._from_the_nearest(kernel, gaps)
+    force, approach = from_the_nearest(kernel, gaps)
     level = approach[0, 12]
     closed = np.zeros(len(strips.rho), dtype=bool)
     # the strips that are closed at that level, found anew by a plain active-set search

@@ -1,0 +1,320 @@
+"""What may touch where before any load: positions, teeth, points, levers and unloaded gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, cos, sin
+from numbers import Integral, Real
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.errors import Fault, FemError
+from fem.tip_contact import Removed, nearest_gap
+from fem.tip_geometry import TipRound, chamfer_gap, lever_ratio, tip_round, unloaded_gap
+
+if TYPE_CHECKING:
+    from gears import GearDeviations, GearPair
+
+__all__ = ["Meshing", "Setting", "meshing", "setting", "unloaded_transmission_error"]
+
+Array = NDArray[np.float64]
+Deviations = Sequence["GearDeviations | None"]
+
+REACHES = (0.6, 1.0)
+"""Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
+
+LARGEST_ROUND = 0.2
+"""Largest part of the flank [modules] that a rounding of the tip may take."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How a pair stands and what its flanks are like, checked; see ``mesh_cycle`` for the terms."""
+
+    pair: GearPair
+    positions: int
+    pitches: int
+    first_teeth: tuple[int, int]
+    beyond_path: bool
+    rounds: tuple[TipRound, TipRound]
+    deviations: tuple[GearDeviations | None, GearDeviations | None]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """rho1 at which contact of the two involutes starts and ends [m]: A and E but for roundings."""
+        first, second = self.rounds
+        return self.pair.line_of_action - second.rho, first.rho
+
+    @property
+    def removed(self) -> tuple[Removed, Removed] | None:
+        """Material missing from pinion's and wheel's flank at curvature radii; None if there is none."""
+        profiles = self.pair.teeth_profiles
+        curves = [some is not None and some.profile is not None for some in self.deviations]
+        if not any(curves) and all(profile.tip_relief is None for profile in profiles):
+            return None
+
+        def missing(gear: int) -> Removed:
+            some, relief = self.deviations[gear], profiles[gear].relief
+            if some is None or not curves[gear]:
+                return relief
+            return lambda rho: np.asarray(relief(rho) - some.excess(rho))
+
+        return missing(0), missing(1)
+
+    def pitch_gap(self, teeth: NDArray[np.int64], wheel_ahead: int = 0) -> Array:
+        """Gap along the line of action by pitch deviations of teeth (2, ...) [m].
+
+        A tooth of the pinion that comes late opens the gap, one of the wheel closes it.
+        """
+        first, second = self.deviations
+        gap = np.zeros(teeth.shape[1:])
+        if first is not None:
+            gap += first.late(teeth[0])
+        if second is not None:
+            gap -= second.late(teeth[1] + wheel_ahead)
+        return np.asarray(gap * cos(self.pair.rack.alpha))
+
+
+def setting(
+    pair: GearPair,
+    positions: int,
+    pitches: int = 1,
+    first_teeth: tuple[int, int] = (0, 0),
+    beyond_path: bool = True,
+    tip_rounding: float | tuple[float, float] = 0.0,
+    deviations: Deviations | None = None,
+    others: Sequence[Fault] = (),
+) -> Setting:
+    """Check everything that ``mesh_cycle`` and ``unloaded_transmission_error`` are given in common.
+
+    Raises
+    ------
+    FemError
+        With all faults, ``others`` first.
+    """
+    faults = list(others)
+    for name, value, remedy in (
+        ("positions", positions, "40 resolve the usual harmonics"),
+        ("pitches", pitches, "as many as teeth of the pinion for its revolution"),
+    ):
+        if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
+            faults.append(Fault(name, f"{value!r}", "a whole number >= 1", remedy))
+    both = tuple(first_teeth) if isinstance(first_teeth, Sequence) else ()
+    if len(both) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in both):
+        faults.append(Fault("first_teeth", f"{first_teeth!r}", "two whole numbers", "number from 0"))
+    rounds, bad = _rounds(pair, tip_rounding)
+    faults += bad
+    some = (None, None) if deviations is None else tuple(deviations)
+    if len(some) != 2:
+        faults.append(
+            Fault("deviations", f"{len(some)} gears", "of pinion and wheel", "give None for a perfect one")
+        )
+    else:
+        for k, (gear, spec) in enumerate(zip(some, (pair.pinion, pair.wheel), strict=True)):
+            faults += () if gear is None else gear.faults(f"deviations[{k}]", spec.teeth)
+    if faults:
+        raise FemError(*faults)
+    found = Setting(
+        pair, int(positions), int(pitches), (both[0], both[1]), beyond_path, rounds, (some[0], some[1])
+    )
+    start, end = found.ends
+    if end - start < pair.base_pitch and not beyond_path:
+        remedy = "round the tips less, or let tip edges touch"
+        raise FemError(Fault("tip_rounding", f"{tip_rounding!r}", "a contact ratio above 1", remedy))
+    return found
+
+
+def _rounds(
+    pair: GearPair, tip_rounding: float | tuple[float, float]
+) -> tuple[tuple[TipRound, TipRound], list[Fault]]:
+    radii = tip_rounding if isinstance(tip_rounding, Sequence) else (tip_rounding, tip_rounding)
+    profiles = pair.teeth_profiles
+    numbers = [isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in radii]
+    if len(radii) != 2 or not all(numbers):
+        allowed = "a radius >= 0 m, or one for each gear"
+        fault = Fault("tip_rounding", f"{tip_rounding!r}", allowed, "give metres; 0 is sharp")
+        return (tip_round(profiles[0], 0.0), tip_round(profiles[1], 0.0)), [fault]
+    rounds = tip_round(profiles[0], float(radii[0])), tip_round(profiles[1], float(radii[1]))
+    faults = []
+    for k, (one, profile) in enumerate(zip(rounds, profiles, strict=True)):
+        if one.radius == 0.0:
+            continue
+        land = profile.tip_radius * sin(max(profile.tip_half_angle, 0.0))
+        # with a chamfer the arc is between flank and chamfer, and must end on it
+        length = float(np.linalg.norm(np.diff(profile.chamfer(np.array([0.0, 1.0])), axis=0)))
+        room = min(LARGEST_ROUND * profile.module, length if length > 0 else land)
+        if one.start > room:
+            most = f"at most {room * one.radius / one.start:.3g} m"
+            faults.append(Fault(f"tip_rounding[{k}]", f"{one.radius:g} m", most, "round the tip less"))
+    return rounds, faults
+
+
+@dataclass(frozen=True, eq=False)
+class Meshing:
+    """Pairs that might touch. n positions of all pitches; a base pitch has its own n_1 of them.
+
+    Attributes
+    ----------
+    position : (n,) array
+        Way from A in base pitches, of the pair that entered last at first.
+    offset : (pairs,) array of int
+        Base pitches that each column is ahead of the pair that entered last.
+    place : (n_1, pairs) array
+        rho1 of the unlimited involutes on the line of action [m].
+    rho : (2, n_1, pairs) array
+        Curvature radii where pinion and wheel are touched [m].
+    touchable, edge : (n_1, pairs) boolean arrays
+        Candidates, and those outside the path.
+    lever : (2, n, pairs) array
+        Lever of the normal about the axes, over the base radii.
+    tangent_arm : (2, n, pairs) array
+        Way from the foot of each axis on the normal to the contact [m], rho on the path.
+    gap : (pitches, n_1, pairs) array
+        Unloaded gaps [m], inf where not touchable.
+    teeth : (2, n, pairs) array of int
+        Numbers of the teeth.
+    back_gap : (n,) array
+        Smallest gap of the back flanks when the gears touch without load [m].
+    chamfered : (n_1, pairs) boolean array
+        Candidates whose chamfer is nearer than the corner before it.
+    reach_gap : float
+        Gap of the nearest contact that is not among the candidates [m].
+    """
+
+    position: Array
+    offset: NDArray[np.int64]
+    place: Array
+    rho: Array
+    touchable: NDArray[np.bool_]
+    edge: NDArray[np.bool_]
+    lever: Array
+    tangent_arm: Array
+    gap: Array
+    teeth: NDArray[np.int64]
+    back_gap: Array
+    chamfered: NDArray[np.bool_]
+    reach_gap: float
+
+    def corners(self) -> tuple[tuple[int, NDArray[np.bool_]], ...]:
+        """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
+        before = self.edge & (self.place < 0.5 * (self.place.min() + self.place.max()))
+        return (1, before), (0, self.edge & ~before)
+
+
+def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
+    """Candidates for contact at midpoints of equal intervals of each base pitch, and their unloaded gaps."""
+    pair, positions = given.pair, given.positions
+    start, end = given.ends
+    pitch, line = pair.base_pitch, pair.line_of_action
+    last = ceil(pair.contact_ratio)
+    offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
+    within = (np.arange(positions) + 0.5) / positions
+    place = pair.points.A + (within[:, None] + offset) * pitch
+    outside = (place < start) | (place > end)
+    edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & given.beyond_path
+    touchable = ~outside | edge
+    middle = 0.5 * (pair.points.A + pair.points.E)
+    # places of pairs that cannot touch are never used, but must be places
+    place = np.where(touchable, place, middle)
+    rho = np.stack([place, line - place])
+    lever, arm = np.ones_like(rho), rho.copy()
+    gap = np.where(touchable, 0.0, np.inf)
+    chamfered = np.zeros_like(edge)
+    removed = given.removed
+    if removed is not None:
+        on_path = touchable & ~edge
+        gap[on_path] = removed[0](rho[0][on_path]) + removed[1](rho[1][on_path])
+    for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
+        if chosen.any():
+            at = _edges(given, corner, place[chosen])
+            rho[1 - corner][chosen], rho[corner][chosen] = at.where, given.rounds[corner].rho
+            lever[corner][chosen], arm[corner][chosen], arm[1 - corner][chosen] = at.lever, at.arm, at.where
+            gap[chosen] = at.gap
+            chamfered[chosen] = at.chamfered
+    missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
+    touchable, edge = touchable & ~missed, edge & ~missed
+    steps = np.arange(given.pitches)[:, None] - offset
+    teeth = np.stack([first + steps for first in given.first_teeth])[:, :, None, :]
+    by_pitch = given.pitch_gap(teeth)
+    gaps = gap + by_pitch
+    back = np.where(touchable, -given.pitch_gap(teeth, wheel_ahead=1), np.inf).min(axis=-1)
+    numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
+    tiles = (1, given.pitches, 1)
+    every = np.broadcast_to(teeth, (2, given.pitches, positions, len(offset)))
+    return Meshing(
+        position=(np.arange(given.pitches)[:, None] + within).ravel(),
+        offset=offset,
+        place=place,
+        rho=rho,
+        touchable=touchable,
+        edge=edge,
+        lever=np.tile(lever, tiles),
+        tangent_arm=np.tile(np.where(touchable, arm, np.nan), tiles),
+        gap=gaps,
+        teeth=every.reshape(2, -1, len(offset)) % numbers,
+        back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
+        chamfered=chamfered,
+        reach_gap=_reach_gap(given, reach) + float(np.min(by_pitch)) if given.beyond_path else np.inf,
+    )
+
+
+def _reach_gap(given: Setting, reach: float) -> float:
+    """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
+    start, end = given.ends
+    way = reach * given.pair.base_pitch
+    before, after = _edges(given, 1, np.array([start - way])), _edges(given, 0, np.array([end + way]))
+    return float(min(before.gap[0], after.gap[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Edges:
+    """Contacts of one gear's tip: where the other flank is touched, lever and arm of the tip, gap."""
+
+    where: Array
+    lever: Array
+    arm: Array
+    gap: Array
+    chamfered: NDArray[np.bool_]
+
+
+def _edges(given: Setting, corner: int, place: Array) -> _Edges:
+    pair, rounding = given.pair, given.rounds[corner]
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    touched = place if corner == 1 else pair.line_of_action - place
+    bare, where = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
+    place_of_tip = where[:, 0]
+    lever = lever_ratio(pair, place_of_tip, place, corner)
+    arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
+    gap = nearest_gap(pair, corner, place, rounding, given.removed)
+    # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
+    gap = gap / lever if corner == 0 else gap
+    reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
+    chamfered = chamfer_gap(pair, corner, touched) < bare[:, 0]
+    return _Edges(place_of_tip, lever, arm, np.where(reaches, gap, np.inf), chamfered)
+
+
+def unloaded_transmission_error(
+    pair: GearPair,
+    positions: int = 40,
+    beyond_path: bool = True,
+    deviations: Deviations | None = None,
+    pitches: int = 1,
+    first_teeth: tuple[int, int] = (0, 0),
+    tip_rounding: float | tuple[float, float] = 0.0,
+) -> Array:
+    """Transmission error of rigid gears under no load, from the geometry alone (pitches*positions,) [m].
+
+    The smallest gap of all pairs, D_0: zero for perfect involutes while one of them is between A and E; with
+    relief or deviations the pair that touches first, which may do so with a tip edge outside A..E. Positive
+    when the wheel lags. Parameters as for ``mesh_cycle``.
+
+    Raises
+    ------
+    FemError
+        Input that makes no sense.
+    """
+    given = setting(pair, positions, pitches, first_teeth, beyond_path, tip_rounding, deviations)
+    return np.asarray(meshing(given, REACHES[-1]).gap.min(axis=-1).ravel())

@@ -1,0 +1,162 @@
+"""Where a tip meets the other gear's flank outside the path of contact: gaps, points, levers, exact.
+
+Before A the wheel's tip meets the pinion's flank, after E the pinion's tip the wheel's flank. Everything is
+written for one of the two, gear 2 with the tip and gear 1 with the flank; the other follows by exchange of the
+gears. A gap is the rotation of gear 1 until its involute meets the point, times r_b1; that is the distance
+along the normal of flank 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi, sin, sqrt, tan
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from gears import GearPair, ToothProfile
+
+__all__ = ["TipRound", "chamfer_gap", "corner_angle", "lever_ratio", "tip_round", "unloaded_gap"]
+
+Array = NDArray[np.float64]
+
+
+def unloaded_gap(
+    base_radii: tuple[float, float],
+    line: float,
+    rho1: Array,
+    rho2: Array,
+    along: Array | float = 0.0,
+    out: Array | float = 0.0,
+) -> tuple[Array, Array]:
+    """Gap between the flank of gear 1 and points of gear 2, and where it would close.
+
+    The gears stand so that their (unlimited) involutes touch at ``rho1`` of the line of action.
+
+    Parameters
+    ----------
+    base_radii : (float, float)
+        r_b1, r_b2 [m]
+    line : float
+        rho1 + rho2 on the line of action [m].
+    rho1 : (n,) array
+        Positions [m].
+    rho2 : (k,) array
+        Curvature radii of the points on flank 2 [m].
+    along, out : (k,) arrays or float
+        Shift of the points from flank 2, along its tangent towards the tip and along its outward normal [m].
+
+    Returns
+    -------
+    gap : (n, k) array
+        Rotation of gear 1 until its flank meets the point, times r_b1 [m].
+    where : (n, k) array
+        Curvature radius of flank 1 there [m].
+    """
+    r1, r2 = base_radii
+    # line of action along x, gear 1's tangent point at the origin, axes at (0, -r1) and (line, r2)
+    turn = (rho2[None, :] - (line - rho1[:, None])) / r2
+    c, s = np.cos(turn), np.sin(turn)
+    x = line + r2 * s - rho2 * c + along * s - out * c
+    y = r2 - r2 * c - rho2 * s - along * c - out * s + r1
+    where = np.sqrt(np.maximum(x**2 + y**2 - r1**2, 0.0))
+    flank = (where - rho1[:, None]) / r1 + np.arctan2(r1, where)
+    return r1 * (flank - np.arctan2(y, x)), where
+
+
+def lever_ratio(pair: GearPair, where: Array, rho1: Array, corner: int = 0) -> Array:
+    """Lever of a flank's normal about the axis of the other gear, over that gear's base radius.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    where : (n,) array
+        Curvature radii of the touched flank [m].
+    rho1 : (n,) array
+        Positions: where the unlimited involutes touch on the line of action [m].
+    corner : {0, 1}
+        The other gear, whose tip touches: 0 the pinion, 1 the wheel.
+    """
+    own, touched = pair.base_radii[corner], pair.base_radii[1 - corner]
+    line = pair.line_of_action
+    turn = (where - (rho1 if corner == 1 else line - rho1)) / touched
+    return np.asarray(((own + touched) * np.cos(turn) - line * np.sin(turn) - touched) / own)
+
+
+def corner_angle(profile: ToothProfile) -> float:
+    """Interior angle between the flank's end and what follows it, chamfer or top land [rad]."""
+    end = profile.flank_rho[1]
+    point, normal = profile.involute(end), profile.normal(end)
+    if profile.flank_end_radius < profile.tip_radius:
+        start, stop = profile.chamfer(np.array([0.0, 1.0]))
+        beyond = stop - start
+    else:
+        beyond = np.array([-point[1], point[0]])  # the top land's circle, towards the centre line
+    tangent = np.array([-normal[1], normal[0]])  # towards the tip
+    turn = np.arctan2(-beyond @ normal, beyond @ tangent)
+    return float(pi - turn)
+
+
+@dataclass(frozen=True)
+class TipRound:
+    """A tip edge rounded by an arc that is tangent to the flank and to what follows it.
+
+    Attributes
+    ----------
+    radius : float
+        Of the arc [m]; 0 is the sharp corner.
+    angle : float
+        Interior angle of the corner that it rounds [rad].
+    start : float
+        Distance of its start from that corner, along the flank, r/tan(angle/2) [m].
+    rho : float
+        Curvature radius at which the involute ends [m].
+    """
+
+    radius: float
+    angle: float
+    start: float
+    rho: float
+
+    def offset(self, distance: Array) -> tuple[Array, Array]:
+        """Shift of the arc's points from its start: along the flank's tangent and normal [m].
+
+        Parameters
+        ----------
+        distance : array
+            From the sharp corner, measured along the flank's tangent, less than ``start`` [m].
+        """
+        along = self.start - distance
+        return along, np.sqrt(self.radius**2 - along**2) - self.radius
+
+
+def tip_round(profile: ToothProfile, radius: float) -> TipRound:
+    """Rounding of a tooth's tip edge; radius 0 leaves the corner as it is."""
+    angle, end = corner_angle(profile), profile.flank_rho[1]
+    start = radius / tan(0.5 * angle)
+    return TipRound(radius, angle, start, sqrt(end**2 - 2 * profile.base_radius * start) if start else end)
+
+
+def chamfer_gap(pair: GearPair, corner: int, place: Array) -> Array:
+    """Least gap of a chamfer behind the corner, along the chamfer and at its end (n,) [m]; inf without one.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    corner : {0, 1}
+        The gear with the chamfer.
+    place : (n,) array
+        Positions by the touched flank's curvature radius on the line of action [m].
+    """
+    profile = pair.teeth_profiles[corner]
+    if profile.flank_end_radius >= profile.tip_radius:
+        return np.full(len(place), np.inf)
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    turn = pi - corner_angle(profile)
+    length = float(np.linalg.norm(np.diff(profile.chamfer(np.array([0.0, 1.0])), axis=0)))
+    way = length * np.linspace(0.1, 1.0, 10)
+    end = np.full(len(way), profile.flank_rho[1])
+    gap, _ = unloaded_gap(radii, pair.line_of_action, place, end, way * cos(turn), -way * sin(turn))
+    return np.asarray(gap.min(axis=1))
