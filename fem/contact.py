@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -14,12 +13,13 @@ from fem.compliance import Compliance, Cost
 from fem.compliance import compliance as _compliance
 from fem.cycle import MeshCycle
 from fem.errors import Fault
-from fem.local_law import Film, FilmLaw, PairLaws, Table
-from fem.meshing import REACHES, Deviations, Meshing, Setting, meshing, setting
-from fem.tip_contact import edge_laws
+from fem.local_law import Film
+from fem.meshing import Meshing
+from fem.setting import Deviations, Setting, setting
+from fem.sharing import Solution, solve
 
 if TYPE_CHECKING:
-    from gears import GearPair, LoadShare
+    from gears import GearPair
 
 __all__ = ["MeshCycle", "mesh_cycle", "torque_sweep"]
 
@@ -152,7 +152,7 @@ def torque_sweep(
     began = perf_counter()
     bodies = compliance if compliance is not None else _compliance(pair, tolerance, plane)
     ready = perf_counter()
-    contact = _share(given, bodies, wanted / pair.base_radii[0], film, friction)
+    contact = solve(given, bodies, wanted / pair.base_radii[0], film, friction)
     cost = Cost(
         perf_counter() - began,
         bodies.cost.unknowns,
@@ -182,112 +182,10 @@ def _faults(
     return faults
 
 
-@dataclass(frozen=True, eq=False)
-class _Contact:
-    """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one)."""
-
-    where: Meshing
-    share: LoadShare
-    kappa: Array
-    levers: Array
-    largest: Array
-    crowded: bool
-
-
-def _share(given: Setting, bodies: Compliance, force: Array, film: Film | None, friction: float) -> _Contact:
-    """Solve, with candidates farther out if the approach reaches beyond the first ones."""
-    from gears.load_sharing import share_load
-
-    for reach in REACHES:
-        where = meshing(given, reach)
-        kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
-        table, largest = _edge_table(given, bodies, where, kappa)
-        rho1, rho2 = where.rho
-        matrix = bodies.bulk(rho1, rho2)
-        _leave_out_corner(bodies, matrix, where)
-        # A force along another normal than the line of action has the lever kappa r_b1 about the pinion's
-        # axis. In F' = kappa F the equations keep their form, with gap/kappa, bulk_ij/(kappa_i kappa_j) and
-        # law(F'/kappa)/kappa.
-        matrix /= kappa[..., :, None] * kappa[..., None, :]
-        on_path = where.touchable & ~where.edge
-        middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
-        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table)
-        oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
-        levers = _levers(given, where, friction) / kappa
-        touch = where.gap.min(axis=-1)
-        share = share_load(
-            force[:, None, None],
-            matrix,
-            laws,
-            where.gap - touch[..., None],
-            oil,
-            levers if friction else None,
-        )
-        crowded = bool(np.max(share.approach + touch) > where.reach_gap)
-        if not crowded:
-            break
-    return _Contact(where, share, kappa, levers, largest, crowded)
-
-
-def _levers(given: Setting, where: Meshing, friction: float) -> Array:
-    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
-    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
-    first, second = given.pair.base_radii
-    arm = np.where(where.touchable, arm, 0.0)
-    return np.asarray(lever[0] + friction * np.sign(arm[0] / first - arm[1] / second) * arm[0] / first)
-
-
-def _edge_table(
-    given: Setting, bodies: Compliance, where: Meshing, kappa: Array
-) -> tuple[Table | None, Array]:
-    """Laws of all tip edges in row-major order, and the largest forces that they cover [N]."""
-    if not where.edge.any():
-        return None, np.zeros(0)
-    places: list[NDArray[np.int64]] = []
-    laws: list[tuple[Array, Array]] = []
-    for corner, chosen in where.corners():
-        touched = (bodies.pinion, bodies.wheel)[1 - corner].law
-        law = edge_laws(
-            given.pair,
-            bodies.tips[corner],
-            corner,
-            where.place[chosen],
-            touched,
-            given.rounds[corner],
-            given.removed,
-        )
-        lever = kappa[chosen][:, None]
-        places.append(np.flatnonzero(chosen).astype(np.int64))
-        laws.append((law.force * lever, (law.approach - law.approach[:, :1]) / lever))
-    points = max(force.shape[1] for force, _ in laws)
-    order = np.argsort(np.concatenate(places))
-    force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
-    approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
-    largest = np.concatenate([force[:, -1] for force, _ in laws])[order]
-    return Table.through(force, approach), largest
-
-
-def _extended(values: Array, points: int) -> Array:
-    """Rows continued in a straight line to a number of points."""
-    more = np.arange(1, points - values.shape[1] + 1)
-    beyond = values[:, -1:] + more * (values[:, -1:] - values[:, -2:-1])
-    return np.concatenate([values, beyond], axis=1)
-
-
-def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
-    """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
-    width = bodies.pair.face_width
-    for corner, chosen in where.corners():
-        gear = (bodies.pinion, bodies.wheel)[corner]
-        position, column = np.nonzero(chosen)
-        at_end = gear.own(where.rho[corner][position, column]) / width
-        matrix[position, column, column] -= at_end
-
-
 def _result(
     given: Setting,
     bodies: Compliance,
-    contact: _Contact,
+    contact: Solution,
     number: int,
     torque: float,
     friction: float,
@@ -298,7 +196,8 @@ def _result(
     turned = contact.share.forces[number]  # kappa F
     deflection = contact.share.approach[number].ravel()
     touch = where.gap.min(axis=-1).ravel()
-    refusal = _refusal(contact, turned, deflection + touch)
+    closing = contact.closing[number].ravel()
+    refusal = _refusal(contact, turned, closing + touch)
     bad = np.nan if refusal else 0.0
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
@@ -324,19 +223,19 @@ def _result(
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
-        or "; ".join([bodies.message, *_remarks(given, where, forces, edge, deflection, friction)]),
+        or "; ".join([bodies.message, *_remarks(given, where, forces, edge, closing, friction)]),
         pair=given.pair,
         meshing=where,
         friction=float(friction),
     )
 
 
-def _refusal(contact: _Contact, turned: Array, approach: Array) -> str:
+def _refusal(contact: Solution, turned: Array, closing: Array) -> str:
     """Why a solution is not to be believed, empty if it is."""
     edge = contact.where.edge
     if edge.any() and np.any(turned[..., edge] > contact.largest):
         return "a tip edge presses over more than the strips cover; reduce the torque"
-    if np.max(approach) > contact.where.reach_gap:
+    if np.max(closing) > contact.where.reach_gap:
         return (
             "the approach closes gaps more than a base pitch outside the path, where no contact was looked for; "
             "reduce the torque or the deviations"
@@ -351,7 +250,7 @@ def _remarks(
     where: Meshing,
     forces: Array,
     edge: NDArray[np.bool_],
-    deflection: Array,
+    closing: Array,
     friction: float,
 ) -> list[str]:
     """What a reader of the figures should know."""
@@ -372,7 +271,7 @@ def _remarks(
         remarks.append("friction changes the lever arms only, not the flexibility")
     if np.min(where.back_gap) < 0:
         remarks.append("the teeth jam: their back flanks overlap by the deviations; give more backlash")
-    elif np.min(where.back_gap - deflection) < 0:
+    elif np.min(where.back_gap - closing) < 0:
         remarks.append(
             "the backlash is less than the deflection, so back flanks might touch, which is left out"
         )

@@ -162,6 +162,38 @@ def test_many_positions_at_once_equal_each_alone():
         assert together.tangent[i] == pytest.approx(float(alone.tangent), rel=1e-8)
 
 
+def test_many_forces_at_once_equal_each_alone():
+    """Bulk and gaps depend on the position only, the force on the torque only, the gaps on the pitch too."""
+    rng = np.random.default_rng(0)
+    bulk = np.stack([random_bulk(s, 3) for s in range(5)])
+    gaps = rng.uniform(0, 2e-5, (4, 5, 3))
+    forces = np.array([1e-3, 30.0, 17736.0])
+    together = share_load(forces[:, None, None], bulk, Hertz(), gaps)
+    assert together.forces.shape == (3, 4, 5, 3)
+    assert together.approach.shape == together.tangent.shape == (3, 4, 5)
+    for k, force in enumerate(forces):
+        alone = share_load(force, bulk, Hertz(), gaps)
+        np.testing.assert_allclose(together.forces[k], alone.forces, rtol=1e-9, atol=1e-10 * force)
+        np.testing.assert_allclose(together.approach[k], alone.approach, rtol=1e-9)
+        np.testing.assert_allclose(together.tangent[k], alone.tangent, rtol=1e-7)
+
+
+def test_levers_balance_the_moment_and_tilt_the_tangent():
+    bulk, gaps = random_bulk(4, 3), np.array([0.0, 1e-6, 2e-6])
+    levers, force = np.array([0.9, 1.0, 1.2]), 5e3
+    share = share_load(force, bulk, Hertz(), gaps, levers=levers)
+    assert levers @ share.forces == pytest.approx(force, rel=1e-12)
+    assert np.abs(residual(share, bulk, Hertz(), gaps)).max() < 1e-9 * share.approach
+    step = 1e-4 * force
+    low, high = (share_load(force + s, bulk, Hertz(), gaps, levers=levers) for s in (-step, step))
+    assert 2 * step / (high.approach - low.approach) == pytest.approx(float(share.tangent), rel=1e-6)
+    # one pair alone: a lever only scales its force
+    one = share_load(1e3, [[1e-9]], Hertz(), [0.0], levers=[0.8])
+    assert one.forces[0] == pytest.approx(1250.0, rel=1e-12)
+    at_rest = share_load(0.0, np.diag([1e-9, 2e-9]), Spring(1e-9), [1e-6, 0.0], levers=[1.0, 0.5])
+    assert at_rest.tangent == pytest.approx(0.5 / 3e-9)
+
+
 def test_film_in_series_equals_a_softer_spring():
     """A film whose approach falls linearly with the force is a spring in series and a preload of the gap."""
 
@@ -186,6 +218,12 @@ def test_all_faults_of_the_input_at_once():
     assert {f.where for f in caught.value.faults} == {"force", "gaps", "bulk"}
     with pytest.raises(LoadSharingError, match="bulk, gaps"):
         share_load(1.0, np.eye(3), Hertz(), [0.0, 0.0])
+    with pytest.raises(LoadSharingError, match="levers"):
+        share_load(1.0, np.eye(2), Hertz(), [0.0, 0.0], levers=[1.0, -0.1])
+    with pytest.raises(LoadSharingError, match="all above 0"):
+        share_load(np.array([[1.0], [0.0]]), np.eye(2), Hertz(), [0.0, 0.0])
+    with pytest.raises(LoadSharingError, match="bulk, gaps"):
+        share_load(np.ones((3, 4)), np.zeros((5, 2, 2)), Hertz(), np.zeros((5, 2)))
     with pytest.raises(LoadSharingError, match="inf for all"):
         share_load(1.0, np.eye(2), Hertz(), [np.inf, np.inf])
 

@@ -1,0 +1,129 @@
+"""Contact of all pairs at all positions and torques: flexibilities, laws and levers put together and solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.compliance import Compliance
+from fem.local_law import Film, FilmLaw, PairLaws, Table
+from fem.meshing import REACHES, Meshing, meshing
+from fem.setting import Setting
+from fem.tip_contact import edge_laws
+
+if TYPE_CHECKING:
+    from gears import LoadShare
+
+__all__ = ["Solution", "solve"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
+
+    kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
+    closing the deflection less the hubs' wind-up.
+    """
+
+    where: Meshing
+    share: LoadShare
+    kappa: Array
+    levers: Array
+    largest: Array
+    closing: Array
+
+
+def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, friction: float) -> Solution:
+    """Solve, with candidates farther out if the approach reaches beyond the first ones."""
+    from gears.load_sharing import share_load
+
+    for reach in REACHES:
+        where = meshing(given, reach)
+        kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
+        table, largest = _edge_table(given, bodies, where, kappa)
+        rho1, rho2 = where.rho
+        matrix = bodies.bulk(rho1, rho2)
+        _leave_out_corner(bodies, matrix, where)
+        # A force along another normal than the line of action has the lever kappa r_b1 about the pinion's
+        # axis. In F' = kappa F the equations keep their form, with gap/kappa, bulk_ij/(kappa_i kappa_j) and
+        # law(F'/kappa)/kappa.
+        matrix /= kappa[..., :, None] * kappa[..., None, :]
+        on_path = where.touchable & ~where.edge
+        middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
+        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table)
+        oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
+        levers = _levers(given, where, friction) / kappa
+        touch = where.gap.min(axis=-1)
+        share = share_load(
+            force[:, None, None],
+            matrix,
+            laws,
+            where.gap - touch[..., None],
+            oil,
+            levers if friction else None,
+        )
+        # the turning of the bodies on their hubs moves all teeth and closes no gap
+        closing = share.approach - sum(bodies.hub_windup) * force[:, None, None]
+        if np.max(closing + touch) <= where.reach_gap:
+            break
+    return Solution(where, share, kappa, levers, largest, closing)
+
+
+def _levers(given: Setting, where: Meshing, friction: float) -> Array:
+    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
+    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
+    first, second = given.pair.base_radii
+    arm = np.where(where.touchable, arm, 0.0)
+    return np.asarray(lever[0] + friction * np.sign(arm[0] / first - arm[1] / second) * arm[0] / first)
+
+
+def _edge_table(
+    given: Setting, bodies: Compliance, where: Meshing, kappa: Array
+) -> tuple[Table | None, Array]:
+    """Laws of all tip edges in row-major order, and the largest forces that they cover [N]."""
+    if not where.edge.any():
+        return None, np.zeros(0)
+    places: list[NDArray[np.int64]] = []
+    laws: list[tuple[Array, Array]] = []
+    for corner, chosen in where.corners():
+        touched = (bodies.pinion, bodies.wheel)[1 - corner].law
+        law = edge_laws(
+            given.pair,
+            bodies.tips[corner],
+            corner,
+            where.place[chosen],
+            touched,
+            given.rounds[corner],
+            given.removed,
+        )
+        lever = kappa[chosen][:, None]
+        places.append(np.flatnonzero(chosen).astype(np.int64))
+        laws.append((law.force * lever, (law.approach - law.approach[:, :1]) / lever))
+    points = max(force.shape[1] for force, _ in laws)
+    order = np.argsort(np.concatenate(places))
+    force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
+    approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
+    largest = np.concatenate([force[:, -1] for force, _ in laws])[order]
+    return Table.through(force, approach), largest
+
+
+def _extended(values: Array, points: int) -> Array:
+    """Rows continued in a straight line to a number of points."""
+    more = np.arange(1, points - values.shape[1] + 1)
+    beyond = values[:, -1:] + more * (values[:, -1:] - values[:, -2:-1])
+    return np.concatenate([values, beyond], axis=1)
+
+
+def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
+    """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
+    width = bodies.pair.face_width
+    for corner, chosen in where.corners():
+        gear = (bodies.pinion, bodies.wheel)[corner]
+        position, column = np.nonzero(chosen)
+        at_end = gear.own(where.rho[corner][position, column]) / width
+        matrix[position, column, column] -= at_end
