@@ -156,7 +156,7 @@ def _edges(given: Setting, corner: int, place: Array) -> _Edges:
     pair, rounding = given.pair, given.rounds[corner]
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     touched = place if corner == 1 else pair.line_of_action - place
-    bare, where = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
+    _, where = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
     place_of_tip = where[:, 0]
     lever = lever_ratio(pair, place_of_tip, place, corner)
     arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
@@ -164,7 +164,8 @@ def _edges(given: Setting, corner: int, place: Array) -> _Edges:
     # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
     gap = gap / lever if corner == 0 else gap
     reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
-    chamfered = chamfer_gap(pair, corner, touched) < bare[:, 0]
+    beyond = chamfer_gap(pair, corner, touched, rounding.start)
+    chamfered = np.isfinite(beyond) & (beyond < nearest_gap(pair, corner, place, rounding))
     return _Edges(place_of_tip, lever, arm, np.where(reaches, gap, np.inf), chamfered)
 
 

@@ -139,7 +139,7 @@ def tip_round(profile: ToothProfile, radius: float) -> TipRound:
     return TipRound(radius, angle, start, sqrt(end**2 - 2 * profile.base_radius * start) if start else end)
 
 
-def chamfer_gap(pair: GearPair, corner: int, place: Array) -> Array:
+def chamfer_gap(pair: GearPair, corner: int, place: Array, start: float = 0.0) -> Array:
     """Least gap of a chamfer behind the corner, along the chamfer and at its end (n,) [m]; inf without one.
 
     Parameters
@@ -149,6 +149,8 @@ def chamfer_gap(pair: GearPair, corner: int, place: Array) -> Array:
         The gear with the chamfer.
     place : (n,) array
         Positions by the touched flank's curvature radius on the line of action [m].
+    start : float
+        Length of the chamfer that a rounding has taken [m].
     """
     profile = pair.teeth_profiles[corner]
     if profile.flank_end_radius >= profile.tip_radius:
@@ -156,7 +158,7 @@ def chamfer_gap(pair: GearPair, corner: int, place: Array) -> Array:
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     turn = pi - corner_angle(profile)
     length = float(np.linalg.norm(np.diff(profile.chamfer(np.array([0.0, 1.0])), axis=0)))
-    way = length * np.linspace(0.1, 1.0, 10)
+    way = start + (length - start) * np.linspace(0.1, 1.0, 10)
     end = np.full(len(way), profile.flank_rho[1])
     gap, _ = unloaded_gap(radii, pair.line_of_action, place, end, way * cos(turn), -way * sin(turn))
     return np.asarray(gap.min(axis=1))
