@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import fem
+from fem.compliance import mesh_and_factor
+from fem.line_load import flank_points, line_loads
 from gears import Gear, GearPair, Material
+from meshes import Sizes
 
 
 @pytest.fixture(scope="module")
@@ -145,6 +150,47 @@ def test_friction_eases_before_C_and_loads_after_it(article_pair, article_bodies
     np.testing.assert_allclose(force, 1 / (1 + np.sign(rho1 - article_pair.points.C) * lever), rtol=1e-10)
     assert force.max() > 1.02
     assert force.min() < 0.98
+
+
+def test_friction_opposes_the_sliding_of_the_placed_gears(article_pair, article_bodies):
+    """Direction and moment from velocities and points in the common frame, no formula of ours."""
+    mu = 0.1
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False, friction=mu)
+    for row in (12, 18, 22, 27):
+        moment = 0.0
+        for k in np.flatnonzero(cycle.forces[row] > 0):
+            place = article_pair.placement(float(cycle.rho1[row, k]))
+            p, q = place.contact_point, place.contact_point - place.wheel_centre
+            slip = np.array([-p[1], p[0]]) + 36 / 40 * np.array([-q[1], q[0]])  # of the pinion's surface
+            assert np.linalg.norm(slip) == pytest.approx(abs(cycle.sliding(1.0)[row, k]), rel=1e-9)
+            assert abs(slip @ place.normal) < 1e-12
+            drag = -slip / np.linalg.norm(slip)
+            force = cycle.forces[row, k] * (-place.normal + mu * drag)
+            moment += p[0] * force[1] - p[1] * force[0]
+            towards_tip = drag @ p > 0
+            assert towards_tip == (cycle.rho1[row, k] > article_pair.points.C)
+        assert moment == pytest.approx(-600.0, rel=1e-9)
+
+
+def test_what_teeth_yield_to_tangential_forces_is_small(article_pair, article_bodies):
+    """The part that friction leaves out: .35 mu of a pair's deflection at the ends, nothing at C.
+
+    By Maxwell and Betti it is the tangential displacement, towards the tip, under a normal load. In approach
+    friction points to the pinion's root and to the wheel's tip.
+    """
+    rings, _ = mesh_and_factor(article_pair, "strain", Sizes(), 1)
+    rho1 = np.array([article_pair.points.A + 1e-4, article_pair.points.C, article_pair.points.E - 1e-4])
+    towards_tip = []
+    for ring, rho in zip(rings, (rho1, article_pair.line_of_action - rho1), strict=True):
+        at = flank_points(ring.mesh, rho)
+        along = np.stack([-at.inward[:, 1], at.inward[:, 0]], axis=1)
+        along *= np.sign(np.einsum("na,na->n", along, at.points))[:, None]
+        loads = line_loads(ring, at)
+        towards_tip.append(replace(loads, at=replace(at, inward=along)).regular_at_load())
+    force = 17736.3
+    deflection = force / fem.single_pair_stiffness(article_pair, force, rho1, article_bodies)
+    part = (towards_tip[1] - towards_tip[0]) * force / 0.04 / deflection
+    np.testing.assert_allclose(part, [0.35, 0.0, -0.35], atol=0.01)  # times mu, in recess times -mu
 
 
 def test_tangent_with_friction_is_the_derivative(article_pair, article_bodies):
