@@ -107,16 +107,13 @@ class TipRound:
     ----------
     radius : float
         Of the arc [m]; 0 is the sharp corner.
-    angle : float
-        Interior angle of the corner that it rounds [rad].
     start : float
-        Distance of its start from that corner, along the flank, r/tan(angle/2) [m].
+        Distance of its start from the corner of interior angle 2 beta that it rounds, r/tan(beta) [m].
     rho : float
         Curvature radius at which the involute ends [m].
     """
 
     radius: float
-    angle: float
     start: float
     rho: float
 
@@ -134,9 +131,11 @@ class TipRound:
 
 def tip_round(profile: ToothProfile, radius: float) -> TipRound:
     """Rounding of a tooth's tip edge; radius 0 leaves the corner as it is."""
-    angle, end = corner_angle(profile), profile.flank_rho[1]
-    start = radius / tan(0.5 * angle)
-    return TipRound(radius, angle, start, sqrt(end**2 - 2 * profile.base_radius * start) if start else end)
+    end = profile.flank_rho[1]
+    if radius == 0.0:
+        return TipRound(0.0, 0.0, end)
+    start = radius / tan(0.5 * corner_angle(profile))
+    return TipRound(radius, start, sqrt(end**2 - 2 * profile.base_radius * start))
 
 
 def chamfer_gap(pair: GearPair, corner: int, place: Array, start: float = 0.0) -> Array:

@@ -31,7 +31,7 @@ def test_the_arc_is_tangent_to_flank_and_top_land(article_pair):
     assert along[0] == out[0] == 0.0
     assert out[1] == pytest.approx(-(along[1] ** 2) / 120e-6, rel=1e-4)
     # in the tooth's frame: its highest point touches the tip circle but for the flank's own curvature
-    turn = np.pi - one.angle
+    turn = np.pi - corner_angle(profile)
     start, normal = profile.involute(one.rho), profile.normal(one.rho)
     tangent = np.array([-normal[1], normal[0]])
     end = start + 60e-6 * (np.sin(turn) * tangent + (np.cos(turn) - 1) * normal)
