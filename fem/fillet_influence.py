@@ -1,0 +1,283 @@
+"""Stress along the fillets by a line load anywhere on the flank of the same or of a neighbouring tooth.
+
+The stress is linear in the loads. On the loaded tooth it is the sum of the half-plane's stress, in closed form
+(``fem.flamant``), and of the regular part u_r of the finite elements, which varies smoothly with the load's
+place and is kept as a Chebyshev series in the curvature radius rho; on the other teeth the finite elements
+give all of it. With the free edge's normal stress zero, sigma_t = E* eps_t(u_r) + sigma_s,tt - nu* sigma_s,nn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from fem import flamant
+from fem.compliance import Cost
+from fem.elasticity import PlaneElasticity
+from fem.errors import Fault, FemError
+from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
+from fem.flexibility import CORNER_CLEARANCE
+from fem.line_load import LineLoads, flank_points, line_loads
+from fem.ring import Ring, ring_of
+
+if TYPE_CHECKING:
+    from gears import GearPair, ToothProfile
+    from meshes import Sizes
+
+__all__ = ["FilletInfluence", "Fillets", "fillet_influence", "fillets"]
+
+Array = NDArray[np.float64]
+
+LOADS, DEGREE = 24, 14
+
+COARSEST, HALVINGS = 0.16, 3
+"""Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
+may halve it."""
+
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, eq=False)
+class FilletInfluence:
+    """Tangential stress on the fillets of one gear per unit line load on its left flank.
+
+    Attributes
+    ----------
+    profile : gears.ToothProfile
+    law : PlaneElasticity
+    line : FilletLine
+        Sample points of a fillet.
+    rho_range : (float, float)
+        Curvature radii of loads [m].
+    series : mapping of int to (degree + 1, 2, n) array
+        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
+        the stress [1/m] at the samples of its left (index 0) and right fillet; without the half-plane's part
+        on tooth 0.
+    noise : float
+        Largest distance of a sample from its fit [1/m].
+    """
+
+    profile: ToothProfile
+    law: PlaneElasticity
+    line: FilletLine
+    rho_range: tuple[float, float]
+    series: Mapping[int, Array]
+    noise: float
+
+    def stress(self, tooth: int, rho: Array) -> Array:
+        """Tangential stress (loads, 2, n) [Pa per N/m] on a tooth's left and right fillet.
+
+        Parameters
+        ----------
+        tooth : int
+            Anticlockwise from the loaded one.
+        rho : (loads,) array
+            Curvature radius at each load [m]; beyond the range it is moved to its end.
+        """
+        low, high = self.rho_range
+        rho = np.clip(rho, low, high)
+        if tooth not in self.series:
+            return np.zeros((len(rho), 2, len(self.line.arc)))
+        unit = (2 * rho - low - high) / (high - low)
+        stress = np.moveaxis(chebyshev.chebval(unit, self.series[tooth]), -1, 0)
+        return np.asarray(stress + self._half_plane(rho) if tooth == 0 else stress)
+
+    def _half_plane(self, rho: Array) -> Array:
+        """Flamant's part E* eps_t on the loaded tooth, (loads, 2, n)."""
+        mirror = np.array([-1.0, 1.0])
+        loads, inward = self.profile.involute(rho) * mirror, -self.profile.normal(rho) * mirror
+        parts = [
+            flamant_along(loads, inward, *self.line.side(side == "left"), self.law.plane_poisson)
+            for side in SIDES
+        ]
+        return np.stack(parts, axis=1)
+
+
+def flamant_along(
+    loads: Array, inward: Array, points: Array, tangents: Array, normals: Array, poisson: float
+) -> Array:
+    """sigma_tt - nu* sigma_nn of unit line loads on half-planes at points of a curve, (loads, points) [1/m]."""
+    away = points[None] - loads[:, None]
+    along = np.einsum("lpa,la->lp", away, inward)
+    r2 = np.sum(away**2, axis=2)
+    t2 = np.einsum("lpa,pa->lp", away, tangents) ** 2
+    n2 = np.einsum("lpa,pa->lp", away, normals) ** 2
+    # a load on the sample itself, at the foot of an involute that begins there, acts on the flank only
+    safe = np.where(r2 > 0, r2, 1.0)
+    return np.asarray(np.where(r2 > 0, -2 * along * (t2 - poisson * n2) / (np.pi * safe**2), 0.0))
+
+
+def fillet_influence(ring: Ring, profile: ToothProfile, rho_low: float, reach: int) -> FilletInfluence:
+    """Load the left flank at Chebyshev places, all with the ring's factorisation, and fit.
+
+    Parameters
+    ----------
+    ring : Ring
+    profile : gears.ToothProfile
+        That the ring's mesh was made of.
+    rho_low : float
+        Smallest curvature radius that contact reaches [m].
+    reach : int
+        Teeth on either side of the loaded one.
+    """
+    rho_form, rho_end = profile.flank_rho
+    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
+    unit = np.cos(np.pi * (np.arange(LOADS) + 0.5) / LOADS)
+    unit /= unit[0]  # stretched to include both ends
+    loads = line_loads(ring, flank_points(ring.mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit))
+    line = fillet_line(profile)
+    recover = [fillet_stress_matrix(ring.mesh, profile, line, ring.law, side) for side in SIDES]
+    touched = np.unique(np.concatenate([matrix.indices for matrix in recover]))
+    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    noise, series = 0.0, {}
+    for tooth in range(-reach, reach + 1):
+        moved = _displacements(ring, loads, tooth, touched)
+        stress = np.stack([(matrix[:, touched] @ moved).T for matrix in recover], axis=1)
+        series[tooth] = np.einsum("dl,lsn->dsn", fit, stress)
+        fitted = np.moveaxis(chebyshev.chebval(unit, series[tooth]), -1, 0)
+        noise = max(noise, float(np.max(np.abs(fitted - stress))))
+    return FilletInfluence(profile, ring.law, line, (low, high), series, noise)
+
+
+def _displacements(ring: Ring, loads: LineLoads, tooth: int, unknowns: NDArray[np.int64]) -> Array:
+    """Displacements (unknowns, loads) of a tooth's sector, without the half-plane's part on tooth 0."""
+    cuts = np.asarray(ring.polar @ ring.interfaces(loads.cut_force, tooth))
+    moved = np.empty((len(unknowns), cuts.shape[1]))
+    place = np.full(ring.mesh.unknowns, -1)
+    place[ring.inner] = np.arange(len(ring.inner))
+    inside = place[unknowns] >= 0
+    rows = place[unknowns[inside]]
+    moved[inside] = -ring.inner_by_cut[rows] @ cuts + (loads.own_inner[rows] if tooth == 0 else 0.0)
+    place[ring.cut] = np.arange(len(ring.cut))
+    border = unknowns[~inside]
+    moved[~inside] = cuts[place[border]]
+    if tooth == 0 and len(border):
+        nodes = ring.mesh.points[border // 2]
+        for i, (load, inward) in enumerate(zip(loads.at.points, loads.at.inward, strict=True)):
+            u = flamant.displacement(nodes, load, inward, ring.law, ring.mesh.module)
+            moved[~inside, i] -= u[np.arange(len(border)), border % 2]
+    return moved
+
+
+@dataclass(frozen=True, eq=False)
+class Fillets:
+    """Influence of loads on the fillets of both gears, and how exact it is.
+
+    Attributes
+    ----------
+    pair : gears.GearPair
+    plane : {"strain", "stress"}
+    pinion, wheel : FilletInfluence
+    fillet_edge : float
+        Edge length on the fillets of the mesh in use [modules].
+    error : float
+        Estimated relative error of the greatest stress on a fillet, from two nested meshes.
+    cost : Cost
+    converged : bool
+    message : str
+    """
+
+    pair: GearPair
+    plane: str
+    pinion: FilletInfluence
+    wheel: FilletInfluence
+    fillet_edge: float
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+
+def fillets(
+    pair: GearPair, tolerance: float = 0.005, plane: str = "strain", fillet_edge: float | None = None
+) -> Fillets:
+    """Influence functions of both gears on a mesh whose fillets are as fine as the tolerance asks for.
+
+    Each mesh is solved with its own refinement (every triangle in four). The error is taken as half of the
+    largest difference of the greatest stress, over loads along the flank and both fillets (the observed order
+    of a maximum that hops between elements is 1.5 to 2.5), plus what the Chebyshev fit leaves over. At the ends
+    of a fillet, where its curvature jumps, the stress itself is several times less exact than its maximum.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    tolerance : float
+        Relative, on the greatest stress along a fillet.
+    plane : {"strain", "stress"}
+    fillet_edge : float, optional
+        Edge length on the fillets before the refinement, in modules; fixes the mesh instead of the tolerance.
+
+    Raises
+    ------
+    FemError
+        Tolerance, plane or edge length that make no sense.
+    """
+    faults = []
+    if not (np.isfinite(tolerance) and tolerance > 0):
+        faults.append(Fault("tolerance", f"{tolerance!r}", "finite and > 0", "0.005 is 0.5 %"))
+    if plane not in ("strain", "stress"):
+        faults.append(Fault("plane", f"{plane!r}", '"strain" or "stress"', "wide gears: strain"))
+    if fillet_edge is not None and not 0.002 <= fillet_edge <= 1.0:
+        faults.append(Fault("fillet_edge", f"{fillet_edge!r}", "0.002 to 1 (modules)", "leave it out"))
+    if faults:
+        raise FemError(*faults)
+    began = perf_counter()
+    edge = COARSEST if fillet_edge is None else fillet_edge
+    smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
+    results = []
+    unknowns = annulus = 0
+    parts: dict[str, float] = {}
+    starts = pair.points.A, pair.line_of_action - pair.points.E
+    for profile, material, start in zip(pair.teeth_profiles, pair.materials, starts, strict=True):
+        law = PlaneElasticity.of(material, plane)
+        gear_edge = edge
+        while True:
+            found, error, ring = _two_meshes(profile, law, gear_edge, start, ceil(pair.contact_ratio) + 2)
+            for stage, seconds in ring.seconds.items():
+                parts[stage] = parts.get(stage, 0.0) + seconds
+            if error <= tolerance or gear_edge <= smallest:
+                break
+            gear_edge *= 0.5
+        results.append((found, error, gear_edge))
+        unknowns += len(ring.inner) + len(ring.cut)
+        annulus += ring.unknowns
+    error = max(result[1] for result in results)
+    converged = error <= tolerance or fillet_edge is not None
+    finest = min(result[2] for result in results)
+    message = f"edges of {0.5 * finest:.3g} modules on the fillets, error {error:.1e}"
+    if not converged:
+        message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
+    cost = Cost(perf_counter() - began, unknowns, 0, annulus, parts)
+    return Fillets(
+        pair, plane, results[0][0], results[1][0], 0.5 * finest, error, cost, converged, message
+    )
+
+
+def _two_meshes(
+    profile: ToothProfile, law: PlaneElasticity, edge: float, rho_low: float, reach: int
+) -> tuple[FilletInfluence, float, Ring]:
+    """Influence on a refined mesh, its error against the mesh it refines, and its ring."""
+    from meshes import mesh_sector, refined
+
+    coarse_mesh = mesh_sector(profile, _sizes(edge))
+    coarse = fillet_influence(ring_of(coarse_mesh, law), profile, rho_low, 0)
+    ring = ring_of(refined(coarse_mesh), law)
+    fine = fillet_influence(ring, profile, rho_low, reach)
+    rho = np.linspace(*fine.rho_range, 15)
+    greatest, other = (np.max(np.abs(found.stress(0, rho)), axis=2) for found in (fine, coarse))
+    change = np.max(np.abs(other / greatest - 1))
+    return fine, 0.5 * float(change) + fine.noise / float(np.max(greatest)), ring
+
+
+def _sizes(edge: float) -> Sizes:
+    """Fine on the fillets alone; a load near the tip needs no fine corner for what the root feels."""
+    from meshes import Sizes
+
+    return Sizes(fillet=edge, root=edge, flank=0.25, corner=0.1)
