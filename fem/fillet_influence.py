@@ -255,9 +255,7 @@ def fillets(
     if not converged:
         message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
     cost = Cost(perf_counter() - began, unknowns, 0, annulus, parts)
-    return Fillets(
-        pair, plane, results[0][0], results[1][0], 0.5 * finest, error, cost, converged, message
-    )
+    return Fillets(pair, plane, results[0][0], results[1][0], 0.5 * finest, error, cost, converged, message)
 
 
 def _two_meshes(

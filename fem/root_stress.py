@@ -232,7 +232,8 @@ def root_stress(
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = perf_counter()
     both = [
-        _gear_stress(pair, cycle, influence, gear) for gear, influence in enumerate((roots.pinion, roots.wheel))
+        _gear_stress(pair, cycle, influence, gear)
+        for gear, influence in enumerate((roots.pinion, roots.wheel))
     ]
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": perf_counter() - ready}
     cost = Cost(perf_counter() - began, roots.cost.unknowns, 0, roots.cost.annulus_unknowns, parts)
