@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem.compliance import Compliance, mesh_and_factor
+from fem.compliance import Compliance
 from fem.contact import MeshCycle
-from fem.fields import loaded_fields
+from fem.contact_forces import ContactForces, contact_forces
+from fem.fields import GearField, draw_gears, loaded_fields
+from fem.vtk_file import VERTEX, Grid, write_grid, write_series
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -19,6 +21,8 @@ __all__ = ["write_vtk_series"]
 
 PICTURE_REFINEMENTS = 1
 """Refinements of the mesh that is drawn: fields need no more, and files stay small."""
+
+COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
 
 
 def write_vtk_series(
@@ -29,7 +33,10 @@ def write_vtk_series(
     positions: Sequence[int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Write the fields of both gears as ``vtk/*.vtu`` and ``mesh_cycle.pvd``.
+    """Write the fields of both gears and the contact forces as ``vtk/*.vtu`` and ``mesh_cycle.pvd``.
+
+    The parts of the series are ``pinion``, ``wheel`` and ``contacts``: points with the vectors ``force_N`` for
+    a glyph filter, each contact once for each gear.
 
     Parameters
     ----------
@@ -49,24 +56,44 @@ def write_vtk_series(
     Path
         The ``.pvd``; its time is the way from A over the base pitch.
     """
-    from meshes.files import write_pvd, write_vtu
-
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
-    level = min(bodies.refinements, PICTURE_REFINEMENTS)
-    rings, _ = mesh_and_factor(pair, bodies.plane, bodies.sizes, level)
-    steps: list[tuple[float, list[Path]]] = []
+    drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
+    steps: list[tuple[float, dict[str, Path]]] = []
     for done, row in enumerate(rows):
-        files = []
-        both = loaded_fields(pair, cycle, row, bodies, rings)
-        for name, gear, field in zip(("pinion", "wheel"), (0, 1), both, strict=True):
-            ids = {
-                "tooth": field.tooth.astype(np.int32),
-                "gear": np.full(len(field.tooth), gear, dtype=np.int32),
-            }
-            path = folder / "vtk" / f"{name}_{row:04d}.vtu"
-            files.append(write_vtu(path, field.points, field.cells, field.point_data, ids))
+        pinion, wheel = loaded_fields(pair, cycle, row, bodies, drawings)
+        grids = {
+            "pinion": _gear_grid(pinion, 0),
+            "wheel": _gear_grid(wheel, 1),
+            "contacts": _contact_grid(contact_forces(pair, cycle, row)),
+        }
+        files = {
+            name: write_grid(folder / "vtk" / f"{name}_{row:04d}.vtu", grid) for name, grid in grids.items()
+        }
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
-    return write_pvd(folder / "mesh_cycle.pvd", steps)
+    return write_series(folder / "mesh_cycle.pvd", steps)
+
+
+def _gear_grid(field: GearField, gear: int) -> Grid:
+    # the principal direction follows from the stress, and would add an eighth to the file
+    point_data = {name: values for name, values in field.point_data.items() if name != "principal_direction"}
+    cell_data = {**field.cell_data, "gear": np.full(len(field.cells), gear)}
+    return Grid(
+        field.points,
+        field.cells,
+        point_data=point_data,
+        cell_data=cell_data,
+        components=COMPONENTS,
+        rounded=point_data.keys() - {"displacement_m"},
+        scalars="von_mises_Pa",
+        vectors="displacement_m",
+    )
+
+
+def _contact_grid(contacts: ContactForces) -> Grid:
+    vertices = np.arange(len(contacts.points))[:, None]
+    return Grid(
+        contacts.points, vertices, VERTEX, contacts.point_data, scalars="pressure_Pa", vectors="force_N"
+    )

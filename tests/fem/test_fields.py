@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import fem
-from fem.compliance import mesh_and_factor
-from fem.fields import loaded_fields
+from fem.fields import draw_gears, loaded_fields
 from fem.flamant import hertz_half_width
 from fem.vtk import write_vtk_series
-from meshes import Sizes
 
 
 @pytest.fixture(scope="module")
@@ -22,8 +20,8 @@ def cycle(article_pair, article_bodies):
 
 
 @pytest.fixture(scope="module")
-def rings(article_pair):
-    return mesh_and_factor(article_pair, "strain", Sizes(), 1)[0]
+def rings(article_pair, article_bodies):
+    return draw_gears(article_pair, article_bodies, 1)
 
 
 ROWS = (2, 35)  # two pairs in contact, and one
