@@ -26,7 +26,7 @@ LEVEL = 1
 """zlib's fastest: more effort saves no more than some per cent of digits that are nearly random."""
 
 DROPPED = 12
-"""Bits of the mantissa that fields named in ``Grid.rounded`` lose: 12 significant ones stay (1.2e-4 of the value),
+"""Bits of the mantissa that fields named in ``Grid.rounded`` lose: 12 significant ones stay (2.5e-4 of the value),
 which is finer than the fields are exact and packs far better."""
 
 _TYPES = {"f4": "Float32", "i4": "Int32", "u1": "UInt8"}
@@ -49,7 +49,7 @@ class Grid:
     components : mapping of str to sequence of str
         Names of the components of a field with several.
     rounded : collection of str
-        Fields that are stored with 12 significant bits, to 1.2e-4.
+        Fields that are stored with 12 significant bits, to 2.5e-4.
     scalars, vectors : str or None
         Fields that a viewer shows first.
     """
