@@ -1,4 +1,4 @@
-"""Elasticity of gear pairs by finite elements: flexibility of flanks, loaded tooth contact, fields.
+"""Elasticity of gear pairs by finite elements: flexibility, loaded tooth contact, root stress, fields.
 
 Nothing heavy is imported before something is computed.
 """
@@ -6,18 +6,24 @@ Nothing heavy is imported before something is computed.
 from fem.compliance import Compliance, Cost, compliance, single_pair_stiffness
 from fem.contact import MeshCycle, mesh_cycle, torque_sweep
 from fem.errors import Fault, FemError
+from fem.fillet_influence import Fillets, fillets
 from fem.local_law import Film
 from fem.meshing import unloaded_transmission_error
+from fem.root_stress import RootStress, root_stress
 
 __all__ = [
     "Compliance",
     "Cost",
     "Fault",
     "FemError",
+    "Fillets",
     "Film",
     "MeshCycle",
+    "RootStress",
     "compliance",
+    "fillets",
     "mesh_cycle",
+    "root_stress",
     "single_pair_stiffness",
     "torque_sweep",
     "unloaded_transmission_error",
