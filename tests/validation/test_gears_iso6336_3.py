@@ -128,6 +128,7 @@ def test_same_for_every_module_and_for_turned_pairs():
     assert one.stresses == pytest.approx(back.stresses[::-1], rel=1e-12)
 
 
+@pytest.mark.filterwarnings("ignore:pinion. the rim:gears.GeometryWarning")
 def test_ranges_are_told_and_nonsense_is_refused():
     with pytest.warns(ModelRangeWarning, match="contact ratio"):
         iso6336_3(pair_of(40, 0.0, BasicRack(h_aP=1.35, h_fP=1.6, rho_fP=0.25)), 1000.0)
