@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import ceil
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,8 @@ class Compliance:
     converged : bool
         Whether ``error`` meets the tolerance asked for.
     message : str
+    kept_rings : (Ring, Ring) or None
+        The factorised gears where this process computed them; dropped on pickling (see ``rings``).
     """
 
     pair: GearPair
@@ -93,6 +95,17 @@ class Compliance:
     cost: Cost
     converged: bool
     message: str
+    kept_rings: tuple[Ring, Ring] | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
+        return {**self.__dict__, "kept_rings": None}
+
+    def rings(self) -> tuple[Ring, Ring]:
+        """Meshed and factorised gears: those that were kept, or computed anew from the same mesh sizes."""
+        if self.kept_rings is not None:
+            return self.kept_rings
+        return mesh_and_factor(self.pair, self.plane, self.sizes, self.refinements)[0]
 
     @property
     def hub_windup(self) -> tuple[float, float]:
@@ -254,7 +267,7 @@ def compliance(
     parts["tips"] = perf_counter() - started
     cost = Cost(perf_counter() - began, unknowns, 0, annuli, parts)
     return Compliance(
-        pair, plane, *fine, (first, second), level, sizes, reach, error, cost, converged, message
+        pair, plane, *fine, (first, second), level, sizes, reach, error, cost, converged, message, rings
     )
 
 

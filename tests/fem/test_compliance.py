@@ -125,6 +125,15 @@ def test_results_travel_between_processes(article_pair, article_bodies):
     np.testing.assert_array_equal(back.own(rho1), article_bodies.own(rho1))
 
 
+def test_factorised_gears_are_kept_in_the_process_and_come_back_after_travel(article_bodies):
+    assert article_bodies.rings() is article_bodies.rings()
+    back = pickle.loads(pickle.dumps(article_bodies))
+    assert back.kept_rings is None
+    for kept, again in zip(article_bodies.rings(), back.rings(), strict=True):
+        np.testing.assert_array_equal(again.mesh.points, kept.mesh.points)
+        np.testing.assert_array_equal(again.schur, kept.schur)
+
+
 def test_all_faults_at_once(article_pair):
     with pytest.raises(fem.FemError) as caught:
         fem.compliance(article_pair, tolerance=0.0, plane="shell", refinements=9)
