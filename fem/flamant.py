@@ -26,13 +26,21 @@ Array = NDArray[np.float64]
 def _frame(points: Array, load: Array, inward: Array) -> tuple[Array, Array, Array]:
     """Components along the load and across it, and the distance."""
     away = points - load
-    along = away @ inward
-    across = away @ np.array([-inward[1], inward[0]])
+    along = np.einsum("...a,...a->...", away, inward)
+    across = np.einsum("...a,...a->...", away, _turned(inward))
     return along, across, np.hypot(along, across)
 
 
+def _turned(direction: Array) -> Array:
+    """Directions (..., 2) a quarter turn anticlockwise."""
+    return np.stack([-direction[..., 1], direction[..., 0]], axis=-1)
+
+
 def displacement(points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float) -> Array:
-    """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself."""
+    """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself.
+
+    One load for all points, or a load and its direction (n, 2) for each.
+    """
     along, across, r = _frame(points, load, inward)
     theta = np.arctan2(across, along)
     factor = 2 / (np.pi * law.plane_modulus)
@@ -41,8 +49,7 @@ def displacement(points: Array, load: Array, inward: Array, law: PlaneElasticity
     radial = -factor * (log * cos + half_minus * theta * sin)
     turning = factor * (log * sin + half_plus * sin - half_minus * theta * cos)
     u_along, u_across = radial * cos - turning * sin, radial * sin + turning * cos
-    side = np.array([-inward[1], inward[0]])
-    moved: Array = np.multiply.outer(u_along, inward) + np.multiply.outer(u_across, side)
+    moved: Array = u_along[..., None] * inward + u_across[..., None] * _turned(inward)
     return moved
 
 

@@ -29,14 +29,14 @@ if TYPE_CHECKING:
     from gears import ToothProfile
     from meshes import SectorMesh
 
-__all__ = ["GearFlexibility", "corner_logarithm", "flexibility", "hub_windup"]
+__all__ = ["FlankSamples", "GearFlexibility", "corner_logarithm", "flexibility", "hub_windup", "sampled"]
 
 Array = NDArray[np.float64]
 
 CORNER_CLEARANCE = 0.01
 """Loads nearer to the tip corner than this (in modules of rho) are placed at this distance."""
 
-SAMPLES, DEGREE, CROSS_DEGREE = 28, 11, 8
+CROSS_DEGREE = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +60,8 @@ class GearFlexibility:
         For the k-th tooth on the side of growing rho: coefficients over (load's rho, point's rho).
     hub_windup : float
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
-    noise : float
-        Largest distance of a sample from its fit [m per N/m].
+    fit_error : float
+        What the series leave out, estimated from the decay of their coefficients [m per N/m].
     """
 
     rho_range: tuple[float, float]
@@ -73,7 +73,7 @@ class GearFlexibility:
     own_series: Array
     cross_series: Mapping[int, Array]
     hub_windup: float
-    noise: float
+    fit_error: float
 
     def _unit(self, rho: Array) -> Array:
         low, high = self.rho_range
@@ -140,37 +140,64 @@ def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: 
     return base_radius**2 / (4 * np.pi * law.shear_modulus) * (1 / bore_radius**2 - 1 / root_radius**2)
 
 
+@dataclass(frozen=True, eq=False)
+class FlankSamples:
+    """Displacements by unit line loads at some places of a flank.
+
+    Attributes
+    ----------
+    rho : (n,) array
+        Curvature radii of the loads, growing [m].
+    own : (n,) array
+        u_r at each load [m per N/m].
+    cross : (reach, n, n) array
+        Displacement at the same places of the k-th tooth on the side of growing rho (rows: load).
+    """
+
+    rho: Array
+    own: Array
+    cross: Array
+
+
+def sample_places(profile: ToothProfile, rho_low: float, count: int) -> Array:
+    """Chebyshev points in rho, stretched to include both ends of the flank that contact reaches (count,) [m]."""
+    rho_form, rho_end = profile.flank_rho
+    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
+    unit = -np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return np.asarray(np.clip(low + 0.5 * (high - low) * (1 - unit / unit[0]), low, high))
+
+
+def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> FlankSamples:
+    """Load a flank at curvature radii ``rho`` [m] and take the displacements there and on ``reach`` teeth."""
+    loads = line_loads(ring, flank_points(ring.mesh, rho, flank))
+    forward = 1 if flank == "left" else -1
+    cross = [loads.on_neighbour(forward * tooth).T for tooth in range(1, reach + 1)]
+    return FlankSamples(rho, loads.regular_at_load(), np.array(cross))
+
+
 def flexibility(
-    ring: Ring, profile: ToothProfile, rho_low: float, reach: int = 1, flank: str = "left"
+    ring: Ring, profile: ToothProfile, samples: FlankSamples, flank: str = "left"
 ) -> GearFlexibility:
-    """Sample the flank with unit line loads and fit.
+    """Interpolate samples at ``sample_places``.
 
     Parameters
     ----------
     ring : Ring
     profile : gears.ToothProfile
-    rho_low : float
-        Smallest curvature radius that contact reaches [m].
-    reach : int
-        Neighbouring teeth for which cross terms are wanted.
+    samples : FlankSamples
     flank : {"left", "right"}
     """
-    rho_form, rho_end = profile.flank_rho
-    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
-    unit = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
-    unit /= unit[0]  # Chebyshev points stretched to include both ends
-    rho = 0.5 * (low + high) + 0.5 * (high - low) * unit
-    at = flank_points(ring.mesh, rho, flank)
-    loads = line_loads(ring, at)
+    rho, rho_end = samples.rho, profile.flank_rho[1]
+    low, high = float(rho[0]), float(rho[-1])
+    unit = (2 * rho - low - high) / (high - low)
     _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
-    smooth = loads.regular_at_load() - logarithm * np.log(away / profile.module)
-    # least squares of low degree: u_r is smooth, what is left is the mesh's own small ripple
-    own = np.asarray(chebyshev.chebfit(unit, smooth, DEGREE), dtype=float)
-    noise = float(np.max(np.abs(chebyshev.chebval(unit, own) - smooth)))
-    fit = np.linalg.pinv(chebyshev.chebvander(unit, CROSS_DEGREE))
-    forward = 1 if flank == "left" else -1
-    cross = {tooth: fit @ loads.on_tooth(forward * tooth, at).T @ fit.T for tooth in range(1, reach + 1)}
+    smooth = samples.own - logarithm * np.log(away / profile.module)
+    own = np.asarray(np.linalg.solve(chebyshev.chebvander(unit, len(rho) - 1), smooth), dtype=float)
+    basis = chebyshev.chebvander(unit, min(CROSS_DEGREE, len(rho) - 1))
+    fit = np.linalg.pinv(basis)
+    cross = fit @ samples.cross @ fit.T
+    remainder = float(np.max(np.abs(basis @ cross @ basis.T - samples.cross)))
     return GearFlexibility(
         (low, high),
         rho_end,
@@ -179,7 +206,15 @@ def flexibility(
         ring.law,
         logarithm,
         own,
-        dict(cross),
+        {tooth + 1: series for tooth, series in enumerate(cross)},
         hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
-        noise,
+        max(_tail(own), remainder),
     )
+
+
+def _tail(series: Array) -> float:
+    """Size of what follows the last coefficients, were they to go on as they decay; twice, for aliasing."""
+    size = np.abs(series)
+    last, before = float(np.max(size[-3:])), float(np.max(size[-9:-6]))
+    ratio = float(min((last / max(before, 1e-300)) ** (1 / 6), 0.9))
+    return 2 * last * ratio / (1 - ratio)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem import flamant
+from fem.edge_work import edge_points, traction_integrals
 from fem.errors import Fault, FemError
 from fem.ring import Ring
 from meshes import SectorMesh
@@ -23,9 +24,6 @@ __all__ = ["FlankPoints", "LineLoads", "flank_points", "line_loads"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-
-_GAUSS, _GAUSS_WEIGHT = np.polynomial.legendre.leggauss(5)
-_GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +35,7 @@ class FlankPoints:
     rho : (n,) array
         Curvature radius of the involute there [m].
     points, inward : (n, 2) arrays
-        Position [m] and unit normal into the material, of the element's edge.
+        Position on the element's edge [m], and the involute's unit normal into the material.
     nodes, weights : (n, 3) arrays
         Nodes of the edge and values of their shape functions.
     """
@@ -58,18 +56,6 @@ class FlankPoints:
         """Component along the inward normal of nodal displacements (nodes, 2, ...), at every point."""
         there = np.einsum("nk,nka...->na...", self.weights, displacement[self.nodes])
         return np.asarray(np.einsum("na,na...->n...", self.inward, there))
-
-
-def _edge_points(points: Array, edges: Index, t: Array) -> tuple[Array, Array, Array]:
-    """Positions, derivatives by t and shape values on quadratic edges (first, last, middle)."""
-    weights = np.stack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)], axis=-1)
-    slopes = np.stack([4 * t - 3, 4 * t - 1, 4 - 8 * t], axis=-1)
-    corners = points[edges]
-    return (
-        np.einsum("...k,...ka->...a", weights, corners),
-        np.einsum("...k,...ka->...a", slopes, corners),
-        weights,
-    )
 
 
 def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoints:
@@ -99,9 +85,12 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     which = order[np.clip(np.searchsorted(t.min(axis=1)[order], rho, side="right") - 1, 0, len(t) - 1)]
     place = rho**2 / (2 * mesh.base_radius)
     local = (place - arc[which, 0]) / (arc[which, 1] - arc[which, 0])
-    points, along, weights = _edge_points(mesh.points, edges[which], local)
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    inward = np.stack([-along[:, 1], along[:, 0]], axis=1)  # the material is on the left hand
+    points, _, weights = edge_points(mesh.points, edges[which], local)
+    # the involute's own normal touches the base circle; that of the element's edge errs by O(h^2)
+    exact = mesh.curves[f"flank_{flank}"].at(place)
+    hand = np.array([1.0, -1.0]) if flank == "left" else np.array([-1.0, 1.0])
+    inward = mesh.base_radius * hand * exact[:, ::-1] - rho[:, None] * exact
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True)
     return FlankPoints(rho, points, inward, edges[which], weights)
 
 
@@ -117,19 +106,25 @@ class LineLoads:
         Forces that the loaded sector exerts on its cuts, polar components.
     own_inner : (inner, loads) array
         u_r of the inner unknowns with the cuts held [m per N/m].
+    held : (loads,) array
+        u_r at the load with the cuts held [m per N/m].
     """
 
     ring: Ring
     at: FlankPoints
     cut_force: Array
     own_inner: Array
+    held: Array
 
     def regular_at_load(self) -> Array:
-        """u_r along the inward normal at each load itself [m per N/m]: (loads,)."""
-        full = _nodal(self.ring, self._inner(0))
-        own = full[self.at.nodes, :, np.arange(len(self.at.rho))[:, None]]  # (loads, 3, 2)
-        regular: Array = np.einsum("lk,lka,la->l", self.at.weights, own, self.at.inward)
-        return regular
+        """u_r along each load at the load itself [m per N/m]: (loads,)."""
+        return np.asarray(
+            self.held + np.sum(self.cut_force * self.ring.interfaces(self.cut_force, 0), axis=0)
+        )
+
+    def on_neighbour(self, tooth: int) -> Array:
+        """Displacement of the loads' places on another tooth, along their loads: (points, loads)."""
+        return np.asarray(self.cut_force.T @ self.ring.interfaces(self.cut_force, tooth))
 
     def on_tooth(self, tooth: int, where: FlankPoints) -> Array:
         """Displacement along the inward normal at points of another tooth's flank: (points, loads).
@@ -163,51 +158,33 @@ def _nodal(ring: Ring, inner: Array) -> Array:
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     """Solve for unit line loads at flank points, all with the ring's factorisation."""
     mesh, loads = ring.mesh, len(at.rho)
-    edges = np.concatenate([facets for name, facets in mesh.facets.items() if name != "bore"])
-    force = np.empty((mesh.unknowns, loads))
-    cut_nodes, hub_nodes = ring.cut[::2] // 2, ring.hub[::2] // 2
-    on_cut, on_hub = np.empty((len(ring.cut), loads)), np.empty((len(ring.hub), loads))
-    for i in range(loads):
-        load = at.points[i], at.inward[i]
-        force[:, i] = -_traction_forces(mesh.points, edges, *load)
-        on_cut[:, i] = flamant.displacement(mesh.points[cut_nodes], *load, ring.law, mesh.module).ravel()
-        on_hub[:, i] = flamant.displacement(mesh.points[hub_nodes], *load, ring.law, mesh.module).ravel()
-    inner = force[ring.inner] + ring.K_ic @ on_cut + ring.K_ih @ on_hub
-    on_cuts = force[ring.cut] + ring.K_cc @ on_cut + ring.K_ch @ on_hub - ring.inner_by_cut.T @ inner
-    return LineLoads(ring, at, ring.polar.T @ on_cuts, ring.factor.solve(inner))
+    sides = [facets for name, facets in mesh.facets.items() if name.startswith("side")]
+    free = [f for name, f in mesh.facets.items() if name != "bore" and not name.startswith("side")]
+    on_free, lost = _integrals(ring, np.concatenate(free), at)
+    on_sides, _ = _integrals(ring, np.concatenate(sides), at)
+    _, gained = _integrals(ring, mesh.facets["bore"], at)
+    force = -(on_free + on_sides)
+
+    def singular(unknowns: Index) -> Array:
+        points = np.repeat(mesh.points[unknowns[::2] // 2], loads, axis=0)
+        source, inward = (
+            np.tile(at.points, (len(unknowns) // 2, 1)),
+            np.tile(at.inward, (len(unknowns) // 2, 1)),
+        )
+        moved = flamant.displacement(points, source, inward, ring.law, mesh.module)
+        return moved.reshape(-1, loads, 2).swapaxes(1, 2).reshape(-1, loads)
+
+    cut, hub = singular(ring.cut), singular(ring.hub)
+    inner = force[ring.inner] + ring.K_ic @ cut + ring.K_ih @ hub
+    pull_cut, pull_hub = ring.K_cc @ cut + ring.K_ch @ hub, ring.K_ch.T @ cut + ring.K_hh @ hub
+    on_cut = force[ring.cut] + pull_cut - ring.inner_by_cut.T @ inner
+    solved = ring.factor.solve(inner)
+    known = gained - lost + np.sum(inner * solved, axis=0)
+    for values, pulls, unknowns in ((cut, pull_cut, ring.cut), (hub, pull_hub, ring.hub)):
+        known -= np.sum(values * (pulls + force[unknowns] - on_free[unknowns]), axis=0)
+    return LineLoads(ring, at, ring.polar.T @ on_cut, solved, known)
 
 
-def _traction_forces(points: Array, edges: Index, load: Array, inward: Array) -> Array:
-    """Consistent nodal forces (2 nodes,) of Flamant's tractions on the edges.
-
-    Edges near the load are cut dyadically towards their nearest point: the tractions change over the
-    distance from the load, which near the tip corner is much less than an edge.
-    """
-    ends = points[edges[:, :2]]
-    chord = ends[:, 1] - ends[:, 0]
-    length2 = np.einsum("ea,ea->e", chord, chord)
-    nearest = np.clip(np.einsum("ea,ea->e", load - ends[:, 0], chord) / length2, 0.0, 1.0)
-    gap2 = np.sum((ends[:, 0] + nearest[:, None] * chord - load) ** 2, axis=1)
-    near = gap2 < 4 * length2
-    far = np.flatnonzero(~near)
-    halves = 0.5 ** np.arange(14)
-    halves[-1] = 0.0
-    close = np.flatnonzero(near)
-    centre = nearest[close, None]
-    lower = np.concatenate([centre - centre * halves, centre + (1 - centre) * halves[1:][::-1]], axis=1)
-    upper = np.concatenate([lower[:, 1:], np.ones((len(close), 1))], axis=1)
-    width = upper - lower
-    t = (lower[..., None] + width[..., None] * _GAUSS).reshape(len(close), -1)
-    w = (width[..., None] * _GAUSS_WEIGHT).reshape(len(close), -1)
-    forces = np.zeros((len(points), 2))
-    for some, at, weight in (
-        (far, np.broadcast_to(_GAUSS, (len(far), 5)), np.broadcast_to(_GAUSS_WEIGHT, (len(far), 5))),
-        (close, t, w),
-    ):
-        corners = np.broadcast_to(edges[some][:, None, :], (*at.shape, 3))
-        place, along, values = _edge_points(points, corners, at)
-        normal = np.stack([along[..., 1], -along[..., 0]], axis=-1)  # outward, times ds/dt
-        pull = flamant.traction(place.reshape(-1, 2), normal.reshape(-1, 2), load, inward)
-        lumps = np.einsum("eqk,eqa,eq->eka", values, pull.reshape(place.shape), weight)
-        np.add.at(forces, edges[some], lumps)
-    return forces.ravel()
+def _integrals(ring: Ring, edges: Index, at: FlankPoints) -> tuple[Array, Array]:
+    mesh = ring.mesh
+    return traction_integrals(mesh.points, edges, at.points, at.inward, ring.law, mesh.module)

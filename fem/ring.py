@@ -25,9 +25,10 @@ from fem.elasticity import PlaneElasticity, stiffness_matrix
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-    from meshes import SectorMesh
+    from gears import GearPair, ToothProfile
+    from meshes import SectorMesh, Sizes
 
-__all__ = ["Ring", "ring_of"]
+__all__ = ["Ring", "mesh_and_factor", "ring_of"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -45,7 +46,7 @@ class Ring:
         Unknowns (2 node + component) inside the sector, on the cuts (right ones first) and on the bore.
     factor : scipy.sparse.linalg.SuperLU
         Of the stiffness of the inner unknowns.
-    K_ic, K_ih, K_cc, K_ch : sparse matrices
+    K_ic, K_ih, K_cc, K_ch, K_hh : sparse matrices
         Blocks of the sector's stiffness matrix.
     inner_by_cut : (inner, cut) array
         K_ii^-1 K_ic: minus the inner displacements that unit displacements of the cuts cause.
@@ -69,6 +70,7 @@ class Ring:
     K_ih: csc_array
     K_cc: csc_array
     K_ch: csc_array
+    K_hh: csc_array
     inner_by_cut: Array
     polar: csc_array
     schur: Array
@@ -159,6 +161,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
         csc_array(rows[:, hub]),
         K_cc,
         csc_array(stiffness[cut][:, hub]),
+        csc_array(stiffness[hub][:, hub]),
         inner_by_cut,
         polar,
         schur,
@@ -172,3 +175,37 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
 def _unknowns(nodes: Index) -> Index:
     unknowns: Index = (2 * nodes[:, None] + np.arange(2)).ravel()
     return unknowns
+
+
+def mesh_and_factor(
+    pair: GearPair,
+    plane: str,
+    sizes: Sizes,
+    refinements: int,
+    profiles: tuple[ToothProfile, ToothProfile] | None = None,
+) -> tuple[tuple[Ring, Ring], dict[str, float]]:
+    """Mesh, assemble, factorise and condense both gears; seconds by stage.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    plane : {"strain", "stress"}
+    sizes : meshes.Sizes
+    refinements : int
+    profiles : tuple of gears.ToothProfile, optional
+        Instead of the pair's own teeth: held at other radii.
+    """
+    from time import perf_counter
+
+    from meshes import mesh_sector
+
+    rings, seconds = [], {"mesh": 0.0}
+    for profile, material in zip(profiles or pair.teeth_profiles, pair.materials, strict=True):
+        began = perf_counter()
+        mesh = mesh_sector(profile, sizes, refinements)
+        seconds["mesh"] += perf_counter() - began
+        ring = ring_of(mesh, PlaneElasticity.of(material, plane))
+        for stage, duration in ring.seconds.items():
+            seconds[stage] = seconds.get(stage, 0.0) + duration
+        rings.append(ring)
+    return (rings[0], rings[1]), seconds

@@ -44,14 +44,14 @@ class Sizes:
         Ratio of the heights of successive layers between the rim and the bore.
     """
 
-    flank: float = 0.35
-    fillet: float = 0.25
-    root: float = 0.35
-    top: float = 0.35
-    corner: float = 0.01
-    rim: float = 0.8
-    growth: float = 0.7
-    layer_growth: float = 1.35
+    flank: float = 1.0
+    fillet: float = 0.21
+    root: float = 0.3
+    top: float = 1.0
+    corner: float = 0.0135
+    rim: float = 2.0
+    growth: float = 0.69
+    layer_growth: float = 1.55
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not positive."""
@@ -66,6 +66,11 @@ class Sizes:
             )
         if faults:
             raise MeshError(*faults)
+
+    def scaled(self, factor: float) -> Sizes:
+        """Sizes of a similar mesh with all edges longer by a factor."""
+        lengths = {name: value * factor for name, value in vars(self).items() if name != "layer_growth"}
+        return Sizes(**lengths, layer_growth=self.layer_growth**factor)
 
 
 @dataclass(frozen=True)
@@ -153,13 +158,25 @@ def sector_curves(
         arc = np.maximum(np.sum(points**2, axis=-1) / profile.base_radius - profile.base_radius, 0.0) / 2
         return np.asarray(np.minimum(constant(sizes.flank)(points), np.maximum(arc, sizes.corner * m)))
 
-    def bent(points: Array) -> Array:
+    def turning(points: Array) -> Array:
         # a fillet edge turns by no more than about half a radian at its tightest place
         tangent = np.gradient(points, axis=0)
         turn = np.abs(np.gradient(np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0]))))
         radius = np.linalg.norm(tangent, axis=1) / np.maximum(turn, 1e-12)
-        limit: Array = np.minimum(sizes.fillet * m, 0.5 * sizes.fillet / 0.25 * np.maximum(radius, 0.02 * m))
+        limit: Array = sizes.fillet * np.minimum(m, 2.0 * np.maximum(radius, 0.02 * m))
         return limit
+
+    # stresses fall off from a tight fillet over its radius: lengths may only grow with the distance from it
+    tight = profile.fillet(np.linspace(0.0, 1.0, 60))
+    tightness = turning(tight)
+
+    def graded(size: Callable[[Array], Array]) -> Callable[[Array], Array]:
+        def smaller(points: Array) -> Array:
+            mirrored = np.stack([np.abs(points[..., 0]), points[..., 1]], axis=-1)
+            away = np.linalg.norm(mirrored[..., None, :] - tight, axis=-1)
+            return np.asarray(np.minimum(size(points), np.min(tightness + sizes.growth * away, axis=-1)))
+
+        return smaller
 
     def side(points: Array) -> Array:
         deep = (profile.root_radius - np.linalg.norm(points, axis=-1)) / m
@@ -168,7 +185,7 @@ def sector_curves(
 
     rho_form, rho_end = profile.flank_rho
     right: list[Curve] = [
-        Curve("side_right", bottom_radius, profile.root_radius, lambda r: polar(r, half_pitch), side)
+        Curve("side_right", bottom_radius, profile.root_radius, lambda r: polar(r, half_pitch), graded(side))
     ]
     if (half_pitch - profile.root_half_angle) * profile.root_radius > 1e-6 * m:
         right.append(
@@ -177,16 +194,16 @@ def sector_curves(
                 half_pitch,
                 profile.root_half_angle,
                 lambda angle: polar(profile.root_radius, angle),
-                constant(sizes.root),
+                graded(constant(sizes.root)),
             )
         )
-    right.append(Curve("fillet_right", 0.0, 1.0, profile.fillet, bent))
+    right.append(Curve("fillet_right", 0.0, 1.0, profile.fillet, graded(constant(sizes.fillet))))
     base2 = 2.0 * profile.base_radius
 
     def involute(arc: Array) -> Array:
         return np.asarray(profile.involute(np.sqrt(base2 * np.maximum(arc, 0.0))))
 
-    right.append(Curve("flank_right", rho_form**2 / base2, rho_end**2 / base2, involute, curved))
+    right.append(Curve("flank_right", rho_form**2 / base2, rho_end**2 / base2, involute, graded(curved)))
     if profile.flank_end_radius < profile.tip_radius * (1 - 1e-12):
         right.append(Curve("chamfer_right", 0.0, 1.0, profile.chamfer, constant(sizes.top)))
 
@@ -203,7 +220,9 @@ def sector_curves(
         lambda angle: polar(profile.tip_radius, angle),
         constant(sizes.top),
     )
-    bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m))))
+    # a rim thinner than 2.5 modules bends: its edges are shorter in proportion
+    thin = min(1.0, 0.4 * (profile.root_radius - bottom_radius) / m)
+    bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m * thin))))
     bottom = Curve(
         "bottom",
         -half_pitch,

@@ -9,8 +9,9 @@ from scipy.sparse.linalg import splu
 
 from fem import FemError
 from fem.chain import ring_of_links
+from fem.edge_work import edge_points
 from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.line_load import _edge_points, flank_points, line_loads
+from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
 from gears import Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
@@ -129,7 +130,7 @@ def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
     t, weight = 0.5 * (t + 1), 0.5 * weight
     force = np.zeros((len(gear.points), 2))
     for edge, (start, end) in zip(edges[near], arcs[near], strict=True):
-        _, along, shape = _edge_points(gear.points, np.broadcast_to(edge, (60, 3)), t)
+        _, along, shape = edge_points(gear.points, np.broadcast_to(edge, (60, 3)), t)
         off = start + t * (end - start) - middle
         pressure = 2 / (np.pi * a) * np.sqrt(np.maximum(1 - (off / a) ** 2, 0.0))
         inward = np.stack([-along[:, 1], along[:, 0]], axis=1)

@@ -1,0 +1,213 @@
+"""Everything of a pair's elasticity that does not depend on the load, put together from its named parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.cost import Cost
+from fem.errors import Fault, FemError
+from fem.flamant import hertz_half_width, hertz_indentation
+from fem.flexibility import GearFlexibility
+from fem.local_law import HertzApproach
+from fem.ring import Ring, mesh_and_factor
+from fem.support import FIXED, Support, held_profiles
+from fem.tip_contact import TipStrips
+
+if TYPE_CHECKING:
+    from gears import GearPair
+    from meshes import Sizes
+
+__all__ = ["PARTS", "Compliance"]
+
+Array = NDArray[np.float64]
+
+PARTS = ("hub_windup", "coupling", "support")
+"""Parts that ``Compliance.without`` can leave out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compliance:
+    """Flexibility of both gears of a pair as functions of the contact's place.
+
+    Attributes
+    ----------
+    pair : gears.GearPair
+    plane : {"strain", "stress"}
+    pinion, wheel : GearFlexibility
+        Held at the bore or hub, with all that is in ``left_out``.
+    tips : (TipStrips, TipStrips)
+        Tips of pinion and wheel, for contact of their edges outside the path.
+    refinements : int
+        Of the mesh in use.
+    sizes : meshes.Sizes
+        Of the mesh before it was refined.
+    reach : int
+        Neighbours with cross terms on either side of a tooth.
+    error : float
+        Estimated relative error of the deflection of a pair, largest along the path (``fem.compliance``).
+    cost : Cost
+    converged : bool
+        Whether ``error`` meets the tolerance asked for.
+    message : str
+    supports : (Support, Support)
+        Of pinion and wheel.
+    left_out : frozenset of str
+        Parts that ``own`` and ``bulk`` leave out.
+    kept_rings : (Ring, Ring) or None
+        The factorised gears where this process computed them; dropped on pickling (see ``rings``).
+    """
+
+    pair: GearPair
+    plane: str
+    pinion: GearFlexibility
+    wheel: GearFlexibility
+    tips: tuple[TipStrips, TipStrips]
+    refinements: int
+    sizes: Sizes
+    reach: int
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+    supports: tuple[Support, Support] = (FIXED, FIXED)
+    left_out: frozenset[str] = frozenset()
+    kept_rings: tuple[Ring, Ring] | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
+        return {**self.__dict__, "kept_rings": None}
+
+    def rings(self) -> tuple[Ring, Ring]:
+        """Meshed and factorised gears: those that were kept, or computed anew from the same mesh sizes."""
+        if self.kept_rings is not None:
+            return self.kept_rings
+        profiles = held_profiles(self.pair, self.supports)
+        return mesh_and_factor(self.pair, self.plane, self.sizes, self.refinements, profiles)[0]
+
+    def without(self, *parts: str) -> Compliance:
+        """Leave parts out, to compare with models that do not have them.
+
+        Parameters
+        ----------
+        *parts : {"hub_windup", "coupling", "support"}
+            Turning of the bodies on their hubs, in ``own`` and in every cross term; all cross terms between
+            teeth; the supports of rigid hubs.
+
+        Returns
+        -------
+        Compliance
+            The same finite-element solution; only what ``own`` and ``bulk`` add up differs.
+
+        Raises
+        ------
+        FemError
+            A name that is no part.
+        """
+        unknown = [name for name in parts if name not in PARTS]
+        if unknown:
+            known = ", ".join(PARTS)
+            raise FemError(*(Fault("parts", repr(name), known, "name a part") for name in unknown))
+        return replace(self, left_out=self.left_out | set(parts))
+
+    @property
+    def hub_windup(self) -> tuple[float, float]:
+        """Turning of pinion's and wheel's body, along the line of action [m/N at the pair's face width]."""
+        width = self.pair.face_width
+        return self.pinion.hub_windup / width, self.wheel.hub_windup / width
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """What pinion's and wheel's rigid hubs give way along the line of action [m/N]."""
+        first, second = (s.flexibility(r) for s, r in zip(self.supports, self.pair.base_radii, strict=True))
+        return first, second
+
+    @property
+    def rim_thickness(self) -> tuple[float, float]:
+        """From the radius at which pinion and wheel are held to the root circle [m]."""
+        first, second = (p.root_radius - p.bore_radius for p in held_profiles(self.pair, self.supports))
+        return first, second
+
+    @property
+    def _common(self) -> float:
+        """What all contacts yield alike beyond the flexibilities of the flanks [m/N]; less what is left out."""
+        support = 0.0 if "support" in self.left_out else sum(self.support)
+        return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
+
+    def parts(self, rho1: Array) -> Mapping[str, Array]:
+        """Deflection of a pair per force without the local indentation, part by part [m/N], at rho1 (n,) [m].
+
+        ``pinion`` and ``wheel`` (teeth with the bodies' deformation under them), ``hub_windup`` and
+        ``support`` add up to ``own``, whatever is left out. ``coupling`` stands apart: the deflection by the
+        force on the pair one base pitch ahead; nan where that pair would be beyond the path.
+        """
+        rho1 = np.asarray(rho1, dtype=float)
+        width, ahead = self.pair.face_width, rho1 + self.pair.base_pitch
+        every = replace(self, left_out=frozenset())
+        coupling = every.bulk(np.stack([rho1, ahead], axis=-1))[..., 0, 1]
+        windup, support = sum(self.hub_windup), sum(self.support)
+        return MappingProxyType(
+            {
+                "pinion": self.pinion.own(rho1) / width - self.hub_windup[0],
+                "wheel": self.wheel.own(self.pair.line_of_action - rho1) / width - self.hub_windup[1],
+                "hub_windup": np.full(rho1.shape, windup),
+                "support": np.full(rho1.shape, support),
+                "coupling": np.where(ahead <= self.pair.points.E, coupling, np.nan),
+            }
+        )
+
+    def own(self, rho1: Array) -> Array:
+        """Deflection of a pair per force without the local indentation [m/N], at rho1 [m]."""
+        rho1 = np.asarray(rho1, dtype=float)
+        total = self.pinion.own(rho1) + self.wheel.own(self.pair.line_of_action - rho1)
+        return np.asarray(total / self.pair.face_width + self._common)
+
+    def bulk(self, rho1: Array, rho2: Array | None = None) -> Array:
+        """Bulk flexibility of pairs in order of their rho1, one tooth apart.
+
+        Parameters
+        ----------
+        rho1 : (..., n) array
+            Curvature radii on the pinion [m].
+        rho2 : (..., n) array, optional
+            On the wheel; those of the line of action unless given.
+
+        Returns
+        -------
+        (..., n, n) array
+            Symmetric [m/N].
+        """
+        rho1 = np.asarray(rho1, dtype=float)
+        rho2 = self.pair.line_of_action - rho1 if rho2 is None else rho2
+        n = rho1.shape[-1]
+        width, common = self.pair.face_width, self._common
+        reach = 0 if "coupling" in self.left_out else self.reach
+        matrix = np.zeros((*rho1.shape, n))
+        for i in range(n):
+            own = self.pinion.own(rho1[..., i]) + self.wheel.own(rho2[..., i])
+            matrix[..., i, i] = own / width + common
+            for j in range(i + 1, min(n, i + reach + 1)):
+                cross = self.pinion.cross(j - i, rho1[..., i], rho1[..., j])
+                # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
+                cross = cross + self.wheel.cross(j - i, rho2[..., j], rho2[..., i])
+                matrix[..., i, j] = matrix[..., j, i] = cross / width + common
+        return matrix
+
+    def hertz(self, rho1: Array) -> HertzApproach:
+        """Local indentation of pairs at rho1 [m] as a function of their forces."""
+        path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
+        width = self.pair.face_width
+        first, second = self.pinion.law, self.wheel.law
+        reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
+        half_width = hertz_half_width(1.0 / width, path.radius, reduced)  # of 1 N
+        length = self.pair.module
+        constant = (
+            hertz_indentation(half_width, first, length) + hertz_indentation(half_width, second, length)
+        ) / width
+        per_log = (1 / first.plane_modulus + 1 / second.plane_modulus) / (np.pi * width)
+        return HertzApproach(constant, per_log)
