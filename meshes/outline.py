@@ -49,9 +49,9 @@ class Sizes:
     root: float = 0.3
     top: float = 1.0
     corner: float = 0.0135
-    rim: float = 2.0
+    rim: float = 1.2
     growth: float = 0.69
-    layer_growth: float = 1.55
+    layer_growth: float = 1.4
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not positive."""
@@ -220,8 +220,8 @@ def sector_curves(
         lambda angle: polar(profile.tip_radius, angle),
         constant(sizes.top),
     )
-    # a rim thinner than 2.5 modules bends: its edges are shorter in proportion
-    thin = min(1.0, 0.4 * (profile.root_radius - bottom_radius) / m)
+    # a rim thinner than 1.7 modules bends: its edges are shorter in proportion
+    thin = min(1.0, 0.6 * (profile.root_radius - bottom_radius) / m)
     bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m * thin))))
     bottom = Curve(
         "bottom",
