@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.flamant import hertz_indentation
 from gears import Gear, GearPair
 
 
@@ -65,3 +66,21 @@ def edge_load(points, edges, traction):
     force = np.zeros_like(points)
     np.add.at(force, edges, np.einsum("qk,eqa,q->eka", shape, pull, weight))
     return force
+
+
+def true_error(bodies, reference):
+    """Largest relative difference of a pair's deflection along the path, and of cross terms to the least of it."""
+    pair = bodies.pair
+    rho1 = np.linspace(pair.points.A, pair.points.E, 60)
+    local = sum(
+        hertz_indentation(0.1 * pair.module, gear.law, pair.module) for gear in (bodies.pinion, bodies.wheel)
+    )
+    own = reference.own(rho1) + local / pair.face_width
+    difference = np.abs(bodies.own(rho1) - reference.own(rho1)) / own
+    crossed = 0.0
+    for gear, rho in (("pinion", rho1), ("wheel", pair.line_of_action - rho1)):
+        load, point = np.meshgrid(rho, rho)
+        for k in range(1, bodies.reach + 1):
+            terms = [getattr(one, gear).cross(k, load, point) for one in (bodies, reference)]
+            crossed += np.max(np.abs(terms[0] - terms[1])) / pair.face_width / bodies.reach
+    return max(float(np.max(difference)), crossed / float(np.min(own)))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import fem
-from fem.flamant import hertz_indentation
 from gears import BasicRack, Gear, GearPair, Material
 from meshes import Sizes
+from tests.fem.conftest import true_error
 
 PAIRS = {
     "article": GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04),
@@ -18,24 +18,6 @@ PAIRS = {
 }
 
 
-def true_error(bodies, reference):
-    """Largest relative difference of a pair's deflection along the path, and of cross terms to the least of it."""
-    pair = bodies.pair
-    rho1 = np.linspace(pair.points.A, pair.points.E, 60)
-    local = sum(
-        hertz_indentation(0.1 * pair.module, gear.law, pair.module) for gear in (bodies.pinion, bodies.wheel)
-    )
-    own = reference.own(rho1) + local / pair.face_width
-    difference = np.abs(bodies.own(rho1) - reference.own(rho1)) / own
-    crossed = 0.0
-    for gear, rho in (("pinion", rho1), ("wheel", pair.line_of_action - rho1)):
-        load, point = np.meshgrid(rho, rho)
-        for k in range(1, bodies.reach + 1):
-            terms = [getattr(one, gear).cross(k, load, point) for one in (bodies, reference)]
-            crossed += np.max(np.abs(terms[0] - terms[1])) / pair.face_width / bodies.reach
-    return max(float(np.max(difference)), crossed / float(np.min(own)))
-
-
 @pytest.mark.parametrize("name", list(PAIRS))
 def test_error_estimate_is_the_true_error(name):
     pair = PAIRS[name]
@@ -43,6 +25,21 @@ def test_error_estimate_is_the_true_error(name):
     reference = fem.compliance(pair, 1e-4, sizes=bodies.sizes, refinements=2)
     assert reference.error < 0.2 * bodies.error
     assert 0.5 < bodies.error / true_error(bodies, reference) < 3.0
+
+
+@pytest.mark.parametrize("name", ["article", "form circle"])
+def test_flanks_at_the_default_tolerance_are_those_of_a_converged_mesh(name):
+    """Mid-flank within 0.05 %, the ends of the path within 0.3 %."""
+    pair = PAIRS[name]
+    rho1 = np.linspace(pair.points.A, pair.points.E, 41)
+    force = pair.normal_force(600.0)
+    bodies = fem.compliance(pair)
+    converged = fem.compliance(pair, 1e-4, refinements=3)
+    assert converged.error < 2e-5
+    k, reference = (fem.single_pair_stiffness(pair, force, rho1, one) for one in (bodies, converged))
+    off = np.abs(k / reference - 1)
+    assert np.all(off < 3e-3)
+    assert np.all(off[5:-5] < 5e-4)
 
 
 def test_tolerance_chooses_the_mesh(article_pair):
