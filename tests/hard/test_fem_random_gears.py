@@ -33,23 +33,23 @@ def described(pair):
 
 
 def test_every_estimate_is_honest_on_a_few_random_gears():
-    ratios = {described(pair): estimated_over_true(pair)[0] for pair in random_pairs(11, 10)}
+    ratios = {described(pair): estimated_over_true(pair)[0] for pair in random_pairs(11, 8)}
     assert min(ratios.values()) > 0.5, ratios
     assert max(ratios.values()) < 5.0, ratios
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(10))
-def test_every_estimate_is_honest_on_fifty_random_gears(block):
-    """Ten blocks: 500 gears pairs. Of all, 99 % above 0.5 and 95 % below 5; here one in fifty may be low."""
+@pytest.mark.parametrize("block", range(20))
+def test_every_estimate_is_honest_on_five_hundred_random_gears(block):
+    """Twenty blocks of 25 pairs: 95 % between 0.5 and 5; 99 % above 0.5, so in a block none may be below."""
     ratios = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for pair in random_pairs(100 + block, 50):
+        for pair in random_pairs(200 + block, 25):
             ratio, true = estimated_over_true(pair)
             if true > 1e-5:
                 ratios[described(pair)] = ratio
     values = np.sort(list(ratios.values()))
     print(f"block {block}: {len(values)} pairs, {np.percentile(values, [0, 1, 5, 50, 95, 99, 100]).round(2)}")
-    assert values[1] > 0.5, ratios
+    assert values[0] > 0.5, ratios
     assert np.mean(values < 5.0) >= 0.95, ratios
