@@ -34,8 +34,8 @@ def test_flanks_at_the_default_tolerance_are_those_of_a_converged_mesh(name):
     rho1 = np.linspace(pair.points.A, pair.points.E, 41)
     force = pair.normal_force(600.0)
     bodies = fem.compliance(pair)
-    converged = fem.compliance(pair, 1e-4, refinements=3)
-    assert converged.error < 2e-5
+    converged = fem.compliance(pair, 1e-4, refinements=2)
+    assert converged.error < 5e-5
     k, reference = (fem.single_pair_stiffness(pair, force, rho1, one) for one in (bodies, converged))
     off = np.abs(k / reference - 1)
     assert np.all(off < 3e-3)
