@@ -139,6 +139,14 @@ class Compliance:
         support = 0.0 if "support" in self.left_out else sum(self.support)
         return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
 
+    @property
+    def turning(self) -> float:
+        """What hubs and supports move all teeth by alike, which closes no gap, as far as it is in [m/N]."""
+        if "coupling" in self.left_out:
+            return 0.0
+        windup = 0.0 if "hub_windup" in self.left_out else sum(self.hub_windup)
+        return windup + (0.0 if "support" in self.left_out else sum(self.support))
+
     def parts(self, rho1: Array) -> Mapping[str, Array]:
         """Deflection of a pair per force without the local indentation, part by part [m/N], at rho1 (n,) [m].
 

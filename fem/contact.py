@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem.compliance import Compliance, Cost
+from fem.bodies import Compliance
 from fem.compliance import compliance as _compliance
+from fem.cost import Cost
 from fem.cycle import MeshCycle
 from fem.errors import Fault
 from fem.local_law import Film

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.compliance import Cost
+from fem.cost import Cost
 from fem.elasticity import PlaneElasticity
 from fem.meshing import Meshing
 from gears import GearPair, half_width, peak_pressure

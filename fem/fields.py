@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem import flamant
-from fem.compliance import Compliance, mesh_and_factor
+from fem.bodies import Compliance
 from fem.compliance import compliance as _compliance
 from fem.contact import MeshCycle
 from fem.drawing import DrawnSector, GearDrawing, gear_drawing
@@ -25,7 +25,8 @@ from fem.errors import Fault, FemError
 from fem.flexibility import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from fem.near_field import Contact
-from fem.ring import Ring
+from fem.ring import Ring, mesh_and_factor
+from fem.support import held_profiles
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
@@ -115,8 +116,11 @@ def draw_gears(
     refinements : int, optional
         Other ones.
     """
-    level = compliance.refinements if refinements is None else refinements
-    (pinion, wheel), _ = mesh_and_factor(pair, compliance.plane, compliance.sizes, level)
+    if refinements is None or refinements == compliance.refinements:
+        pinion, wheel = compliance.rings()
+    else:
+        profiles = held_profiles(pair, compliance.supports)
+        (pinion, wheel), _ = mesh_and_factor(pair, compliance.plane, compliance.sizes, refinements, profiles)
     return gear_drawing(pinion), gear_drawing(wheel)
 
 

@@ -19,7 +19,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from fem import flamant
-from fem.compliance import Cost
+from fem.cost import Cost
 from fem.elasticity import PlaneElasticity
 from fem.errors import Fault, FemError
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix

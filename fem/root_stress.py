@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.compliance import Cost
 from fem.contact import MeshCycle
+from fem.cost import Cost
 from fem.elasticity import PlaneElasticity
 from fem.errors import Fault, FemError
 from fem.fillet import MIRROR, FilletLine

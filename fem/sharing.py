@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.compliance import Compliance
+from fem.bodies import Compliance
 from fem.local_law import Film, FilmLaw, PairLaws, Table
 from fem.meshing import REACHES, Meshing, meshing
 from fem.setting import Setting
@@ -67,8 +67,7 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, f
             oil,
             levers if friction else None,
         )
-        # the turning of the bodies on their hubs moves all teeth and closes no gap
-        closing = share.approach - sum(bodies.hub_windup) * force[:, None, None]
+        closing = share.approach - bodies.turning * force[:, None, None]
         if np.max(closing + touch) <= where.reach_gap:
             break
     return Solution(where, share, kappa, levers, largest, closing)

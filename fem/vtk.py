@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem.compliance import Compliance
+from fem.bodies import Compliance
 from fem.contact import MeshCycle
 from fem.contact_forces import ContactForces, contact_forces
 from fem.fields import GearField, draw_gears, loaded_fields
