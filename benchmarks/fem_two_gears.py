@@ -459,13 +459,8 @@ def main():
     parser.add_argument("--quick", action="store_true", help="the pitch point alone")
     quick = parser.parse_args().quick
     pair = PAIR
-    places = {
-        "C": (pair.points.C - pair.points.A) / pair.base_pitch,
-        ".75": 0.75,
-        ".95": 0.95,
-        ".25": 0.25,
-        ".10": 0.10,
-    }
+    C = (pair.points.C - pair.points.A) / pair.base_pitch
+    places = {"C": C, ".75": 0.75, ".95": 0.95, ".25": 0.25, ".10": 0.1}
     print(f"{'':42s} {'N/mm um':>8s} {'D um':>9s}  {'N/mm on pairs -1, 0, 1, 2':>31s} {'sum':>8s}")
     for h in (30e-6, 10e-6, 3e-6, 1e-6):
         run(f"C, sharp, corner {1e6 * h:g} um", pair, C, h_corner=h)
