@@ -23,112 +23,23 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
+from two_gear_meshes import MIRROR, Focus, sector
 
 import fem
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 from gears import Gear, GearPair
-from meshes import SectorMesh, Sizes, gear_mesh
+from meshes import Sizes, gear_mesh
 from meshes.annulus import turned
-from meshes.gmsh_fill import triangulate
-from meshes.outline import Curve, cut, sector_curves
 
 PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
 TORQUE = 600.0
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(6)
 GAUSS, WEIGHT = 0.5 + 0.5 * GAUSS, 0.5 * WEIGHT
-MIRROR = np.array([-1.0, 1.0])
 MEAN = 10
 NEAR = 60e-6
 """Edges with a wider gap [m] cannot touch: the gears approach by half of it."""
-
-
-# ------------------------------------------------------------------ meshes
-
-
-@dataclass(frozen=True)
-class Focus:
-    """Fine elements about a point of a tooth's outline: size h up to a distance w, growing from there."""
-
-    point: np.ndarray
-    h: float
-    w: float
-
-
-def rounded(profile, radius):
-    """Circle of a radius tangent to the left flank and the tip circle: its curve, the flank's end, the top's."""
-    inside = profile.tip_radius - radius
-
-    def miss(rho):
-        centre = profile.involute(rho) - radius * profile.normal(rho)
-        return np.linalg.norm(centre) - inside
-
-    low, high = profile.flank_rho
-    rho = brentq(miss, 0.5 * (low + high), high, xtol=1e-16)
-    centre = (profile.involute(rho) - radius * profile.normal(rho)) * MIRROR
-    end = (profile.normal(rho)) * MIRROR
-    first, last = np.arctan2(centre[0], centre[1]), np.arctan2(end[0], end[1])
-
-    def at(angle):
-        return centre + radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
-
-    return at, (first, last), rho**2 / (2 * profile.base_radius), first
-
-
-def tooth_curves(profile, sizes, foci, radius, growth):
-    """Outline of a sector down to the bore, with a rounded left tip corner and fine places."""
-    curves = list(sector_curves(profile, sizes, profile.bore_radius))
-    if radius > 0:
-        at, (first, last), arc, top = rounded(profile, radius)
-        names = [curve.name for curve in curves]
-        i, k = names.index("top"), names.index("flank_left")
-        curves[i], curves[k] = replace(curves[i], end=top), replace(curves[k], start=arc)
-        curves.insert(
-            k, Curve("round_left", first, last, at, lambda p: np.full(len(p), sizes.top * profile.module))
-        )
-
-    def finer(curve):
-        def size(points):
-            wished = curve.size(points)
-            for focus in foci:
-                away = np.linalg.norm(points - focus.point, axis=-1)
-                wished = np.minimum(wished, focus.h + growth * np.maximum(away - focus.w, 0.0))
-            return wished
-
-        return replace(curve, size=size)
-
-    return [
-        finer(c) if c.name.startswith(("flank_left", "round", "top", "fillet_left")) else c for c in curves
-    ]
-
-
-def sector(profile, sizes, foci=(), radius=0.0, growth=0.15):
-    """Second-order mesh of a sector, boundary middles on the exact curves."""
-    curves = tooth_curves(profile, sizes, foci, radius, growth)
-    cuts = [cut(curve, 4000) for curve in curves]
-    outline = np.concatenate([curve.at(t[:-1]) for curve, t in zip(curves, cuts, strict=True)])
-    corners, triangles = triangulate(outline)
-    count = len(corners)
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    keys, inverse = np.unique(sides[..., 0] * count + sides[..., 1], return_inverse=True)
-    low, high = np.divmod(keys, count)
-    points = np.concatenate([corners, 0.5 * (corners[low] + corners[high])])
-    facets, parameters, first = {}, {}, 0
-    for curve, t in zip(curves, cuts, strict=True):
-        ends = np.stack([first + np.arange(len(t) - 1), first + 1 + np.arange(len(t) - 1)], axis=1) % len(
-            outline
-        )
-        middle = count + np.searchsorted(keys, ends.min(axis=1) * count + ends.max(axis=1))
-        points[middle] = curve.at(0.5 * (t[1:] + t[:-1]))
-        name = "bore" if curve.name == "bottom" else curve.name
-        facets[name], parameters[name] = np.column_stack([ends, middle]), np.column_stack([t[:-1], t[1:]])
-        first += len(t) - 1
-    six = np.concatenate([triangles, count + inverse.reshape(-1, 3)], axis=1)
-    named = {("bore" if curve.name == "bottom" else curve.name): curve for curve in curves}
-    gear = (profile.teeth, profile.module, profile.base_radius)
-    return SectorMesh(points, six, facets, parameters, named, *gear)
 
 
 # ------------------------------------------------------------------ one gear
@@ -275,6 +186,16 @@ def face(bodies, strips, stand, moved):
     return Faced(gap, outward, nodes.reshape(*n, 3), weights.reshape(*n, 3), rate)
 
 
+def own_normals(bodies, strips, faced, stand):
+    """Press along the normals of the tip's own flank instead: what a corner's law in its own frame does."""
+    body, tooth = bodies[strips.mortar], strips.teeth[strips.mortar]
+    rho = np.sqrt(np.maximum(np.sum(strips.places**2, axis=2) - body.profile.base_radius**2, 0.0))
+    own = turned(
+        (body.profile.normal(rho) * MIRROR).reshape(-1, 2), body.turn(tooth) + stand.angles[strips.mortar]
+    )
+    return replace(faced, normal=-own.reshape(faced.normal.shape))
+
+
 def forces_of(bodies, all_strips, faced, stand):
     """Nodal forces on both gears, in their frames, by a unit pressure on each strip: two sparse matrices."""
     out = []
@@ -330,7 +251,7 @@ class Result:
     changes: list[float]
 
 
-def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15, coarse=1.0):
+def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15, coarse=1.0, own=False):
     """Both gears at a position (way from A in base pitches), one result."""
     start = pair.points.A + position * pair.base_pitch
     placed = pair.placement(float(start))
@@ -342,6 +263,10 @@ def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15
     for _ in range(12 if updated else 1):
         here = stand.turned_by(phi)
         faced = [face(bodies, strips, here, moved) for strips in all_strips]
+        if own:  # contacts outside the path alone
+            outside = [not pair.points.A <= rho1 <= pair.points.E for *_, rho1 in contacts]
+            turned_to = [own_normals(bodies, *both, here) for both in zip(all_strips, faced, strict=True)]
+            faced = [o if out else f for o, out, f in zip(turned_to, outside, faced, strict=True)]
         kept = [np.all(f.gap < NEAR, axis=1) & np.all(f.gap > -2 * NEAR, axis=1) for f in faced]
         some = [
             replace(s, nodes=s.nodes[k], places=s.places[k], areas=s.areas[k])
@@ -471,6 +396,8 @@ def main():
         for h in (10e-6, 3e-6):
             run(f"C, rounded {1e6 * radius:g} um, corner {1e6 * h:g} um", pair, C, h_corner=h, radius=radius)
     run("C, sharp, 3 um, deformed geometry", pair, C, updated=True)
+    for name in ("C", ".75", ".95"):
+        run(f"{name}, sharp, 3 um, tip's own normal", pair, places[name], own=True)
     if quick:
         return 0
     bodies = fem.compliance(pair, tolerance=1e-4)
