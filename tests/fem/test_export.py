@@ -8,7 +8,8 @@ from scipy.sparse.linalg import splu
 
 import fem
 from fem.elasticity import stiffness_matrix
-from fem.export import export_pair, flank_forces, loaded_gears, write_abaqus
+from fem.export import export_pair, export_position, write_abaqus
+from fem.loaded_gears import flank_forces, loaded_gears
 from meshes import MeshError, Sizes
 
 TORQUE = 600.0
@@ -114,6 +115,16 @@ def test_decks(tmp_path, article_pair, cycles):
     thickness = lines[lines.index("*SOLID SECTION, ELSET=GEAR, MATERIAL=MATERIAL") + 1]
     assert float(thickness) == 0.04
     assert lines[lines.index("*BOUNDARY") + 1] == "BORE, 1, 2"
+
+
+def test_one_call_for_a_position(tmp_path, article_pair, article_bodies):
+    files = export_position(tmp_path, article_pair, TORQUE, 0.25, "inp", article_bodies, refinements=0)
+    assert [f.name for f in files] == ["pinion.inp", "wheel.inp"]
+    before = [f.read_bytes() for f in files]
+    export_position(tmp_path, article_pair, TORQUE, 0.25, "inp", article_bodies, refinements=0)
+    assert before == [f.read_bytes() for f in files]
+    with pytest.raises(fem.FemError, match="position"):
+        export_position(tmp_path, article_pair, TORQUE, 1.5)
 
 
 def test_plane_stress_is_a_thin_slice(tmp_path, article_pair):

@@ -20,7 +20,8 @@ from scipy.sparse.linalg import splu
 
 import fem
 import fem.elasticity
-from fem.export import loaded_gears, write_abaqus
+from fem.export import write_abaqus
+from fem.loaded_gears import loaded_gears
 from gears import Gear, GearPair
 
 CCX = shutil.which("ccx")
