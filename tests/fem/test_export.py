@@ -46,8 +46,8 @@ def test_the_torque_comes_back_exactly_on_the_path(article_pair, cycles, row, sp
     pinion, wheel = loaded_gears(article_pair, cycles[False], row, spread, refinements=0)
     ratio = article_pair.base_radii[1] / article_pair.base_radii[0]
     # an edge's parabola leaves the involute by some 1e-6 of its length, so the lever is not exact
-    assert moment(pinion) == pytest.approx(-TORQUE, rel=1e-6)
-    assert moment(wheel) == pytest.approx(-TORQUE * ratio, rel=1e-6)
+    assert moment(pinion) == pytest.approx(-TORQUE, rel=3e-6)
+    assert moment(wheel) == pytest.approx(-TORQUE * ratio, rel=3e-6)
     if spread == "line":
         np.testing.assert_allclose(pinion.forces.sum(axis=0), -wheel.forces.sum(axis=0), rtol=1e-12)
 
@@ -80,7 +80,7 @@ def test_the_work_of_the_forces_is_that_of_the_compliance(article_pair, article_
     2/(pi E*) [ln(2/a) + 1/4 - ...]: both gears together lose w/(2 pi) (1/E1* + 1/E2*).
     """
     cycle = cycles[False]
-    sizes = Sizes(flank=0.03, corner=0.02, growth=0.3)
+    sizes = Sizes(flank=0.03)
     for row in (4, 31):
         gears = loaded_gears(article_pair, cycle, row, loaded_sizes=sizes, refinements=0)
         work = sum(float(np.sum(gear.forces * solved(gear))) for gear in gears)
