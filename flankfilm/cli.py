@@ -1,4 +1,4 @@
-"""The command line: run, check and new."""
+"""The command line: run, verify, check and new."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
 from flankfilm.faults import Fault, InputError, SolverError
+
+if TYPE_CHECKING:
+    from flankfilm.scene import Scene
 
 USER_FAULT = 2
 SOLVER_FAULT = 3
@@ -32,6 +35,32 @@ def _version() -> str:
 app.version = _version
 
 
+Tolerance = Annotated[
+    str | None, Parameter(help="Relative, such as 0.5% or 0.005; overrules the scene's tolerance.")
+]
+UseCache = Annotated[
+    bool, Parameter(name="--cache", help="Use results of earlier runs whose inputs and code are the same.")
+]
+
+
+def _prepare() -> None:
+    """Say what must be said before numpy and numba are loaded."""
+    from flankfilm.cache import keep_compiled_code
+
+    # the matrices are small: threads cost more than they bring
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    keep_compiled_code()
+
+
+def _read(scene: Path, tolerance: str | None) -> Scene:
+    from flankfilm.scene import read_scene
+
+    wanted = read_scene(scene)
+    if tolerance is None:
+        return wanted
+    return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance)})
+
+
 @app.command
 def run(
     scene: Path,
@@ -40,12 +69,8 @@ def run(
     out: Annotated[
         Path | None, Parameter(help="Folder for the results; SCENE-results beside you if left out.")
     ] = None,
-    tolerance: Annotated[
-        str | None, Parameter(help="Relative, such as 0.5% or 0.005; overrules the scene's tolerance.")
-    ] = None,
-    cache: Annotated[
-        bool, Parameter(help="Use results of earlier runs whose inputs and code are the same.")
-    ] = True,
+    tolerance: Tolerance = None,
+    cache: UseCache = True,
 ) -> int:
     """Compute what SCENE wants and write the results and a report.
 
@@ -54,24 +79,56 @@ def run(
     scene : Path
         The scene file (TOML).
     """
-    from flankfilm.cache import keep_compiled_code
-
-    # the matrices are small: threads cost more than they bring (must be said before numpy is loaded)
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    keep_compiled_code()
+    _prepare()
     from flankfilm.progress import console_progress
     from flankfilm.report.contents import summary
     from flankfilm.run import run_scene
-    from flankfilm.scene import read_scene
 
-    wanted = read_scene(scene)
-    if tolerance is not None:
-        wanted = wanted.model_copy(update={"tolerance": parse_tolerance(tolerance)})
+    wanted = _read(scene, tolerance)
     folder = out if out is not None else Path(f"{scene.stem}-results")
     with console_progress() as progress:
         results = run_scene(wanted, folder, use_cache=cache, progress=progress)
     for line in summary(results):
         print(line)
+    return 0
+
+
+@app.command
+def verify(
+    scene: Path,
+    /,
+    *,
+    out: Annotated[
+        Path | None, Parameter(help="Folder for the results; SCENE-verify beside you if left out.")
+    ] = None,
+    tolerance: Tolerance = None,
+    cache: UseCache = True,
+) -> int:
+    """Tabulate every closed form of tooth stiffness against finite elements, with the latter's error.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML); its sections pair, material and operating count.
+    """
+    _prepare()
+    from rich.console import Console
+
+    from flankfilm.progress import console_progress
+    from flankfilm.verify import verify_scene, write_verification
+    from flankfilm.verify.tables import costs, table
+
+    wanted = _read(scene, tolerance)
+    folder = out if out is not None else Path(f"{scene.stem}-verify")
+    with console_progress() as progress:
+        found = verify_scene(wanted, folder, use_cache=cache, progress=progress)
+        files = write_verification(found, folder)
+    screen = Console(width=None if sys.stdout.isatty() else 160)
+    for reference in (found.references[0], found.like_for_like):
+        screen.print(table(found, reference))
+    print(f"verify.csv holds the rest: {', '.join(r.label for r in found.references[1:-1])}")
+    print(costs(found))
+    print(f"{len(files)} files in {folder}: {', '.join(path.name for path in files)}")
     return 0
 
 
@@ -85,10 +142,8 @@ def check(scene: Path, /) -> int:
         The scene file (TOML).
     """
     from flankfilm.check import check_scene
-    from flankfilm.scene import read_scene
 
-    wanted = read_scene(scene)
-    for line in check_scene(wanted):
+    for line in check_scene(_read(scene, None)):
         print(line)
     return 0
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from flankfilm.cache import Cache, user_cache
-from flankfilm.faults import Fault, InputError, told_by_a_floor
+from flankfilm.faults import told_by_a_floor
+from flankfilm.folder import claim
 from flankfilm.outputs import write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.results import Results
@@ -15,7 +16,6 @@ from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
 from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.fields import write_vtk
-from meshes.atomic import sweep_temporaries
 
 
 def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:
@@ -45,7 +45,7 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         Where a solver did not reach a result that it believes.
     """
     start = time.perf_counter()
-    _claim(folder)
+    claim(folder)
     wanted = goals(scene)
     done: list[str] = []
 
@@ -70,18 +70,3 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         progress("writing the report", len(wanted) + 1, len(wanted) + 2)
         files.append(write_report(results))
     return replace(results, files=tuple(files), seconds=time.perf_counter() - start)
-
-
-def _claim(folder: Path) -> None:
-    """Make the folder and see that it can be written before anything is computed."""
-    if folder.exists() and not folder.is_dir():
-        raise InputError([Fault(str(folder), "", "is a file, not a folder", "Name another with --out")])
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".flankfilm-probe"
-        probe.touch()
-        probe.unlink(missing_ok=True)
-        sweep_temporaries(folder)
-    except OSError as fault:
-        told = f"cannot be written: {fault.strerror}"
-        raise InputError([Fault(str(folder), "", told, "Name another with --out")]) from fault

@@ -6,7 +6,10 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from meshes.atomic import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,3 +73,9 @@ def to_svg(drawn: Figure, prefix: str) -> str:
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r"url\(#", f"url(#{prefix}-", svg)
     return re.sub(r'href="#', f'href="#{prefix}-', svg)
+
+
+def save(drawn: Figure, path: Path) -> None:
+    """Replace the file `path` by a figure, in the format of its suffix."""
+    with styled(), replacing(path) as beside:
+        drawn.savefig(beside, format=path.suffix[1:], dpi=200)

@@ -1,0 +1,23 @@
+"""The folder that results go to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flankfilm.faults import Fault, InputError
+from meshes.atomic import sweep_temporaries
+
+
+def claim(folder: Path) -> None:
+    """Make the folder and see that it can be written before anything is computed."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError([Fault(str(folder), "", "is a file, not a folder", "Name another with --out")])
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".flankfilm-probe"
+        probe.touch()
+        probe.unlink(missing_ok=True)
+        sweep_temporaries(folder)
+    except OSError as fault:
+        told = f"cannot be written: {fault.strerror}"
+        raise InputError([Fault(str(folder), "", told, "Name another with --out")]) from fault
