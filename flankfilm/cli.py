@@ -1,4 +1,4 @@
-"""The command line: run, verify, check and new."""
+"""The command line: run, verify, study, check and new."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
@@ -115,8 +115,8 @@ def verify(
     from rich.console import Console
 
     from flankfilm.progress import console_progress
-    from flankfilm.verify import verify_scene, write_verification
-    from flankfilm.verify.tables import costs, table
+    from flankfilm.verify.run import verify_scene
+    from flankfilm.verify.tables import costs, table, write_verification
 
     wanted = _read(scene, tolerance)
     folder = out if out is not None else Path(f"{scene.stem}-verify")
@@ -130,6 +130,52 @@ def verify(
     print(costs(found))
     print(f"{len(files)} files in {folder}: {', '.join(path.name for path in files)}")
     return 0
+
+
+@app.command
+def study(
+    study: Path,
+    /,
+    *,
+    out: Annotated[Path, Parameter(help="Folder for the rows and the finished study.")],
+    executor: Annotated[
+        Literal["processes", "dask", "mpi"], Parameter(help="Where the rows are computed.")
+    ] = "processes",
+    workers: Annotated[int | None, Parameter(help="Processes; one for each core if left out.")] = None,
+    resume: Annotated[bool, Parameter(negative="", help="Go on from the rows in the folder.")] = False,
+    cache: UseCache = True,
+) -> int:
+    """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
+
+    Parameters
+    ----------
+    study : Path
+        The study file (TOML): a scene, keys of it that vary, outputs.
+    """
+    _prepare()
+    from flankfilm.progress import console_rows
+    from flankfilm.study.files import write_study
+    from flankfilm.study.plan import read_plan
+    from flankfilm.study.run import run_study
+
+    if workers is not None and workers < 1:
+        raise InputError(
+            [Fault("--workers", str(workers), "must be at least 1", "Leave it out for all cores")]
+        )
+    plan = read_plan(study)
+    with console_rows() as told:
+        found = run_study(
+            plan, out, kind=executor, workers=workers, resume=resume, use_cache=cache, told=told
+        )
+    files = write_study(found, out)
+    rate = f", {found.computed / found.seconds:.2g} rows/s" if found.computed else ""
+    print(f"{len(found.rows)} rows, {found.computed} of them computed in {found.seconds:.1f} s{rate}")
+    for row in found.failures[:5]:
+        print(f"row {row.index} failed: {row.fault}")
+    if len(found.failures) > 5:
+        print(f"{len(found.failures)} rows failed in all; the column fault of rows.csv says why")
+    print(f"{', '.join(str(path) for path in (out / 'rows.csv', *files))}")
+    return SOLVER_FAULT if len(found.failures) == len(found.rows) else 0
 
 
 @app.command

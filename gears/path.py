@@ -71,6 +71,17 @@ class PathOfContact:
         first, second = self.base_radii
         return np.arctan(self.rho1 / first), np.arctan(self.rho2 / second)
 
+    @property
+    def specific_sliding(self) -> tuple[Array, Array]:
+        """Specific sliding (u1 - u2)/u1 of the pinion and (u2 - u1)/u2 of the wheel, each (n,) [-].
+
+        Zero at the pitch point, positive where a flank is the faster one (its addendum), and unbounded
+        towards its own base circle, where it stands still.
+        """
+        u1, u2 = self.surface_speeds(1.0)
+        with np.errstate(divide="ignore"):
+            return np.asarray((u1 - u2) / u1), np.asarray((u2 - u1) / u2)
+
     def surface_speeds(self, speed: float) -> tuple[Array, Array]:
         """Speeds of the two flanks along their common tangent, u1 = omega1 rho1, u2 = omega2 rho2.
 

@@ -41,23 +41,28 @@ def read_scene(path: Path) -> Scene:
     InputError
         With every fault of the file.
     """
-    return parse_scene(_text(path), name=str(path))
+    return parse_scene(read_text(path), name=str(path))
 
 
 def parse_scene(text: str, name: str = "scene") -> Scene:
     """Check the text of a scene file; see `read_scene`."""
+    return validated(parse_toml(text, name))
+
+
+def parse_toml(text: str, name: str) -> dict[str, Any]:
+    """Read TOML; `name` is what a fault calls the file."""
     try:
-        raw = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as fault:
         raise InputError(
             [Fault(name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from")]
         ) from fault
     except RecursionError as fault:
         raise InputError([Fault(name, "", "is nested too deeply", "a scene has two levels")]) from fault
-    return _validated(raw)
 
 
-def _text(path: Path) -> str:
+def read_text(path: Path) -> str:
+    """Read a scene or study file as text."""
     try:
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "does not exist"
@@ -65,7 +70,9 @@ def _text(path: Path) -> str:
                 [Fault(str(path), "", what, "name a scene file, or write one: flankfilm new FILE")]
             )
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError([Fault(str(path), "", f"is larger than {LARGEST_FILE:,} bytes, so not a scene")])
+            raise InputError(
+                [Fault(str(path), "", f"is larger than {LARGEST_FILE:,} bytes, so no scene or study")]
+            )
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError as fault:
         raise InputError([Fault(str(path), "", "is not a text file (TOML in UTF-8)")]) from fault
@@ -73,7 +80,8 @@ def _text(path: Path) -> str:
         raise InputError([Fault(str(path), "", f"cannot be read: {fault.strerror}")]) from fault
 
 
-def _validated(raw: dict[str, Any]) -> Scene:
+def validated(raw: dict[str, Any]) -> Scene:
+    """Check the keys of a scene; see `read_scene`."""
     try:
         scene = Scene.model_validate(raw)
     except ValidationError as error:

@@ -8,6 +8,7 @@ from typing import Any
 from flankfilm.scene import Scene
 from flankfilm.stages import closed_forms, decide, fields, film, motion, separate_pairs, sweep, teeth
 from flankfilm.stages.engine import Stage
+from flankfilm.verify import compare
 
 
 def _sections(*names: str) -> Any:
@@ -49,6 +50,14 @@ STAGES: Mapping[str, Stage] = {
             needs=("pair",),
             packages=("gears", "meshes", "fem"),
             kept=True,
+        ),
+        Stage(
+            "verification",
+            "closed forms against finite elements",
+            lambda e: compare.verification(e),
+            _sections("operating", "stiffness.contact_beyond_path"),
+            needs=("compliance",),
+            packages=("gears", "flankfilm"),
         ),
         Stage(
             "dry cycle",

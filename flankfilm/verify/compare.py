@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flankfilm.build import pinion_torque
-from flankfilm.cache import Cache, user_cache
-from flankfilm.faults import Fault, InputError, told_by_a_floor
-from flankfilm.folder import claim
-from flankfilm.progress import Progress, silent
-from flankfilm.stages.catalogue import STAGES
-from flankfilm.stages.engine import Engine
 from flankfilm.verify.models import Curves, closed_form_curves, reference_curves, stations
 
 if TYPE_CHECKING:
-    from flankfilm.scene import Scene
+    from flankfilm.stages.engine import Engine
     from gears import GearPair
 
 Array = NDArray[np.float64]
@@ -107,50 +100,14 @@ class Verification:
         return max(self.references, key=lambda reference: len(reference.left_out))
 
 
-def verify_scene(
-    scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent
-) -> Verification:
-    """Compare every closed form with finite elements on a scene's pair, torque and tolerance.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its sections pair, material and operating count, and stiffness.plane and contact_beyond_path.
-    folder : Path
-        Where the files will go; made, and seen to be writable, before anything is computed.
-    use_cache : bool
-        Whether results of earlier runs with the same inputs and code may serve.
-    progress : callable
-        Told what is being done, steps done, and steps in all.
-
-    Returns
-    -------
-    Verification
-
-    Raises
-    ------
-    InputError
-        Sections that are missing, geometry that cannot be built.
-    SolverError
-        Where the compliance misses its share of the tolerance.
-    """
-    lacking = [name for name in ("pair", "material", "operating") if getattr(scene, name) is None]
-    if lacking:
-        raise InputError(
-            [Fault(f"[{name}]", "", "is required to verify", f"Add the section [{name}]") for name in lacking]
-        )
-    claim(folder)
-    progress("tooth compliance by finite elements", 0, 2)
-    engine = Engine(scene, STAGES, Cache(user_cache() / "results" if use_cache else None))
-    try:
-        pair, bodies = engine["pair"], engine["compliance"]
-        torque = pinion_torque(scene)
-        progress("mesh cycles of all models", 1, 2)
-        beyond = scene.stiffness.contact_beyond_path
-        references = tuple(reference_curves(pair, torque, bodies, POSITIONS, beyond))
-        models = tuple(closed_form_curves(pair, pair.normal_force(torque), POSITIONS))
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
+def verification(engine: Engine) -> Verification:
+    """Compare every closed form with finite elements on a scene's pair, torque and tolerance."""
+    scene = engine.scene
+    pair, bodies = engine["pair"], engine["compliance"]
+    torque = pinion_torque(scene)
+    beyond = scene.stiffness.contact_beyond_path
+    references = tuple(reference_curves(pair, torque, bodies, POSITIONS, beyond))
+    models = tuple(closed_form_curves(pair, pair.normal_force(torque), POSITIONS))
     return Verification(
         pair=pair,
         torque=torque,
@@ -196,8 +153,8 @@ def figure_errors(pair: GearPair, curves: Curves) -> dict[str, float]:
 
     The error e of the compliance holds at each position. If the errors of different positions had opposite
     signs, a harmonic over the mean could be off by 2 e, and the peak-to-peak transmission error by e times
-    the sum of the largest and the least deflection; they rarely have. The number of positions adds half the change that a third of them
-    would make.
+    the sum of the largest and the least deflection; they rarely have. The number of positions adds half the
+    change that a third of them would make.
     """
     whole, third = figures(pair, curves), figures(pair, curves, every=3)
     own = curves.error or 0.0

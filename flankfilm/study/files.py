@@ -1,0 +1,74 @@
+"""A finished study as one dataset with units, and as a figure."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.dataset import Quantity, provenance, to_dataset, write_netcdf
+from flankfilm.study.outputs import OUTPUTS
+from flankfilm.study.run import StudyResults
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def dataset(found: StudyResults) -> xr.Dataset:
+    """Give a study as a dataset along ``row``: varied keys as coordinates, outputs, cost and faults."""
+    plan = found.plan
+    columns = {key: np.asarray([row[i] for row in plan.rows]) for i, key in enumerate(plan.keys)}
+    quantities = {
+        key: Quantity(("row",), values, _unit_of(key), f"key {key} of the scene")
+        for key, values in columns.items()
+    }
+    for i, name in enumerate(plan.outputs):
+        output = OUTPUTS[name]
+        values = np.array([row.values[i] for row in found.rows])
+        quantities[name] = Quantity(("row",), values, output.unit, output.meaning)
+    seconds = np.array([row.seconds for row in found.rows])
+    quantities["seconds"] = Quantity(("row",), seconds, "s", "cost of the row")
+    faults = np.asarray([row.fault for row in found.rows], dtype=object)
+    quantities["fault"] = Quantity(("row",), faults, "1", "why a row failed; empty where it did not")
+    attributes = {"title": plan.title, "design": plan.design, **provenance(json.dumps(plan.scene))}
+    return to_dataset(quantities, attributes).set_coords(list(plan.keys))
+
+
+def _unit_of(key: str) -> str:
+    """Unit that a scene's key carries, "1" where it carries none."""
+    last = key.rpartition(".")[2]
+    for suffix, unit in _UNITS.items():
+        if last.endswith(suffix):
+            return unit
+    return "1"
+
+
+_UNITS = {
+    "_per_GPa": "1/GPa",
+    "_kg_per_m3": "kg/m3",
+    "_N_per_m": "N/m",
+    "_Pa_s": "Pa s",
+    "_GPa": "GPa",
+    "_mm": "mm",
+    "_um": "um",
+    "_Nm": "N m",
+    "_rpm": "rpm",
+    "_deg": "deg",
+}
+
+
+def write_study(found: StudyResults, folder: Path) -> list[Path]:
+    """Write ``study.nc`` and, where numbers vary, ``study.svg``; return the files."""
+    from flankfilm.figures.study import study
+    from flankfilm.figures.style import save
+
+    files = [folder / "study.nc"]
+    content = dataset(found)
+    write_netcdf(files[0], content)
+    drawn = study(content, found.plan.keys[: found.plan.varied], found.plan.outputs)
+    if drawn is not None:
+        files.append(folder / "study.svg")
+        save(drawn, files[-1])
+    return files

@@ -1,0 +1,153 @@
+"""What a study can ask of a row: one number each, from the stages that it needs and no others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flankfilm.build import pinion_speed
+
+if TYPE_CHECKING:
+    from flankfilm.mesh_stiffness import MeshStiffness
+    from flankfilm.stages.engine import Engine
+
+
+@dataclass(frozen=True)
+class Output:
+    """One number of a row.
+
+    Attributes
+    ----------
+    unit, meaning : str
+    wants : tuple of str
+        The scene's wants that stand for it: they decide which sections a scene must have.
+    value : callable
+        Gives the number from a row's engine.
+    """
+
+    unit: str
+    meaning: str
+    wants: tuple[str, ...]
+    value: Callable[[Engine], float]
+
+
+def _stiffness(unit: str, meaning: str, value: Callable[[MeshStiffness, float], Any]) -> Output:
+    """Figure of the mesh cycle, with the film where the scene has one; the scale is to N/(mm um)."""
+
+    def of(engine: Engine) -> float:
+        return float(value(engine["mesh"], 1e-9 / engine["pair"].face_width))
+
+    return Output(unit, meaning, ("stiffness",), of)
+
+
+def _harmonic(order: int) -> Output:
+    def share(cycle: MeshStiffness, scale: float) -> float:
+        return float(2 * np.abs(np.fft.rfft(cycle.secant)[order]) / cycle.secant.sum())
+
+    return _stiffness("1", f"amplitude of harmonic {order} of the secant stiffness over its mean", share)
+
+
+def _geometry(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
+    return Output(unit, meaning, ("geometry",), lambda engine: float(value(engine["pair"])))
+
+
+def _film(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
+    return Output(unit, meaning, ("film",), lambda engine: float(value(engine["film"])))
+
+
+def _difference(model: str, reference: str) -> Output:
+    """Difference of a closed form's mean mesh stiffness from finite elements held to the path."""
+
+    def of(engine: Engine) -> float:
+        for found in engine["verification"].differences:
+            if (found.model, found.reference, found.figure) == (model, reference, "mesh, mean"):
+                return 100.0 * float(found.difference)
+        raise LookupError(f"no comparison of {model} with finite elements {reference}")
+
+    told = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
+    return Output("%", told, ("closed-forms",), of)
+
+
+def _sliding(pair: Any) -> float:
+    ends = pair.path_at(np.array([pair.points.A, pair.points.E]))
+    return float(max(np.abs(part).max() for part in ends.specific_sliding))
+
+
+def _sliding_speed(engine: Engine) -> float:
+    pair = engine["pair"]
+    ends = pair.path_at(np.array([pair.points.A, pair.points.E]))
+    return float(np.abs(ends.sliding(pinion_speed(engine.scene))).max())
+
+
+def _at_pitch_point(film: Any, pair: Any) -> float:
+    return float(np.interp(pair.points.C, film.rho1, film.central))
+
+
+_FORMS = {
+    "ishikawa": "Ishikawa",
+    "weber_banaschek": "Weber-Banaschek",
+    "potential_energy": "potential energy, Sainsot body",
+    "iso6336": "ISO 6336-1",
+}
+
+_LIKE = "without hub wind-up and coupling"
+
+OUTPUTS: Mapping[str, Output] = {
+    "contact_ratio": _geometry("1", "transverse contact ratio", lambda pair: pair.contact_ratio),
+    "axis_distance_mm": _geometry("mm", "distance of the axes", lambda pair: 1e3 * pair.axis_distance),
+    "working_pressure_angle_deg": _geometry(
+        "deg", "working pressure angle", lambda pair: np.degrees(pair.working_pressure_angle)
+    ),
+    "specific_sliding": _geometry("1", "largest specific sliding of both flanks, A to E", _sliding),
+    "sliding_speed_m_per_s": Output("m/s", "largest sliding speed, A to E", ("geometry",), _sliding_speed),
+    "mean_secant_N_per_mm_um": _stiffness(
+        "N/(mm um)", "mean secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.mean()
+    ),
+    "mean_tangent_N_per_mm_um": _stiffness(
+        "N/(mm um)", "mean tangent stiffness of the mesh", lambda cycle, scale: scale * cycle.tangent.mean()
+    ),
+    "least_secant_N_per_mm_um": _stiffness(
+        "N/(mm um)", "least secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.min()
+    ),
+    "largest_secant_N_per_mm_um": _stiffness(
+        "N/(mm um)", "largest secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.max()
+    ),
+    "transmission_error_um": _stiffness(
+        "um",
+        "loaded transmission error, peak to peak",
+        lambda cycle, _: 1e6 * np.ptp(cycle.transmission_error),
+    ),
+    **{f"harmonic_{order}": _harmonic(order) for order in range(1, 6)},
+    "stiffness_error": _stiffness(
+        "1",
+        "estimated relative numerical error of the mean secant stiffness; nan where unknown",
+        lambda cycle, _: np.nan if cycle.mean_error is None else cycle.mean_error,
+    ),
+    "least_film_um": _film("um", "least film along the path", lambda film: 1e6 * film.minimum.min()),
+    "least_central_film_um": _film(
+        "um", "least film on the line of centres along the path", lambda film: 1e6 * film.central.min()
+    ),
+    "film_at_C_um": Output(
+        "um",
+        "film on the line of centres at the pitch point",
+        ("film",),
+        lambda engine: 1e6 * _at_pitch_point(engine["film"], engine["pair"]),
+    ),
+    "hertz_pressure_GPa": _film(
+        "GPa", "largest Hertz pressure along the path", lambda film: 1e-9 * film.hertz_pressure.max()
+    ),
+    "film_change_percent": _film(
+        "%", "what the film changes the mean secant stiffness by", lambda film: 100 * film.change_secant
+    ),
+    "film_error": _film(
+        "1",
+        "largest estimated relative error of the films; nan where unknown",
+        lambda film: np.nan if film.error is None else film.error,
+    ),
+    **{f"{name}_percent": _difference(label, "held to the path") for name, label in _FORMS.items()},
+    **{f"{name}_like_for_like_percent": _difference(label, _LIKE) for name, label in _FORMS.items()},
+}
+"""Outputs by the name that a study file gives them; the unit is part of it."""

@@ -1,0 +1,280 @@
+"""The study file: a scene, the keys that vary, the design of the rows, and the outputs wanted of each."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+
+from flankfilm.faults import Fault, InputError
+from flankfilm.scene.explain import explain_all
+from flankfilm.scene.reader import parse_toml, read_text, validated
+from flankfilm.scene.schema import Section
+from flankfilm.study.outputs import OUTPUTS
+
+MOST_ROWS = 1_000_000
+
+Value = bool | int | float | str
+
+
+class Range(Section):
+    """Values from one end to the other."""
+
+    from_: float = Field(alias="from")
+    to: float
+    steps: int | None = Field(default=None, ge=2, le=MOST_ROWS, description="of a grid or a list")
+    log: bool = Field(default=False, description="equal ratios instead of equal steps")
+    whole: bool = Field(default=False, description="round to whole numbers, such as teeth")
+
+    @model_validator(mode="after")
+    def _a_range(self) -> Range:
+        if not self.from_ < self.to:
+            raise ValueError(f"from = {self.from_:g} must lie below to = {self.to:g}")
+        if self.log and self.from_ <= 0:
+            raise ValueError(f"log needs from > 0, not {self.from_:g}")
+        return self
+
+    def at(self, unit: float) -> Value:
+        """Value at a place between 0 and 1."""
+        if self.log:
+            value = math.exp(math.log(self.from_) + unit * math.log(self.to / self.from_))
+        else:
+            value = self.from_ + unit * (self.to - self.from_)
+        # twelve digits: 0.1 is written as 0.1, whatever the way that led there
+        value = min(max(float(f"{value:.12g}"), self.from_), self.to) + 0.0
+        return round(value) if self.whole else value
+
+
+class Follow(Section):
+    """A key that follows a varied one: times * value + plus."""
+
+    of: str
+    times: float = 1.0
+    plus: float = 0.0
+
+
+class StudyFile(Section):
+    """A whole study file."""
+
+    title: str = Field(default="", max_length=200)
+    scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
+    outputs: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=200)]
+    design: Literal["grid", "list", "latin-hypercube", "sobol"] = "grid"
+    samples: int | None = Field(default=None, ge=1, le=MOST_ROWS)
+    seed: int = Field(default=1, ge=0)
+    vary: dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]]
+    follow: dict[str, Follow] = Field(default_factory=dict)
+    set: dict[str, Value] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _one_design(self) -> StudyFile:
+        sampled = self.design in ("latin-hypercube", "sobol")
+        if not self.vary:
+            raise ValueError('vary needs a key of the scene, such as "pair.pinion.profile_shift"')
+        if sampled and self.samples is None:
+            raise ValueError(f'design = "{self.design}" needs samples')
+        if not sampled and self.samples is not None:
+            raise ValueError(f'samples belongs to sampled designs, not to "{self.design}"')
+        for key, values in self.vary.items():
+            if isinstance(values, Range) and not sampled and values.steps is None:
+                raise ValueError(f'vary "{key}" needs steps in a {self.design}')
+        for key, rule in self.follow.items():
+            if rule.of not in self.vary:
+                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
+        twice = (self.vary.keys() & self.follow.keys()) | (
+            self.set.keys() & (self.vary.keys() | self.follow.keys())
+        )
+        if twice:
+            raise ValueError(f"{', '.join(sorted(twice))} stands in two of vary, follow and set")
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A study, ready to be computed.
+
+    Attributes
+    ----------
+    title : str
+    scene : mapping
+        The scene's keys as read, with what the study sets.
+    outputs : tuple of str
+        Names in `flankfilm.study.outputs.OUTPUTS`.
+    keys : tuple of str
+        Varied keys of the scene, dotted; those that follow come last.
+    rows : tuple of tuple
+        Values of the keys, one tuple a row.
+    design : str
+    varied : int
+        How many of the keys are varied by themselves.
+    """
+
+    title: str
+    scene: Mapping[str, Any]
+    outputs: tuple[str, ...]
+    keys: tuple[str, ...]
+    rows: tuple[tuple[Value, ...], ...]
+    design: str
+    varied: int
+
+    def raw_scene(self, row: int) -> dict[str, Any]:
+        """Keys of a row's scene."""
+        raw = deepcopy(dict(self.scene))
+        for key, value in zip(self.keys, self.rows[row], strict=True):
+            _put(raw, key, value)
+        return raw
+
+    def identity(self) -> dict[str, Any]:
+        """What makes two plans the same study, as plain values."""
+        held = {"scene": self.scene, "outputs": self.outputs, "keys": self.keys, "rows": self.rows}
+        plain: dict[str, Any] = json.loads(json.dumps(held))
+        return plain
+
+
+def read_plan(path: Path) -> Plan:
+    """Read and check a study file, and every row's scene key by key.
+
+    Raises
+    ------
+    InputError
+        With every fault of the file.
+    """
+    raw = parse_toml(read_text(path), str(path))
+    try:
+        study = StudyFile.model_validate(raw)
+    except ValidationError as error:
+        raise InputError(explain_all(error.errors(), StudyFile)) from error
+    return plan_of(study, path.parent)
+
+
+def plan_of(study: StudyFile, folder: Path) -> Plan:
+    """Lay out the rows of a study whose scene file is named from `folder`."""
+    faults = [
+        Fault("outputs", repr(name), "is not an output", f"Allowed: {', '.join(OUTPUTS)}")
+        for name in study.outputs
+        if name not in OUTPUTS
+    ]
+    if faults:
+        raise InputError(faults)
+    scene = _base_scene(study, folder)
+    keys = (*study.vary, *study.follow)
+    varied = tuple(study.vary)
+    rows = []
+    for values in _design(study):
+        by_key = dict(zip(varied, values, strict=True))
+        rows.append((*values, *(_following(by_key, rule) for rule in study.follow.values())))
+    plan = Plan(
+        study.title, scene, tuple(dict.fromkeys(study.outputs)), keys, tuple(rows), study.design, len(varied)
+    )
+    _check_rows(plan)
+    return plan
+
+
+def _base_scene(study: StudyFile, folder: Path) -> dict[str, Any]:
+    if isinstance(study.scene, str):
+        path = folder / study.scene
+        scene = parse_toml(read_text(path), str(path))
+    else:
+        scene = deepcopy(study.scene)
+    for key, value in study.set.items():
+        _put(scene, key, value)
+    # what a row computes follows from the outputs, not from the scene's own wants
+    scene["wants"] = sorted({want for name in study.outputs for want in OUTPUTS[name].wants})
+    return scene
+
+
+def _put(raw: dict[str, Any], key: str, value: Value) -> None:
+    *sections, last = key.split(".")
+    here = raw
+    for section in sections:
+        inner = here.setdefault(section, {})
+        if not isinstance(inner, dict):
+            raise InputError(
+                [Fault(key, "", f"{section} is a value, not a section", "Name a key of the scene")]
+            )
+        here = inner
+    here[last] = value
+
+
+def _following(values: Mapping[str, Value], rule: Follow) -> Value:
+    leader = values[rule.of]
+    if isinstance(leader, str | bool):
+        raise InputError(
+            [Fault("follow", rule.of, "is text, which nothing can follow", 'Use design = "list"')]
+        )
+    followed = rule.times * leader + rule.plus
+    whole = isinstance(leader, int) and rule.times.is_integer() and rule.plus.is_integer()
+    return round(followed) if whole else followed
+
+
+def _design(study: StudyFile) -> Sequence[tuple[Value, ...]]:
+    if study.design in ("latin-hypercube", "sobol"):
+        return _sampled(study)
+    columns = [_listed(values) for values in study.vary.values()]
+    if study.design == "grid":
+        count = math.prod(len(column) for column in columns)
+        if count > MOST_ROWS:
+            raise InputError(
+                [Fault("vary", f"{count:,} rows", f"must give at most {MOST_ROWS:,}", "Take fewer steps")]
+            )
+        return list(itertools.product(*columns))
+    if len({len(column) for column in columns}) != 1:
+        lengths = ", ".join(str(len(column)) for column in columns)
+        raise InputError(
+            [Fault("vary", lengths, 'must have equally many values in a "list"', 'Or design = "grid"')]
+        )
+    return list(zip(*columns, strict=True))
+
+
+def _listed(values: Range | tuple[Value, ...]) -> tuple[Value, ...]:
+    if isinstance(values, Range):
+        return tuple(values.at(unit) for unit in np.linspace(0.0, 1.0, values.steps or 2).tolist())
+    return values
+
+
+def _sampled(study: StudyFile) -> list[tuple[Value, ...]]:
+    from scipy.stats import qmc
+
+    n, d = study.samples or 1, len(study.vary)
+    if study.design == "sobol":
+        # whole powers of two keep Sobol's balance; the rest of the last one is cut off
+        units = qmc.Sobol(d, scramble=True, rng=study.seed).random_base2(max(0, (n - 1).bit_length()))[:n]
+    else:
+        units = qmc.LatinHypercube(d, rng=study.seed).random(n)
+    return [
+        tuple(_pick(values, unit) for values, unit in zip(study.vary.values(), row, strict=True))
+        for row in units.tolist()
+    ]
+
+
+def _pick(values: Range | tuple[Value, ...], unit: float) -> Value:
+    if isinstance(values, Range):
+        return values.at(unit)
+    return values[min(int(unit * len(values)), len(values) - 1)]
+
+
+def _check_rows(plan: Plan) -> None:
+    """Refuse a study whose keys or values the scene cannot have, each fault once, with its first row."""
+    faults: dict[tuple[str, str], Fault] = {}
+    for row in range(len(plan.rows)):
+        try:
+            validated(plan.raw_scene(row))
+        except InputError as error:
+            for fault in error.faults:
+                faults.setdefault(
+                    (fault.where, fault.allowed),
+                    Fault(f"row {row}: {fault.where}", fault.value, fault.allowed, fault.remedy),
+                )
+    if faults:
+        raise InputError(faults.values())
+
+
+__all__ = ["Plan", "StudyFile", "plan_of", "read_plan"]

@@ -1,0 +1,84 @@
+"""Computes one row of a study; runs in any process of any machine."""
+
+from __future__ import annotations
+
+import time
+import traceback
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a row needs to be computed.
+
+    Attributes
+    ----------
+    index : int
+    scene : mapping
+        Keys of its scene.
+    outputs : tuple of str
+    use_cache : bool
+        Whether results of earlier runs with the same inputs and code may serve.
+    """
+
+    index: int
+    scene: Mapping[str, Any]
+    outputs: tuple[str, ...]
+    use_cache: bool = True
+
+
+@dataclass(frozen=True)
+class RowResult:
+    """What came of a row.
+
+    Attributes
+    ----------
+    index : int
+    values : tuple of float
+        Outputs in the order asked for; NaN throughout where the row failed.
+    seconds : float
+        Cost [s].
+    fault : str
+        Why it failed; empty where it did not.
+    """
+
+    index: int
+    values: tuple[float, ...]
+    seconds: float
+    fault: str = ""
+
+
+def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
+    """Give the result of a row that failed."""
+    return RowResult(row.index, (float("nan"),) * len(row.outputs), seconds, " ".join(fault.split()))
+
+
+def compute_row(row: Row) -> RowResult:
+    """Compute the outputs of a row; whatever goes wrong becomes its fault."""
+    from flankfilm.cache import Cache, keep_compiled_code, user_cache
+    from flankfilm.faults import InputError, SolverError, told_by_a_floor
+
+    keep_compiled_code()
+    from flankfilm.scene.reader import validated
+    from flankfilm.stages.catalogue import STAGES
+    from flankfilm.stages.engine import Engine
+    from flankfilm.study.outputs import OUTPUTS
+
+    start = time.perf_counter()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a scene's own run shows them
+            cache = Cache(user_cache() / "results" if row.use_cache else None)
+            engine = Engine(validated(dict(row.scene)), STAGES, cache)
+            values = tuple(OUTPUTS[name].value(engine) for name in row.outputs)
+    except (InputError, SolverError) as fault:
+        return failed(row, str(fault), time.perf_counter() - start)
+    except Exception as fault:  # noqa: BLE001 - one row must not end a study of thousands; its fault is kept
+        told = told_by_a_floor(fault) if isinstance(fault, ValueError) else None
+        place = traceback.extract_tb(fault.__traceback__)[-1]
+        where = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"
+        return failed(row, str(told or where), time.perf_counter() - start)
+    return RowResult(row.index, values, time.perf_counter() - start)

@@ -1,0 +1,185 @@
+"""Runs a study: computes the rows that are missing, each kept as it arrives."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from dataclasses import dataclass
+from pathlib import Path
+
+from flankfilm.cache import code_digest
+from flankfilm.dataset import write_text
+from flankfilm.faults import Fault, InputError
+from flankfilm.folder import claim
+from flankfilm.study.executors import Kind, default_workers, executor
+from flankfilm.study.plan import Plan
+from flankfilm.study.row import Row, RowResult, compute_row, failed
+from flankfilm.study.table import ROWS, append, locked, read_rows
+
+Told = Callable[[int, int], None]
+"""Called with the rows done and the rows in all, each time that a row arrives."""
+
+PLAN = "study.json"
+
+_PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
+
+
+@dataclass(frozen=True)
+class StudyResults:
+    """What a study gave.
+
+    Attributes
+    ----------
+    plan : Plan
+    rows : tuple of RowResult
+        In the order of the plan.
+    computed : int
+        Rows computed by this run; the others were there.
+    seconds : float
+        Wall time of this run.
+    """
+
+    plan: Plan
+    rows: tuple[RowResult, ...]
+    computed: int
+    seconds: float
+
+    @property
+    def failures(self) -> tuple[RowResult, ...]:
+        """Rows that failed."""
+        return tuple(row for row in self.rows if row.fault)
+
+
+def run_study(
+    plan: Plan,
+    folder: Path,
+    *,
+    kind: Kind = "processes",
+    workers: int | None = None,
+    resume: bool = False,
+    use_cache: bool = True,
+    told: Told = lambda done, total: None,
+) -> StudyResults:
+    """Compute the rows of a plan into ``rows.csv`` of a folder.
+
+    Parameters
+    ----------
+    plan : Plan
+    folder : Path
+        Made when it does not exist.
+    kind : {"processes", "dask", "mpi"}
+        Where rows are computed.
+    workers : int, optional
+        Processes; as many as there are cores unless given.
+    resume : bool
+        Whether to take up a study that was begun in the folder.
+    use_cache : bool
+        Whether rows may take results of earlier runs from the user's cache.
+    told : callable
+        Told of rows done and rows in all.
+
+    Returns
+    -------
+    StudyResults
+
+    Raises
+    ------
+    InputError
+        Where the folder holds another study, or rows of this one without `resume`.
+    """
+    start = time.perf_counter()
+    claim(folder)
+    with locked(folder):
+        done = _take_up(plan, folder, resume)
+        missing = [
+            Row(index, plan.raw_scene(index), plan.outputs, use_cache)
+            for index in range(len(plan.rows))
+            if index not in done
+        ]
+        told(len(done), len(plan.rows))
+        for result in computed(missing, kind, workers or default_workers()):
+            append(folder / ROWS, plan, result)
+            done[result.index] = result
+            told(len(done), len(plan.rows))
+    ordered = tuple(done[index] for index in range(len(plan.rows)))
+    return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
+
+
+def _take_up(plan: Plan, folder: Path, resume: bool) -> dict[int, RowResult]:
+    """Rows that the folder holds of this study; note the study in a folder that holds none."""
+    identity = {"study": plan.identity(), "code_sha256": code_digest(_PACKAGES)}
+    note = folder / PLAN
+    if not note.exists():
+        if (folder / ROWS).exists():
+            told = f"holds {ROWS} without its {PLAN}"
+            raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
+        write_text(note, json.dumps({"title": plan.title, **identity}, indent=1))
+        return {}
+    held = json.loads(note.read_text(encoding="utf-8"))
+    if held.get("study") != identity["study"]:
+        told = "holds another study, or this one with other keys, rows or outputs"
+        raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
+    rows = read_rows(folder / ROWS, plan)
+    if rows and not resume:
+        told = f"holds {len(rows)} of {len(plan.rows)} rows of this study"
+        raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
+    if rows and held.get("code_sha256") != identity["code_sha256"]:
+        told = "holds rows that other code or libraries computed"
+        raise InputError([Fault(str(folder), "", told, "Name another folder with --out to start anew")])
+    write_text(note, json.dumps({"title": plan.title, **identity}, indent=1))
+    return rows
+
+
+def computed(rows: Iterable[Row], kind: Kind, workers: int) -> Iterator[RowResult]:
+    """Compute rows, in the order in which they are done.
+
+    Not more than a few rows a worker wait in the executor at once. Where a process dies, the rows that it
+    may have had are computed again, each in a process of its own; one whose process dies again has failed.
+    """
+    left = list(rows)
+    while left:
+        suspects: list[Row] = []
+        arrived: set[int] = set()
+        with executor(kind, workers) as pool:
+            waiting: dict[Future[RowResult], Row] = {}
+            ahead = iter(left)
+            try:
+                while True:
+                    for row in ahead:
+                        waiting[pool.submit(compute_row, row)] = row
+                        if len(waiting) >= 3 * workers:
+                            break
+                    if not waiting:
+                        break
+                    for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                        row = waiting[future]
+                        result = _result(row, future)
+                        del waiting[future]
+                        arrived.add(row.index)
+                        yield result
+            except BrokenExecutor:
+                suspects = list(waiting.values())
+        for row in suspects:
+            arrived.add(row.index)
+            yield _alone(row)
+        left = [row for row in left if row.index not in arrived]
+
+
+def _result(row: Row, future: Future[RowResult]) -> RowResult:
+    fault = future.exception()
+    if fault is None:
+        return future.result()
+    if isinstance(fault, BrokenExecutor):
+        raise fault
+    return failed(row, f"{type(fault).__name__}: {fault}")
+
+
+def _alone(row: Row) -> RowResult:
+    """Compute a row in a process of its own."""
+    with executor("processes", 1) as pool:
+        try:
+            return pool.submit(compute_row, row).result()
+        except BrokenExecutor:
+            return failed(row, "the process that computed it died, perhaps for want of memory")

@@ -1,0 +1,94 @@
+"""Rows on the disk: one CSV file that only grows, so that a study killed at any moment goes on from it.
+
+A row is appended by a single write and forced to the disk. What a power cut may leave is a last line
+without its end, which is cut off when the study is taken up again.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from flankfilm.faults import Fault, InputError
+from flankfilm.study.plan import Plan
+from flankfilm.study.row import RowResult
+
+ROWS = "rows.csv"
+
+
+def header(plan: Plan) -> list[str]:
+    """Names of the columns: row, the varied keys, the outputs, cost and fault."""
+    return ["row", *plan.keys, *plan.outputs, "seconds", "fault"]
+
+
+def read_rows(path: Path, plan: Plan) -> dict[int, RowResult]:
+    """Read the rows that are there, and cut off a last line without its end.
+
+    Raises
+    ------
+    InputError
+        Where the file holds something else.
+    """
+    if not path.exists():
+        return {}
+    data = path.read_bytes()
+    whole = data[: data.rfind(b"\n") + 1]
+    if len(whole) < len(data):
+        with path.open("rb+") as file:
+            file.truncate(len(whole))
+    lines = list(csv.reader(io.StringIO(whole.decode("utf-8"))))
+    if lines and lines[0] != header(plan):
+        allowed = "must hold the columns of this study"
+        raise InputError([Fault(str(path), "", allowed, "Name another folder with --out")])
+    first, last = 1 + len(plan.keys), 1 + len(plan.keys) + len(plan.outputs)
+    found = {}
+    for line in lines[1:]:
+        values = tuple(float(text) for text in line[first:last])
+        found[int(line[0])] = RowResult(int(line[0]), values, float(line[last]), line[last + 1])
+    return found
+
+
+def append(path: Path, plan: Plan, result: RowResult) -> None:
+    """Add a row; floats are written so that they read back to the last digit."""
+    rows: list[Sequence[object]] = [] if path.exists() and path.stat().st_size else [header(plan)]
+    rows.append([result.index, *plan.rows[result.index], *result.values, result.seconds, result.fault])
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
+    try:
+        data = text.getvalue().encode("utf-8")
+        written = os.write(handle, data)
+        if written < len(data):  # a full disk: leave no torn line behind
+            os.ftruncate(handle, os.fstat(handle).st_size - written)
+            raise OSError(28, "No space left on device", str(path))
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep a second study out of the folder; the lock goes with the process that holds it.
+
+    Raises
+    ------
+    InputError
+        Where another study is at work there.
+    """
+    if sys.platform == "win32":
+        yield  # no lock that a killed process lets go of by itself is at hand there
+        return
+    import fcntl
+
+    with (folder / ".lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as fault:
+            told = "another study is at work there"
+            raise InputError([Fault(str(folder), "", told, "Wait for it, or name another --out")]) from fault
+        yield

@@ -1,0 +1,63 @@
+"""Verifies a scene: compares, and writes tables and a figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flankfilm.cache import Cache, user_cache
+from flankfilm.faults import Fault, InputError, told_by_a_floor
+from flankfilm.folder import claim
+from flankfilm.progress import Progress, silent
+from flankfilm.scene import Scene
+from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.engine import Engine
+from flankfilm.verify.compare import Verification
+
+
+def verify_scene(
+    scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent
+) -> Verification:
+    """Compare every closed form with finite elements on a scene's pair, torque and tolerance.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its sections pair, material and operating count, and stiffness.plane and contact_beyond_path.
+    folder : Path
+        Where the files will go; made, and seen to be writable, before anything is computed.
+    use_cache : bool
+        Whether results of earlier runs with the same inputs and code may serve.
+    progress : callable
+        Told what is being done, steps done, and steps in all.
+
+    Returns
+    -------
+    Verification
+
+    Raises
+    ------
+    InputError
+        Sections that are missing, geometry that cannot be built.
+    SolverError
+        Where the compliance misses its share of the tolerance.
+    """
+    lacking = [name for name in ("pair", "material", "operating") if getattr(scene, name) is None]
+    if lacking:
+        raise InputError(
+            [Fault(f"[{name}]", "", "is required to verify", f"Add the section [{name}]") for name in lacking]
+        )
+    claim(folder)
+    cache = Cache(user_cache() / "results" if use_cache else None)
+    done: list[str] = []
+
+    def announce(title: str) -> None:
+        done.append(title)
+        progress(title, len(done) - 1, 3)
+
+    try:
+        found: Verification = Engine(scene, STAGES, cache, lambda stage: announce(stage.title))[
+            "verification"
+        ]
+    except ValueError as error:
+        raise told_by_a_floor(error) or error from error
+    return found

@@ -1,0 +1,288 @@
+"""Studies: design of the rows, what a killed or failing one leaves behind, and what may not be mixed."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from flankfilm.faults import InputError
+from flankfilm.study.outputs import OUTPUTS
+from flankfilm.study.plan import read_plan
+from flankfilm.study.run import run_study
+from flankfilm.study.table import append, locked, read_rows
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCRIPT = Path(sys.executable).with_name("flankfilm")
+
+GEOMETRY = """
+scene = "{scene}"
+outputs = ["contact_ratio", "specific_sliding"]
+design = "{design}"
+{more}
+[vary]
+{vary}
+"""
+
+
+def study_file(folder, vary, design="grid", more=""):
+    path = folder / "study.toml"
+    scene = (EXAMPLES / "article.toml").as_posix()
+    path.write_text(GEOMETRY.format(scene=scene, design=design, more=more, vary=vary), encoding="utf-8")
+    return path
+
+
+SHIFTS = '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4, steps = 4 }'
+
+
+def run(*arguments, status=0, **more):
+    done = subprocess.run(
+        [str(SCRIPT), "study", *map(str, arguments)], capture_output=True, text=True, check=False, **more
+    )
+    assert done.returncode == status, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+class TestDesign:
+    def test_a_grid_takes_every_combination(self, tmp_path):
+        plan = read_plan(study_file(tmp_path, SHIFTS + '\n"pair.module_mm" = [1.0, 2.0, 3.0]'))
+        assert len(plan.rows) == 12
+        assert plan.rows[0] == (-0.2, 1.0)
+        assert plan.rows[-1] == (0.4, 3.0)
+        assert plan.raw_scene(4)["pair"]["pinion"]["profile_shift"] == 0.0
+        assert plan.raw_scene(4)["pair"]["wheel"]["profile_shift"] == 0.0
+
+    def test_a_list_goes_side_by_side(self, tmp_path):
+        plan = read_plan(study_file(tmp_path, SHIFTS + '\n"pair.module_mm" = [1.0, 2.0, 3.0, 4.0]', "list"))
+        assert plan.rows[2] == (0.2, 3.0)
+        with pytest.raises(InputError, match="equally many"):
+            read_plan(study_file(tmp_path, SHIFTS + '\n"pair.module_mm" = [1.0, 2.0]', "list"))
+
+    def test_a_key_follows_another(self, tmp_path):
+        follow = '\n[follow]\n"pair.wheel.profile_shift" = { of = "pair.pinion.profile_shift", times = -1.0 }'
+        plan = read_plan(study_file(tmp_path, SHIFTS + follow))
+        assert all(first == -second for first, second in plan.rows)
+        assert plan.varied == 1
+
+    @pytest.mark.parametrize("design", ["latin-hypercube", "sobol"])
+    def test_samples_fill_the_ranges_evenly(self, tmp_path, design):
+        vary = (
+            '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4 }\n'
+            '"pair.module_mm" = { from = 0.1, to = 10.0, log = true }\n'
+            '"pair.pinion.teeth" = { from = 30, to = 60, whole = true }'
+        )
+        plan = read_plan(study_file(tmp_path, vary, design, "samples = 64\nseed = 5"))
+        shift, module, teeth = (np.array(column) for column in zip(*plan.rows, strict=True))
+        # one of 64 samples in each 64th of a range (Sobol: net in base 2; Latin hypercube: by construction)
+        for unit in ((shift + 0.2) / 0.6, np.log(module / 0.1) / np.log(100)):
+            assert len({math.floor(64 * u) for u in unit * (1 - 1e-12)}) >= 63
+        assert teeth.dtype == int
+        assert teeth.min() >= 30
+        assert teeth.max() <= 60
+        again = read_plan(study_file(tmp_path, vary, design, "samples = 64\nseed = 5"))
+        assert again.rows == plan.rows
+
+    @pytest.mark.parametrize(
+        ("vary", "design", "more", "told"),
+        [
+            ('"pair.pinion.tooth" = [30, 31]', "grid", "", "tooth"),
+            ('"pair.module_mm" = [1.0, -1.0]', "grid", "", "row 1: pair.module_mm"),
+            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "grid", "", "needs steps"),
+            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "sobol", "", "needs samples"),
+            ('"pair.module_mm" = { from = 2.0, to = 1.0, steps = 3 }', "grid", "", "must lie below"),
+            ('"pair.module_mm" = { from = 0.0, to = 1.0, steps = 3, log = true }', "grid", "", "log needs"),
+            ('"title.deep" = [1]', "grid", "", "not a section"),
+            ("", "grid", "", "needs a key"),
+        ],
+    )
+    def test_faults_name_the_key(self, tmp_path, vary, design, more, told):
+        with pytest.raises(InputError, match=told):
+            read_plan(study_file(tmp_path, vary, design, more))
+
+    def test_all_unknown_outputs_are_named(self, tmp_path):
+        path = study_file(tmp_path, SHIFTS)
+        path.write_text(path.read_text().replace('"contact_ratio"', '"colour", "smell"'))
+        with pytest.raises(InputError) as found:
+            read_plan(path)
+        assert len(found.value.faults) == 2
+
+
+class TestRows:
+    def test_rows_are_those_of_single_runs(self, tmp_path):
+        from flankfilm.build import gear_pair
+        from flankfilm.scene.reader import validated
+
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        found = run_study(plan, tmp_path / "out", workers=1)
+        for row in found.rows:
+            pair = gear_pair(validated(plan.raw_scene(row.index)))
+            assert row.values[0] == pair.contact_ratio
+        kept = pd.read_csv(tmp_path / "out" / "rows.csv")
+        assert sorted(kept["row"]) == [0, 1, 2, 3]
+        assert set(kept["contact_ratio"]) == {row.values[0] for row in found.rows}
+
+    def test_a_row_that_fails_says_why_and_the_others_go_on(self, tmp_path):
+        plan = read_plan(study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9, -0.1]'))
+        found = run_study(plan, tmp_path / "out", workers=1)
+        assert [bool(row.fault) for row in found.rows] == [False, True, False]
+        assert "pair.pinion.tip_alteration" in found.rows[1].fault
+        assert math.isnan(found.rows[1].values[0])
+        kept = pd.read_csv(tmp_path / "out" / "rows.csv").set_index("row")
+        assert "tip_alteration" in kept.fault[1]
+
+    def test_a_process_that_dies_costs_its_row_alone(self, tmp_path, monkeypatch):
+        """A row that ends its process, as the kernel does for want of memory."""
+        monkeypatch.setattr("flankfilm.study.run.compute_row", die_or_count)
+        from flankfilm.study.row import Row
+        from flankfilm.study.run import computed
+
+        rows = [Row(index, {"die": index == 2}, ("contact_ratio",)) for index in range(5)]
+        results = {result.index: result for result in computed(rows, "processes", 1)}
+        assert sorted(results) == [0, 1, 2, 3, 4]
+        assert "died" in results[2].fault
+        assert [results[i].values[0] for i in (0, 1, 3, 4)] == [0.0, 1.0, 3.0, 4.0]
+
+    def test_a_torn_last_line_is_cut_off_and_its_row_computed_again(self, tmp_path):
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        found = run_study(plan, tmp_path / "out", workers=1)
+        path = tmp_path / "out" / "rows.csv"
+        whole = path.read_bytes()
+        for cut in range(1, len(whole.splitlines()[-1]) + 1):
+            path.write_bytes(whole[:-cut])
+            assert len(read_rows(path, plan)) == 3
+            assert path.read_bytes().endswith(b"\n")
+        again = run_study(plan, tmp_path / "out", workers=1, resume=True)
+        assert again.computed == 1
+        assert [r.values for r in again.rows] == [r.values for r in found.rows]
+
+    def test_values_read_back_to_the_last_digit(self, tmp_path):
+        from flankfilm.study.row import RowResult
+
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        for index, value in enumerate((math.pi, 1e-300, float("nan"), -0.0)):
+            append(
+                tmp_path / "rows.csv", plan, RowResult(index, (value, 1 / 3), 0.1, 'a "fault", of two words')
+            )
+        found = read_rows(tmp_path / "rows.csv", plan)
+        assert found[0].values == (math.pi, 1 / 3)
+        assert found[1].values[0] == 1e-300
+        assert math.isnan(found[2].values[0])
+        assert math.copysign(1, found[3].values[0]) == -1
+        assert found[0].fault == 'a "fault", of two words'
+
+
+def die_or_count(row):
+    """Stand in for a row's work."""
+    from flankfilm.study.row import RowResult
+
+    if row.scene["die"]:
+        os._exit(9)
+    return RowResult(row.index, (float(row.index),), 0.0)
+
+
+class TestFolder:
+    def test_another_study_is_kept_out(self, tmp_path):
+        out = tmp_path / "out"
+        run_study(read_plan(study_file(tmp_path, SHIFTS)), out, workers=1)
+        with pytest.raises(InputError, match="--resume"):
+            run_study(read_plan(study_file(tmp_path, SHIFTS)), out, workers=1)
+        other = read_plan(study_file(tmp_path, SHIFTS.replace("0.4", "0.5")))
+        with pytest.raises(InputError, match="another study"):
+            run_study(other, out, workers=1, resume=True)
+
+    def test_rows_of_other_code_are_not_mixed_in(self, tmp_path, monkeypatch):
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        run_study(plan, tmp_path / "out", workers=1)
+        monkeypatch.setattr("flankfilm.study.run.code_digest", lambda packages: "other")
+        with pytest.raises(InputError, match="other code"):
+            run_study(plan, tmp_path / "out", workers=1, resume=True)
+
+    def test_two_at_once_do_not_share_a_folder(self, tmp_path):
+        with locked(tmp_path), pytest.raises(InputError, match="at work"), locked(tmp_path):
+            pass
+
+    def test_killed_at_any_moment_it_goes_on_to_the_same_numbers(self, tmp_path):
+        vary = '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4, steps = 60 }'
+        path = study_file(tmp_path, vary)
+        whole = run_study(read_plan(path), tmp_path / "whole", workers=1)
+        rows = tmp_path / "out" / "rows.csv"
+        for lines in (1, 15, 40):
+            busy = subprocess.Popen(
+                [
+                    str(SCRIPT),
+                    "study",
+                    str(path),
+                    "--out",
+                    str(tmp_path / "out"),
+                    "--workers",
+                    "1",
+                    "--resume",
+                ],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+            while busy.poll() is None and (not rows.exists() or rows.read_bytes().count(b"\n") < lines):
+                time.sleep(0.002)
+            busy.send_signal(signal.SIGKILL)
+            busy.wait()
+        run(path, "--out", tmp_path / "out", "--workers", "1", "--resume")
+        with xr.open_dataset(tmp_path / "out" / "study.nc", engine="h5netcdf") as found:
+            assert found.contact_ratio.values.tolist() == [row.values[0] for row in whole.rows]
+            assert found["pair.pinion.profile_shift"].values.tolist() == [row[0] for row in whole.plan.rows]
+            assert found.contact_ratio.attrs["units"] == "1"
+
+
+class TestCommand:
+    def test_the_study_of_sliding_is_written_and_drawn(self, tmp_path):
+        done = run(study_file(tmp_path, SHIFTS), "--out", tmp_path / "out", "--workers", "1")
+        assert "4 rows, 4 of them computed" in done.stdout
+        assert "<svg" in (tmp_path / "out" / "study.svg").read_text(encoding="utf-8")
+
+    def test_all_rows_failed_is_a_failure(self, tmp_path):
+        path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.9, 0.95]')
+        assert "row 0 failed" in run(path, "--out", tmp_path / "out", status=3).stdout
+
+    @pytest.mark.parametrize("kind", ["dask", "mpi"])
+    def test_an_executor_that_is_not_installed_is_named(self, tmp_path, kind):
+        pytest.importorskip("flankfilm")
+        module = {"dask": "distributed", "mpi": "mpi4py"}[kind]
+        blocked = (
+            "import sys; sys.modules['dask'] = sys.modules['mpi4py'] = None; from flankfilm.cli import main; "
+        )
+        path = study_file(tmp_path, SHIFTS)
+        code = (
+            blocked
+            + f"sys.argv = ['flankfilm', 'study', {str(path)!r}, '--out', 'o', '--executor', '{kind}']; main()"
+        )
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False
+        )
+        assert done.returncode == 2, done.stderr
+        assert module in done.stderr
+
+
+@pytest.mark.parametrize("path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda path: path.stem)
+def test_every_example_is_in_order_and_its_first_row_computes(path):
+    from flankfilm.study.row import Row, compute_row
+
+    plan = read_plan(path)
+    result = compute_row(Row(0, plan.raw_scene(0), plan.outputs))
+    assert result.fault == ""
+    for name, value in zip(plan.outputs, result.values, strict=True):
+        assert math.isfinite(value), name
+
+
+def test_outputs_carry_their_unit_in_the_name():
+    suffixes = {"mm": "_mm", "um": "_um", "deg": "_deg", "GPa": "_GPa", "m/s": "_m_per_s", "%": "_percent"}
+    for name, output in OUTPUTS.items():
+        assert name.endswith(suffixes.get(output.unit, "")), name
