@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-FAMILY = 7
-"""Most curves of one family; beyond that rows are drawn as points in colour."""
+FAMILY = 18
+"""Most curves of one family; beyond that rows are drawn as points, coloured by the second number."""
 
 
 def study(found: xr.Dataset, keys: Sequence[str], outputs: Sequence[str]) -> Figure | None:
-    """Draw every output against the first varied number; the second one makes a family of curves or colours.
+    """Draw every output against the first varied number; the other keys make a family of curves.
 
     Returns
     -------
@@ -26,44 +26,56 @@ def study(found: xr.Dataset, keys: Sequence[str], outputs: Sequence[str]) -> Fig
         None where no number varies.
     """
     numbers = [k for k in keys if np.issubdtype(found[k].dtype, np.number) and np.ptp(found[k].values) > 0]
-    words = [k for k in keys if not np.issubdtype(found[k].dtype, np.number)]
     if not numbers:
         return None
-    across = numbers[0]
-    split = (numbers[1:] + words)[:1]
+    others = [k for k in keys if k != numbers[0]]
     columns = min(2, len(outputs))
     lines = -(-len(outputs) // columns)
     with styled():
-        drawn = figure(3.6 * columns, 2.5 * lines + 0.5)
+        drawn = figure(3.6 * columns, 2.5 * lines + 0.7)
         panels = drawn.subplots(lines, columns, squeeze=False).ravel()
         for axes, name in zip(panels, outputs, strict=False):
-            _panel(axes, found, across, split, name)
+            _panel(axes, found, numbers[0], others, name)
         for axes in panels[len(outputs) :]:
             axes.set_visible(False)
         handles, labels = panels[0].get_legend_handles_labels()
         if handles:
-            drawn.legend(
-                handles, labels, loc="outside upper left", ncols=4, title=split[0] if split else None
-            )
+            title = ", ".join(others)
+            drawn.legend(handles, labels, loc="outside upper left", ncols=4, title=title, alignment="left")
     return drawn
 
 
-def _panel(axes: Any, found: xr.Dataset, across: str, split: Sequence[str], name: str) -> None:
+def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], name: str) -> None:
     x, y = found[across].values, found[name].values
-    members = np.unique(found[split[0]].values) if split else np.zeros(1)
-    if not split:
-        order = np.argsort(x, kind="stable")
-        marker = ".-" if np.unique(x).size == x.size else "."
-        axes.plot(x[order], y[order], marker, color=COLOURS[0])
-    elif members.size <= FAMILY:
-        for member, colour, dash in zip(members, COLOURS, DASHES, strict=False):
-            mine = np.flatnonzero(found[split[0]].values == member)
-            mine = mine[np.argsort(x[mine], kind="stable")]
-            label = member if isinstance(member, str) else f"{member:.5g}"
-            axes.plot(x[mine], y[mine], color=colour, linestyle=dash, marker=".", label=label)
+    rows = list(zip(*(found[key].values.tolist() for key in others), strict=True)) or [()] * x.size
+    family = sorted(set(rows), key=str) if others else [()]
+    if len(family) > FAMILY:
+        shade = found[others[0]].values
+        if np.issubdtype(shade.dtype, np.number):
+            points = axes.scatter(x, y, c=shade, s=8, cmap="viridis")
+            axes.figure.colorbar(points, ax=axes, label=others[0])
+        else:
+            axes.plot(x, y, ".", color=COLOURS[0])
     else:
-        drawn = axes.scatter(x, y, c=found[split[0]].values, s=8, cmap="viridis")
-        axes.figure.colorbar(drawn, ax=axes, label=split[0])
+        firsts = list(dict.fromkeys(member[:1] for member in family))
+        rests = list(dict.fromkeys(member[1:] for member in family))
+        for member in family:
+            mine = np.flatnonzero([row == member for row in rows])
+            mine = mine[np.argsort(x[mine], kind="stable")]
+            axes.plot(
+                x[mine],
+                y[mine],
+                color=COLOURS[firsts.index(member[:1]) % len(COLOURS)],
+                linestyle=DASHES[rests.index(member[1:]) % len(DASHES)],
+                marker=".",
+                label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
+            )
     unit = found[name].attrs["units"]
-    told = name.replace("_", " ")
-    axes.set(xlabel=across, ylabel=told if unit == "1" else f"{told}\n[{unit}]")
+    axes.set(xlabel=across, ylabel=_words(name) if unit == "1" else f"{_words(name)} [{unit}]")
+
+
+def _words(name: str) -> str:
+    """Name of an output without its unit."""
+    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_m_per_s"):
+        name = name.removesuffix(unit)
+    return name.replace("_", " ")
