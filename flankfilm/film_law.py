@@ -1,12 +1,13 @@
-r"""What a film props two flanks apart by, as a function of the force, around a solved film.
+r"""What films prop two flanks apart by, as a function of place and force, around solved films.
 
-Near a solved film at the force :math:`F_0` the prop follows
+Near a film solved at the force :math:`F_0` the prop follows
 
 .. math:: s(F) = s_0 \, (F/F_0)^{-n}, \qquad n = F_0 / (k \, s_0),
 
 which meets value and slope :math:`ds/dF = -1/k` there, stays positive and falls with the force: the form that
 every film formula has. Iterated with new films it needs two or three rounds, where a straight line
-can turn negative at small forces.
+can turn negative at small forces. Between two films along the path, what each says of the force in question
+is weighted linearly: place changes radius and speed by little from one film to the next.
 """
 
 from __future__ import annotations
@@ -24,44 +25,80 @@ _LEAST_RATIO = 0.01
 
 @dataclass(frozen=True, eq=False)
 class FilmLaw:
-    """Props of all pairs at all positions of a mesh cycle, as load sharing takes them.
+    """Films along the path of contact, as load sharing takes them.
 
     Attributes
     ----------
-    force : ndarray, shape (positions, pairs)
-        Force at which the film was solved [N]; any positive number where `prop` is zero.
-    prop : ndarray, shape (positions, pairs)
-        Prop there [m]; zero for pairs without film.
-    exponent : ndarray, shape (positions, pairs)
+    rho1 : ndarray, shape (n,)
+        Curvature radius of the pinion's flank at the films, rising [m].
+    force : ndarray, shape (n,)
+        Force at which each film was solved [N].
+    prop : ndarray, shape (n,)
+        Prop there [m].
+    exponent : ndarray, shape (n,)
         n, at least zero [-].
     """
 
+    rho1: Array
     force: Array
     prop: Array
     exponent: Array
 
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
-        """Prop [m] and its slope [m/N]; the law is tied to its places already."""
-        return self.approach(forces), self.slope(forces)
+        """Prop [m] and its slope [m/N] at given places and forces.
+
+        A force below a hundredth of a solved one is taken as that hundredth: the power law would grow
+        without bound where the pair lets go. Places beyond the films have the nearest one.
+
+        Parameters
+        ----------
+        rho1 : ndarray
+            Places [m]; NaN where no film is wanted: zero there.
+        forces : ndarray
+            Of the same shape [N].
+        """
+        (first, second), share = self._neighbours(rho1)
+        told = [self._one(film, forces) for film in (first, second)]
+        prop, slope = ((1 - share) * a + share * b for a, b in zip(*told, strict=True))
+        some = np.isfinite(rho1)
+        return np.where(some, prop, 0.0), np.where(some, slope, 0.0)
+
+    def stiffness(self, rho1: Array) -> Array:
+        """Film stiffness at the solved forces, infinite at NaN [N/m]."""
+        (first, second), share = self._neighbours(rho1)
+        yielding = self.exponent * self.prop / self.force
+        between = np.where(np.isfinite(rho1), (1 - share) * yielding[first] + share * yielding[second], 0.0)
+        return np.divide(1.0, between, out=np.full_like(between, np.inf), where=between > 0)
+
+    def _neighbours(self, rho1: Array) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
+        """Films on either side of each place, and the share of the second."""
+        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
+        second = np.clip(np.searchsorted(self.rho1, place), min(1, self.rho1.size - 1), self.rho1.size - 1)
+        first = np.maximum(second - 1, 0)
+        step = self.rho1[second] - self.rho1[first]
+        share = np.divide(place - self.rho1[first], step, out=np.zeros_like(place), where=step > 0)
+        return (first, second), share
+
+    def _one(self, film: NDArray[np.intp], forces: Array) -> tuple[Array, Array]:
+        """Prop and slope by one film each."""
+        solved, exponent = self.force[film], self.exponent[film]
+        ratio = np.maximum(forces / solved, _LEAST_RATIO)
+        prop = self.prop[film] * ratio**-exponent
+        slope = np.where(ratio > _LEAST_RATIO, -exponent * prop / (ratio * solved), 0.0)
+        return prop, slope
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedFilm:
+    """A film law at fixed places, in the form of `gears.share_load`."""
+
+    law: FilmLaw
+    rho1: Array
 
     def approach(self, force: Array) -> Array:
-        """Prop of each pair at the given forces [N], shape (positions, pairs) [m].
-
-        A force below a hundredth of the solved one is taken as that hundredth: the power law would
-        grow without bound where the pair lets go.
-        """
-        return np.asarray(self.prop * self._ratio(force) ** -self.exponent)
+        """Prop of each pair, shape (positions, pairs) [m]."""
+        return self.law(self.rho1, force)[0]
 
     def slope(self, force: Array) -> Array:
         """Derivative of the prop by the force, shape (positions, pairs) [m/N]."""
-        ratio = self._ratio(force)
-        falling = -self.exponent * self.prop * ratio**-self.exponent / (ratio * self.force)
-        return np.where(ratio > _LEAST_RATIO, falling, 0.0)
-
-    def stiffness(self) -> Array:
-        """Film stiffness at the solved forces, infinite without film, shape (positions, pairs) [N/m]."""
-        yielding = self.exponent * self.prop
-        return np.divide(self.force, yielding, out=np.full_like(yielding, np.inf), where=yielding > 0)
-
-    def _ratio(self, force: Array) -> Array:
-        return np.maximum(force / self.force, _LEAST_RATIO)
+        return self.law(self.rho1, force)[1]

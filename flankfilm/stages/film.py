@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from flankfilm.build import lubricant, pinion_speed
 from flankfilm.faults import SolverError
 from flankfilm.film_law import FilmLaw
-from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
+from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.teeth import POSITIONS, cycle_at
+from flankfilm.stages.teeth import cycle_at
 from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ Array = NDArray[np.float64]
 LEAST_SHARE = 1e-3
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
 props them apart by moves the load share by less than their own part."""
+
+FILM_POSITIONS = 40
+"""Positions of a base pitch at which films are solved and brought into agreement with the load share."""
 
 MOST_ROUNDS = 12
 
@@ -91,32 +94,45 @@ class FilmStage:
 class _Contacts:
     """The loaded contacts of a cycle in the order of the path."""
 
-    where: tuple[NDArray[np.intp], NDArray[np.intp]]
     rho1: Array
     contacts: tuple[LineContact, ...]
 
 
 def film(engine: Engine) -> FilmStage:
-    """Films and load share in agreement, at as few positions as the tolerance allows.
+    """Films and load share in agreement at some positions, then the mesh cycle with their law at all of the dry one.
 
-    The dry cycle's number of positions comes first; a film that lets pairs go sooner may need more.
+    Films change slowly along the path, and the mesh stiffness by a small part: they need fewer positions than
+    the cycle itself, whose steps and cusps decide.
     """
-    enough = ToleranceSplit.of(engine.scene.tolerance).sampling
-    dry: MeshStiffness = engine["dry cycle"]
-    found = _film_over(engine, dry)
-    for positions in POSITIONS:
-        if positions > dry.phase.size and sampling_error(found.cycle.secant) > enough:
-            found = _film_over(engine, cycle_at(engine, positions))
-    return found
-
-
-def _film_over(engine: Engine, dry: MeshStiffness) -> FilmStage:
-    """Iterate films and load share over the positions of a dry cycle until both agree."""
     split = ToleranceSplit.of(engine.scene.tolerance)
-    solve = _solved if engine["film model"].model == "ehl" else _regressed
+    dry: MeshStiffness = engine["dry cycle"]
     start = time.perf_counter()
-    in_contact_solver = 0.0
-    cycle, mismatch, rounds = dry, np.inf, 0
+    agreed = _agree(engine, min(FILM_POSITIONS, dry.phase.size), split)
+    seconds = time.perf_counter() - start - agreed.in_contact_solver
+    cycle = cycle_at(engine, dry.phase.size, agreed.law)
+    if engine.scene.stiffness.pairs == "coupled":
+        cycle = replace(cycle, secant=_secant(cycle, agreed.law))
+    return _gather(engine, dry, cycle, agreed, seconds)
+
+
+@dataclass(frozen=True)
+class _Agreement:
+    """Films whose loads are those of the load share that they bring about."""
+
+    contacts: _Contacts
+    films: tuple[Film, ...]
+    law: FilmLaw
+    positions: int
+    rounds: int
+    mismatch: float
+    in_contact_solver: float
+
+
+def _agree(engine: Engine, positions: int, split: ToleranceSplit) -> _Agreement:
+    """Iterate films and load share until both agree."""
+    solve = _solved if engine["film model"].model == "ehl" else _regressed
+    in_contact_solver, mismatch, rounds = 0.0, np.inf, 0
+    cycle = cycle_at(engine, positions)
     films: tuple[Film, ...] | None = None
     while mismatch > split.coupling:
         if rounds == MOST_ROUNDS:
@@ -127,17 +143,13 @@ def _film_over(engine: Engine, dry: MeshStiffness) -> FilmStage:
         rounds += 1
         contacts = _contacts(engine, cycle)
         films = solve(contacts, films, split.film)
-        before = cycle
-        law = _law(engine, contacts, films, before)
-        shared = time.perf_counter()
-        cycle = cycle_at(engine, dry.phase.size, law)
+        law = _law(engine, contacts, films)
+        before, shared = cycle, time.perf_counter()
+        cycle = cycle_at(engine, positions, law)
         in_contact_solver += time.perf_counter() - shared
         mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
-    seconds = time.perf_counter() - start - in_contact_solver
-    if engine.scene.stiffness.pairs == "coupled":
-        cycle = replace(cycle, secant=_secant(cycle, law))
     assert films is not None
-    return _gather(engine, dry, cycle, contacts, films, seconds, rounds, mismatch)
+    return _Agreement(contacts, films, law, positions, rounds, mismatch, in_contact_solver)
 
 
 def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
@@ -148,7 +160,8 @@ def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
     deflection :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and
     the mean over the pairs weighted by their shares, a stiff film gives the dry secant back.
     """
-    yielding = law.approach(cycle.forces) - cycle.forces * law.slope(cycle.forces)
+    prop, slope = law(cycle.rho1, cycle.forces)
+    yielding = prop - cycle.forces * slope
     added = np.sum(cycle.load_share * yielding, axis=1)
     return np.asarray(cycle.secant * cycle.transmission_error / (cycle.transmission_error + added))
 
@@ -173,7 +186,7 @@ def _contacts(engine: Engine, cycle: MeshStiffness) -> _Contacts:
             strict=True,
         )
     )
-    return _Contacts((position, number), rho1, contacts)
+    return _Contacts(rho1, contacts)
 
 
 def _solved(contacts: _Contacts, before: tuple[Film, ...] | None, tolerance: float) -> tuple[Film, ...]:
@@ -199,51 +212,40 @@ def _regressed(contacts: _Contacts, before: object, tolerance: float) -> tuple[F
     return tuple(dowson(contact) for contact in contacts.contacts)  # type: ignore[misc]
 
 
-def _law(engine: Engine, contacts: _Contacts, films: tuple[Film, ...], cycle: MeshStiffness) -> FilmLaw:
-    """Spread the films over positions and pairs."""
+def _law(engine: Engine, contacts: _Contacts, films: tuple[Film, ...]) -> FilmLaw:
+    """Gather the films along the path into a law."""
     width = engine["pair"].face_width
     definition = engine.scene.film.definition(engine["film model"].model)
-    force, prop, exponent = (np.zeros_like(cycle.forces) for _ in range(3))
-    force += cycle.forces.sum(axis=1, keepdims=True)
     solved = np.array([width * film.contact.load for film in films])
     props = np.array([film.prop for film in films])
     stiffness = np.array([width * film.stiffness(definition) for film in films])
-    force[contacts.where] = solved
-    prop[contacts.where] = props
     # at light loads of thin, soft contacts a film's slope can vanish or turn within its error: then a constant
-    exponent[contacts.where] = np.maximum(solved / (stiffness * props), 0.0)
-    return FilmLaw(force, prop, exponent)
+    return FilmLaw(contacts.rho1, solved, props, np.maximum(solved / (stiffness * props), 0.0))
 
 
 def _gather(
-    engine: Engine,
-    dry: MeshStiffness,
-    cycle: MeshStiffness,
-    contacts: _Contacts,
-    films: tuple[Film, ...],
-    seconds: float,
-    rounds: int,
-    mismatch: float,
+    engine: Engine, dry: MeshStiffness, cycle: MeshStiffness, agreed: _Agreement, seconds: float
 ) -> FilmStage:
     model = engine["film model"].model
     definitions = _definitions(model)
     width = engine["pair"].face_width
+    films, contacts = agreed.films, agreed.contacts
     return FilmStage(
-        cycle=replace(cycle, label=f"{dry.label} with film", seconds=cycle.seconds),
+        cycle=replace(cycle, label=f"{dry.label} with film"),
         rho1=contacts.rho1,
         load=np.array([film.contact.load for film in films]),
         central=np.array([film.central_thickness for film in films]),
         minimum=np.array([film.minimum_thickness for film in films]),
         hertz_pressure=np.array([film.contact.peak_pressure for film in films]),
         stiffness={name: np.array([width * film.stiffness(name) for film in films]) for name in definitions},
-        profiles=_profiles(engine, contacts, films) if model == "ehl" else {},
+        profiles=_profiles(engine, agreed) if model == "ehl" else {},
         change_secant=float(cycle.secant.mean() / dry.secant.mean() - 1),
         change_tangent=float(cycle.tangent.mean() / dry.tangent.mean() - 1),
         error=max(film.error for film in films) if model == "ehl" else None,
         seconds=seconds,
         unknowns=max(film.cost.unknowns for film in films) if model == "ehl" else 0,
-        rounds=rounds,
-        mismatch=mismatch,
+        rounds=agreed.rounds,
+        mismatch=agreed.mismatch,
         model=model,
     )
 
@@ -254,15 +256,15 @@ def _definitions(model: str) -> tuple[str, ...]:
     return DEFINITIONS if model == "ehl" else ("dowson-central", "dowson-minimum")
 
 
-def _profiles(engine: Engine, contacts: _Contacts, films: tuple[Film, ...]) -> dict[str, Film]:
+def _profiles(engine: Engine, agreed: _Agreement) -> dict[str, Film]:
     """Films nearest to A, C and E, and to B and D on their single-pair side, fine enough for pictures.
 
     The tolerance asks for thicknesses, which a grid too coarse for the pressure spike meets.
     """
     from ehl import solve
 
-    points = engine["pair"].points
-    step = engine["pair"].base_pitch / max(1, np.unique(contacts.where[0]).size)
+    points, contacts, films = engine["pair"].points, agreed.contacts, agreed.films
+    step = engine["pair"].base_pitch / agreed.positions
     wanted = {
         "near A": points.A,
         "after B": points.B + step,

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flankfilm.build import pinion_torque
+from flankfilm.film_law import FilmLaw, PlacedFilm
 from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.stages.closed_forms import CLOSED_FORMS, closed_form
 
 if TYPE_CHECKING:
-    from flankfilm.film_law import FilmLaw
     from flankfilm.stages.engine import Engine
     from gears import GearPair
 
@@ -90,13 +90,14 @@ def separate_pairs_cycle(
     touching = np.isfinite(rho1)
     k = np.where(touching, single_pair_stiffness(engine, model, rho1), 0.0)
     if pairs == "independent":
-        series = None if film is None else film.stiffness()
+        series = None if film is None else film.stiffness(rho1)
         share = independent_pairs(force, k, series)
         secant = tangent = np.asarray(share.tangent)
     else:
         compliance = 1.0 / np.where(touching, k, 1.0)
         bulk = compliance[..., None] * np.eye(k.shape[1])
-        share = share_load(force, bulk, _NoHertz(), np.where(touching, _relief(pair, rho1), np.inf), film)
+        gaps = np.where(touching, _relief(pair, rho1), np.inf)
+        share = share_load(force, bulk, _NoHertz(), gaps, None if film is None else PlacedFilm(film, rho1))
         secant, tangent = force / np.asarray(share.approach), np.asarray(share.tangent)
     return MeshStiffness(
         label=f"{_LABELS[model]}, {pairs} pairs",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from flankfilm.build import gear_pair, pinion_torque
 from flankfilm.faults import SolverError
-from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
+from flankfilm.mesh_stiffness import MeshStiffness, peak_to_peak_error, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
 from flankfilm.tolerance import ToleranceSplit
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from flankfilm.stages.engine import Engine
     from gears import GearPair
 
-POSITIONS = (40, 120, 360)
-"""Numbers of positions tried, the cheapest first; each but the first holds the one before it."""
+POSITIONS = (120, 360, 1080)
+"""Numbers of positions tried, the cheapest first; each holds every third of the next one."""
 
 
 def pair(engine: Engine) -> GearPair:
@@ -68,11 +68,12 @@ def from_fem(cycle: MeshCycle, label: str) -> MeshStiffness:
 
 
 def dry_cycle(engine: Engine) -> MeshStiffness:
-    """Mesh stiffness without film, at as few positions as the tolerance allows."""
+    """Mesh stiffness without film, at as few positions as mean stiffness and transmission error need."""
     split = ToleranceSplit.of(engine.scene.tolerance)
     cycle = cycle_at(engine, POSITIONS[0])
     for positions in POSITIONS[1:]:
-        if sampling_error(cycle.secant) <= split.sampling:
+        enough = sampling_error(cycle.secant) <= split.sampling
+        if enough and peak_to_peak_error(cycle.transmission_error) <= engine.scene.tolerance:
             break
         cycle = cycle_at(engine, positions)
     return cycle

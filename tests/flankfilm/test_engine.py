@@ -9,7 +9,7 @@ import pytest
 
 from flankfilm.cache import Cache
 from flankfilm.film_law import FilmLaw
-from flankfilm.mesh_stiffness import sampling_error
+from flankfilm.mesh_stiffness import peak_to_peak_error, sampling_error
 from flankfilm.scene import parse_scene, template
 from flankfilm.stages.catalogue import STAGES, goals
 from flankfilm.stages.engine import Engine, Stage
@@ -115,14 +115,49 @@ def test_only_what_is_wanted_is_asked_for(wants: str, asked: set[str]):
 
 
 def test_the_film_law_meets_value_and_slope_and_stays_positive():
-    law = FilmLaw(np.array([[1000.0, 500.0]]), np.array([[4e-7, 0.0]]), np.array([[0.13, 0.0]]))
-    solved = np.array([[1000.0, 500.0]])
-    assert law.approach(solved) == pytest.approx(np.array([[4e-7, 0.0]]))
-    assert law.slope(solved) == pytest.approx(np.array([[-0.13 * 4e-7 / 1000.0, 0.0]]))
-    force, step = np.array([[700.0, 500.0]]), np.array([[1e-3, 0.0]])
-    difference = (law.approach(force + step) - law.approach(force - step))[0, 0] / 2e-3
-    assert law.slope(force)[0, 0] == pytest.approx(difference, rel=1e-6)
-    assert np.isfinite(law.approach(np.zeros((1, 2)))).all()
+    law = FilmLaw(
+        np.array([1e-3, 3e-3]), np.array([1000.0, 500.0]), np.array([4e-7, 6e-7]), np.array([0.13, 0.1])
+    )
+    at_films = np.array([[1e-3, 3e-3, np.nan]])
+    prop, slope = law(at_films, np.array([[1000.0, 500.0, 70.0]]))
+    assert prop[0] == pytest.approx([4e-7, 6e-7, 0.0], rel=1e-12)
+    assert slope[0] == pytest.approx([-0.13 * 4e-7 / 1000.0, -0.1 * 6e-7 / 500.0, 0.0], rel=1e-12)
+    assert law.stiffness(at_films)[0] == pytest.approx([*(-1 / slope[0, :2]), np.inf], rel=1e-12)
+    between = np.array([[1.5e-3, 2e-3, 0.0, 9.0]])
+    force = np.array([[700.0, 800.0, 300.0, 400.0]])
+    apart = (law(between, force + 1e-3)[0] - law(between, force - 1e-3)[0]) / 2e-3
+    assert law(between, force)[1] == pytest.approx(apart, rel=1e-6)
+    same = np.full((1, 4), 700.0)
+    ends = law(at_films[:, :2], same[:, :2])[0][0]
+    weighted = [0.75 * ends[0] + 0.25 * ends[1], 0.5 * ends.sum(), ends[0], ends[1]]
+    assert law(between, same)[0][0] == pytest.approx(weighted, rel=1e-12)
+    assert np.all(np.isfinite(law(between, np.zeros((1, 4)))[0]))
+
+
+def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
+    changes = []
+    for positions in (40, 120):
+        monkeypatch.setattr("flankfilm.stages.film.FILM_POSITIONS", positions)
+        dowson = {
+            'model = "ehl" ': 'model = "dowson" ',
+            'stiffness = "approach" ': 'stiffness = "dowson-central" ',
+        }
+        text = scene(dowson)
+        film = Engine(text, STAGES, Cache(None))["film"]
+        changes.append((film.change_secant, film.change_tangent))
+    assert np.allclose(*changes, rtol=0.02)
+
+
+def test_a_cusp_between_the_samples_is_known():
+    """Height of a triangle over one period whose tips lie anywhere between the midpoints."""
+    for n in (120, 360):
+        phase = (np.arange(n) + 0.5) / n
+        shifts = np.linspace(0, 1 / n, 31)
+        curves = [np.abs((phase - s) % 1.0 - 0.5) for s in shifts]
+        true = max(abs(np.ptp(c) / 0.5 - 1) for c in curves)
+        told = np.mean([peak_to_peak_error(c) for c in curves])
+        assert 0.5 < told / true < 3
+    assert peak_to_peak_error(np.ones(9)) == 0.0
 
 
 def test_sampling_error_bounds_the_error_of_a_step():
