@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,10 +12,11 @@ from flankfilm.cache import code_digest
 from flankfilm.dataset import write_text
 from flankfilm.faults import Fault, InputError
 from flankfilm.folder import claim
-from flankfilm.study.executors import Kind, default_workers, executor
+from flankfilm.study.executors import Kind, default_workers
 from flankfilm.study.plan import Plan
-from flankfilm.study.row import Row, RowResult, compute_row, failed
-from flankfilm.study.table import ROWS, append, locked, read_rows
+from flankfilm.study.row import Row, RowResult
+from flankfilm.study.table import ROWS, Columns, append, locked, read_rows
+from flankfilm.study.workers import Workers
 
 Told = Callable[[int, int], None]
 """Called with the rows done and the rows in all, each time that a row arrives."""
@@ -99,10 +99,12 @@ def run_study(
             if index not in done
         ]
         told(len(done), len(plan.rows))
-        for result in computed(missing, kind, workers or default_workers()):
-            append(folder / ROWS, plan, result)
-            done[result.index] = result
-            told(len(done), len(plan.rows))
+        columns = Columns(plan.keys, plan.outputs)
+        with Workers(kind, workers or default_workers()) as staff:
+            for result in staff.computed(missing):
+                append(folder / ROWS, columns, plan.rows[result.index], result)
+                done[result.index] = result
+                told(len(done), len(plan.rows))
     ordered = tuple(done[index] for index in range(len(plan.rows)))
     return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
 
@@ -121,7 +123,7 @@ def _take_up(plan: Plan, folder: Path, resume: bool) -> dict[int, RowResult]:
     if held.get("study") != identity["study"]:
         told = "holds another study, or this one with other keys, rows or outputs"
         raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
-    rows = read_rows(folder / ROWS, plan)
+    rows = read_rows(folder / ROWS, Columns(plan.keys, plan.outputs))
     if rows and not resume:
         told = f"holds {len(rows)} of {len(plan.rows)} rows of this study"
         raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
@@ -130,56 +132,3 @@ def _take_up(plan: Plan, folder: Path, resume: bool) -> dict[int, RowResult]:
         raise InputError([Fault(str(folder), "", told, "Name another folder with --out to start anew")])
     write_text(note, json.dumps({"title": plan.title, **identity}, indent=1))
     return rows
-
-
-def computed(rows: Iterable[Row], kind: Kind, workers: int) -> Iterator[RowResult]:
-    """Compute rows, in the order in which they are done.
-
-    Not more than a few rows a worker wait in the executor at once. Where a process dies, the rows that it
-    may have had are computed again, each in a process of its own; one whose process dies again has failed.
-    """
-    left = list(rows)
-    while left:
-        suspects: list[Row] = []
-        arrived: set[int] = set()
-        with executor(kind, workers) as pool:
-            waiting: dict[Future[RowResult], Row] = {}
-            ahead = iter(left)
-            try:
-                while True:
-                    for row in ahead:
-                        waiting[pool.submit(compute_row, row)] = row
-                        if len(waiting) >= 3 * workers:
-                            break
-                    if not waiting:
-                        break
-                    for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                        row = waiting[future]
-                        result = _result(row, future)
-                        del waiting[future]
-                        arrived.add(row.index)
-                        yield result
-            except BrokenExecutor:
-                suspects = list(waiting.values())
-        for row in suspects:
-            arrived.add(row.index)
-            yield _alone(row)
-        left = [row for row in left if row.index not in arrived]
-
-
-def _result(row: Row, future: Future[RowResult]) -> RowResult:
-    fault = future.exception()
-    if fault is None:
-        return future.result()
-    if isinstance(fault, BrokenExecutor):
-        raise fault
-    return failed(row, f"{type(fault).__name__}: {fault}")
-
-
-def _alone(row: Row) -> RowResult:
-    """Compute a row in a process of its own."""
-    with executor("processes", 1) as pool:
-        try:
-            return pool.submit(compute_row, row).result()
-        except BrokenExecutor:
-            return failed(row, "the process that computed it died, perhaps for want of memory")

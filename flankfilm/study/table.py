@@ -12,21 +12,34 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from flankfilm.faults import Fault, InputError
-from flankfilm.study.plan import Plan
 from flankfilm.study.row import RowResult
 
 ROWS = "rows.csv"
 
 
-def header(plan: Plan) -> list[str]:
-    """Names of the columns: row, the varied keys, the outputs, cost and fault."""
-    return ["row", *plan.keys, *plan.outputs, "seconds", "fault"]
+@dataclass(frozen=True)
+class Columns:
+    """Columns of a table of rows: row, the varied keys, the outputs, cost and fault.
+
+    Attributes
+    ----------
+    keys, outputs : tuple of str
+    """
+
+    keys: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    @property
+    def header(self) -> list[str]:
+        """Names of all columns."""
+        return ["row", *self.keys, *self.outputs, "seconds", "fault"]
 
 
-def read_rows(path: Path, plan: Plan) -> dict[int, RowResult]:
+def read_rows(path: Path, columns: Columns) -> dict[int, RowResult]:
     """Read the rows that are there, and cut off a last line without its end.
 
     Raises
@@ -42,10 +55,10 @@ def read_rows(path: Path, plan: Plan) -> dict[int, RowResult]:
         with path.open("rb+") as file:
             file.truncate(len(whole))
     lines = list(csv.reader(io.StringIO(whole.decode("utf-8"))))
-    if lines and lines[0] != header(plan):
+    if lines and lines[0] != columns.header:
         allowed = "must hold the columns of this study"
         raise InputError([Fault(str(path), "", allowed, "Name another folder with --out")])
-    first, last = 1 + len(plan.keys), 1 + len(plan.keys) + len(plan.outputs)
+    first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
     found = {}
     for line in lines[1:]:
         values = tuple(float(text) for text in line[first:last])
@@ -53,10 +66,10 @@ def read_rows(path: Path, plan: Plan) -> dict[int, RowResult]:
     return found
 
 
-def append(path: Path, plan: Plan, result: RowResult) -> None:
-    """Add a row; floats are written so that they read back to the last digit."""
-    rows: list[Sequence[object]] = [] if path.exists() and path.stat().st_size else [header(plan)]
-    rows.append([result.index, *plan.rows[result.index], *result.values, result.seconds, result.fault])
+def append(path: Path, columns: Columns, values: Sequence[object], result: RowResult) -> None:
+    """Add a row with the values of its keys; floats are written so that they read back to the last digit."""
+    rows: list[Sequence[object]] = [] if path.exists() and path.stat().st_size else [columns.header]
+    rows.append([result.index, *values, *result.values, result.seconds, result.fault])
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)

@@ -19,7 +19,7 @@ from flankfilm.faults import InputError
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import read_plan
 from flankfilm.study.run import run_study
-from flankfilm.study.table import append, locked, read_rows
+from flankfilm.study.table import Columns, append, locked, read_rows
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -142,12 +142,15 @@ class TestRows:
 
     def test_a_process_that_dies_costs_its_row_alone(self, tmp_path, monkeypatch):
         """A row that ends its process, as the kernel does for want of memory."""
-        monkeypatch.setattr("flankfilm.study.run.compute_row", die_or_count)
+        monkeypatch.setattr("flankfilm.study.workers.compute_row", die_or_count)
         from flankfilm.study.row import Row
-        from flankfilm.study.run import computed
+        from flankfilm.study.workers import Workers
 
         rows = [Row(index, {"die": index == 2}, ("contact_ratio",)) for index in range(5)]
-        results = {result.index: result for result in computed(rows, "processes", 1)}
+        with Workers("processes", 1) as workers:
+            results = {result.index: result for result in workers.computed(rows)}
+            again = list(workers.computed([Row(7, {"die": False}, ("contact_ratio",))]))
+        assert again[0].values == (7.0,)
         assert sorted(results) == [0, 1, 2, 3, 4]
         assert "died" in results[2].fault
         assert [results[i].values[0] for i in (0, 1, 3, 4)] == [0.0, 1.0, 3.0, 4.0]
@@ -155,11 +158,11 @@ class TestRows:
     def test_a_torn_last_line_is_cut_off_and_its_row_computed_again(self, tmp_path):
         plan = read_plan(study_file(tmp_path, SHIFTS))
         found = run_study(plan, tmp_path / "out", workers=1)
-        path = tmp_path / "out" / "rows.csv"
+        path, columns = tmp_path / "out" / "rows.csv", Columns(plan.keys, plan.outputs)
         whole = path.read_bytes()
         for cut in range(1, len(whole.splitlines()[-1]) + 1):
             path.write_bytes(whole[:-cut])
-            assert len(read_rows(path, plan)) == 3
+            assert len(read_rows(path, columns)) == 3
             assert path.read_bytes().endswith(b"\n")
         again = run_study(plan, tmp_path / "out", workers=1, resume=True)
         assert again.computed == 1
@@ -168,12 +171,11 @@ class TestRows:
     def test_values_read_back_to_the_last_digit(self, tmp_path):
         from flankfilm.study.row import RowResult
 
-        plan = read_plan(study_file(tmp_path, SHIFTS))
+        columns = Columns(("pair.module_mm",), ("contact_ratio", "specific_sliding"))
         for index, value in enumerate((math.pi, 1e-300, float("nan"), -0.0)):
-            append(
-                tmp_path / "rows.csv", plan, RowResult(index, (value, 1 / 3), 0.1, 'a "fault", of two words')
-            )
-        found = read_rows(tmp_path / "rows.csv", plan)
+            result = RowResult(index, (value, 1 / 3), 0.1, 'a "fault", of two words')
+            append(tmp_path / "rows.csv", columns, (2.0,), result)
+        found = read_rows(tmp_path / "rows.csv", columns)
         assert found[0].values == (math.pi, 1 / 3)
         assert found[1].values[0] == 1e-300
         assert math.isnan(found[2].values[0])

@@ -1,0 +1,97 @@
+"""Workers that compute rows, and outlive one of them that dies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import ExitStack
+from types import TracebackType
+
+from flankfilm.study.executors import Kind, executor
+from flankfilm.study.row import Row, RowResult, compute_row, failed
+
+AHEAD = 3
+"""Rows for each worker that wait in the executor at most: enough to keep it busy, few to lose."""
+
+
+class Workers:
+    """An executor that is made anew when a process of it dies; use it as a context.
+
+    Parameters
+    ----------
+    kind : {"processes", "dask", "mpi"}
+    count : int
+        Workers of an executor that is started here.
+    """
+
+    def __init__(self, kind: Kind, count: int) -> None:
+        self.kind: Kind = kind
+        self.count = count
+        self._open = ExitStack()
+        self._pool: Executor | None = None
+
+    def __enter__(self) -> Workers:
+        """Processes start with the first rows."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Cancel rows that wait, and end the processes."""
+        self._open.close()
+
+    def computed(self, rows: Iterable[Row]) -> Iterator[RowResult]:
+        """Compute rows, in the order in which they are done.
+
+        Where a process dies, the rows that it may have had are computed again, each in a process of its own;
+        one whose process dies again has failed.
+        """
+        left = list(rows)
+        while left:
+            arrived: set[int] = set()
+            suspects: list[Row] = []
+            waiting: dict[Future[RowResult], Row] = {}
+            try:
+                for result in self._in_pool(left, waiting):
+                    arrived.add(result.index)
+                    yield result
+            except BrokenExecutor:
+                suspects = list(waiting.values())
+                self._open.close()
+                self._pool = None
+            for row in suspects:
+                arrived.add(row.index)
+                yield _alone(row)
+            left = [row for row in left if row.index not in arrived]
+
+    def _in_pool(self, rows: list[Row], waiting: dict[Future[RowResult], Row]) -> Iterator[RowResult]:
+        if self._pool is None:
+            self._pool = self._open.enter_context(executor(self.kind, self.count))
+        ahead = iter(rows)
+        while True:
+            while len(waiting) < AHEAD * self.count and (row := next(ahead, None)) is not None:
+                waiting[self._pool.submit(compute_row, row)] = row
+            if not waiting:
+                return
+            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                result = _result(waiting[future], future)
+                del waiting[future]
+                yield result
+
+
+def _result(row: Row, future: Future[RowResult]) -> RowResult:
+    fault = future.exception()
+    if fault is None:
+        return future.result()
+    if isinstance(fault, BrokenExecutor):
+        raise fault
+    return failed(row, f"{type(fault).__name__}: {fault}")
+
+
+def _alone(row: Row) -> RowResult:
+    """Compute a row in a process of its own."""
+    with executor("processes", 1) as pool:
+        try:
+            return pool.submit(compute_row, row).result()
+        except BrokenExecutor:
+            return failed(row, "the process that computed it died, perhaps for want of memory")
