@@ -1,4 +1,4 @@
-"""The command line: run, verify, study, check and new."""
+"""The command line: run, verify, study, optimise, check and new."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import App, Parameter
+from cyclopts import App, Parameter, validators
 
 from flankfilm.faults import Fault, InputError, SolverError
 
@@ -132,17 +132,23 @@ def verify(
     return 0
 
 
+ExecutorKind = Annotated[Literal["processes", "dask", "mpi"], Parameter(help="Where the rows are computed.")]
+WorkerCount = Annotated[
+    int | None,
+    Parameter(help="Processes; one for each core if left out.", validator=validators.Number(gte=1)),
+]
+Resume = Annotated[bool, Parameter(negative="", help="Go on from the rows in the folder.")]
+
+
 @app.command
 def study(
     study: Path,
     /,
     *,
     out: Annotated[Path, Parameter(help="Folder for the rows and the finished study.")],
-    executor: Annotated[
-        Literal["processes", "dask", "mpi"], Parameter(help="Where the rows are computed.")
-    ] = "processes",
-    workers: Annotated[int | None, Parameter(help="Processes; one for each core if left out.")] = None,
-    resume: Annotated[bool, Parameter(negative="", help="Go on from the rows in the folder.")] = False,
+    executor: ExecutorKind = "processes",
+    workers: WorkerCount = None,
+    resume: Resume = False,
     cache: UseCache = True,
 ) -> int:
     """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
@@ -154,28 +160,52 @@ def study(
     """
     _prepare()
     from flankfilm.progress import console_rows
-    from flankfilm.study.files import write_study
+    from flankfilm.study.files import summary, write_study
     from flankfilm.study.plan import read_plan
     from flankfilm.study.run import run_study
 
-    if workers is not None and workers < 1:
-        raise InputError(
-            [Fault("--workers", str(workers), "must be at least 1", "Leave it out for all cores")]
-        )
     plan = read_plan(study)
     with console_rows() as told:
         found = run_study(
             plan, out, kind=executor, workers=workers, resume=resume, use_cache=cache, told=told
         )
     files = write_study(found, out)
-    rate = f", {found.computed / found.seconds:.2g} rows/s" if found.computed else ""
-    print(f"{len(found.rows)} rows, {found.computed} of them computed in {found.seconds:.1f} s{rate}")
-    for row in found.failures[:5]:
-        print(f"row {row.index} failed: {row.fault}")
-    if len(found.failures) > 5:
-        print(f"{len(found.failures)} rows failed in all; the column fault of rows.csv says why")
-    print(f"{', '.join(str(path) for path in (out / 'rows.csv', *files))}")
+    for line in (*summary(found), ", ".join(str(path) for path in (out / "rows.csv", *files))):
+        print(line)
     return SOLVER_FAULT if len(found.failures) == len(found.rows) else 0
+
+
+@app.command
+def optimise(
+    task: Path,
+    /,
+    *,
+    out: Annotated[Path, Parameter(help="Folder for the evaluations and the optimum.")],
+    executor: ExecutorKind = "processes",
+    workers: WorkerCount = None,
+    resume: Resume = False,
+    cache: UseCache = True,
+) -> int:
+    """Look for the least of one output, or the trade-off of several, over keys of a scene within bounds.
+
+    Parameters
+    ----------
+    task : Path
+        The optimisation file (TOML): a scene, ranges of its keys, outputs to minimise or maximise, limits.
+    """
+    _prepare()
+    from flankfilm.optimise.files import summary, write_optimum
+    from flankfilm.optimise.run import optimise as find
+    from flankfilm.optimise.task import read_task
+    from flankfilm.progress import console_rows
+
+    asked = read_task(task)
+    with console_rows() as told:
+        found = find(asked, out, kind=executor, workers=workers, resume=resume, use_cache=cache, told=told)
+    files = write_optimum(found, out)
+    for line in (*summary(found), ", ".join(str(path) for path in (out / "rows.csv", *files))):
+        print(line)
+    return 0
 
 
 @app.command

@@ -123,7 +123,7 @@ def _cost_rows(results: Results) -> list[CostRow]:
     for name, run in results.runs.items():
         value: Any = results.values.get(name)
         figure, allowed, error, note = "", None, None, ""
-        if name == "compliance":
+        if name == "bodies":
             figure, allowed, error = "tooth compliance", split.compliance, value.error
             note = f"{value.cost.unknowns:,} unknowns"
         elif name == "dry cycle":

@@ -43,13 +43,22 @@ STAGES: Mapping[str, Stage] = {
             packages=("gears",),
         ),
         Stage(
-            "compliance",
+            "bodies",
             "tooth compliance by finite elements",
-            lambda e: teeth.compliance(e),
-            _sections("stiffness.plane", "tolerance"),
-            needs=("pair",),
+            lambda e: teeth.bodies(e),
+            lambda scene: _sections("pair", "material", "stiffness.plane", "tolerance")(
+                teeth.without_relief(scene)
+            ),
             packages=("gears", "meshes", "fem"),
             kept=True,
+        ),
+        Stage(
+            "compliance",
+            "compliance with relief",
+            lambda e: teeth.compliance(e),
+            _sections(),
+            needs=("pair", "bodies"),
+            packages=("fem",),
         ),
         Stage(
             "verification",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.build import gear_pair, pinion_torque
@@ -12,6 +13,7 @@ from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
     from fem import Compliance, MeshCycle
+    from flankfilm.scene import Scene
     from flankfilm.stages.engine import Engine
     from gears import GearPair
 
@@ -24,15 +26,35 @@ def pair(engine: Engine) -> GearPair:
     return gear_pair(engine.scene)
 
 
-def compliance(engine: Engine) -> Compliance:
-    """Everything about the teeth that does not depend on load, by finite elements."""
+def bodies(engine: Engine) -> Compliance:
+    """Compliance of the pair without tip relief, which no mesh shows: one for all reliefs."""
     import fem
 
-    split = ToleranceSplit.of(engine.scene.tolerance)
-    bodies = fem.compliance(engine["pair"], tolerance=split.compliance, plane=engine.scene.stiffness.plane)
-    if not bodies.converged:
-        raise SolverError(f"tooth compliance: {bodies.message}")
-    return bodies
+    scene = engine.scene
+    split = ToleranceSplit.of(scene.tolerance)
+    found = fem.compliance(
+        gear_pair(without_relief(scene)), tolerance=split.compliance, plane=scene.stiffness.plane
+    )
+    if not found.converged:
+        raise SolverError(f"tooth compliance: {found.message}")
+    return found
+
+
+def compliance(engine: Engine) -> Compliance:
+    """Everything about the teeth that does not depend on load, by finite elements."""
+    nominal: Compliance = engine["bodies"]
+    return replace(nominal, pair=engine["pair"])
+
+
+def without_relief(scene: Scene) -> Scene:
+    """Give the scene with gears that have no tip relief."""
+    if scene.pair is None:
+        return scene
+    gears = {
+        name: getattr(scene.pair, name).model_copy(update={"tip_relief": None})
+        for name in ("pinion", "wheel")
+    }
+    return scene.model_copy(update={"pair": scene.pair.model_copy(update=gears)})
 
 
 def fem_cycle(engine: Engine, positions: int, film: Any = None) -> MeshCycle:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -129,7 +129,7 @@ class Plan:
         """Keys of a row's scene."""
         raw = deepcopy(dict(self.scene))
         for key, value in zip(self.keys, self.rows[row], strict=True):
-            _put(raw, key, value)
+            put(raw, key, value)
         return raw
 
     def identity(self) -> dict[str, Any]:
@@ -164,13 +164,13 @@ def plan_of(study: StudyFile, folder: Path) -> Plan:
     ]
     if faults:
         raise InputError(faults)
-    scene = _base_scene(study, folder)
+    scene = base_scene(study.scene, study.set, study.outputs, folder)
     keys = (*study.vary, *study.follow)
     varied = tuple(study.vary)
     rows = []
     for values in _design(study):
         by_key = dict(zip(varied, values, strict=True))
-        rows.append((*values, *(_following(by_key, rule) for rule in study.follow.values())))
+        rows.append((*values, *(following(by_key, rule) for rule in study.follow.values())))
     plan = Plan(
         study.title, scene, tuple(dict.fromkeys(study.outputs)), keys, tuple(rows), study.design, len(varied)
     )
@@ -178,20 +178,24 @@ def plan_of(study: StudyFile, folder: Path) -> Plan:
     return plan
 
 
-def _base_scene(study: StudyFile, folder: Path) -> dict[str, Any]:
-    if isinstance(study.scene, str):
-        path = folder / study.scene
-        scene = parse_toml(read_text(path), str(path))
+def base_scene(
+    scene: str | dict[str, Any], fixed: Mapping[str, Value], outputs: Iterable[str], folder: Path
+) -> dict[str, Any]:
+    """Keys of a scene named from `folder`, or given, with what is set and what the outputs want."""
+    if isinstance(scene, str):
+        path = folder / scene
+        raw = parse_toml(read_text(path), str(path))
     else:
-        scene = deepcopy(study.scene)
-    for key, value in study.set.items():
-        _put(scene, key, value)
+        raw = deepcopy(scene)
+    for key, value in fixed.items():
+        put(raw, key, value)
     # what a row computes follows from the outputs, not from the scene's own wants
-    scene["wants"] = sorted({want for name in study.outputs for want in OUTPUTS[name].wants})
-    return scene
+    raw["wants"] = sorted({want for name in outputs for want in OUTPUTS[name].wants})
+    return raw
 
 
-def _put(raw: dict[str, Any], key: str, value: Value) -> None:
+def put(raw: dict[str, Any], key: str, value: Value) -> None:
+    """Set a dotted key of a scene."""
     *sections, last = key.split(".")
     here = raw
     for section in sections:
@@ -204,7 +208,8 @@ def _put(raw: dict[str, Any], key: str, value: Value) -> None:
     here[last] = value
 
 
-def _following(values: Mapping[str, Value], rule: Follow) -> Value:
+def following(values: Mapping[str, Value], rule: Follow) -> Value:
+    """Value of a key that follows one of `values`."""
     leader = values[rule.of]
     if isinstance(leader, str | bool):
         raise InputError(

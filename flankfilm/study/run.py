@@ -23,7 +23,7 @@ Told = Callable[[int, int], None]
 
 PLAN = "study.json"
 
-_PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
+PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def run_study(
 
 def _take_up(plan: Plan, folder: Path, resume: bool) -> dict[int, RowResult]:
     """Rows that the folder holds of this study; note the study in a folder that holds none."""
-    identity = {"study": plan.identity(), "code_sha256": code_digest(_PACKAGES)}
+    identity = {"study": plan.identity(), "code_sha256": code_digest(PACKAGES)}
     note = folder / PLAN
     if not note.exists():
         if (folder / ROWS).exists():

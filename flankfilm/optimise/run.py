@@ -1,0 +1,218 @@
+"""Runs an optimisation: evaluates points as rows that are kept, so that a killed one is taken up again."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flankfilm.cache import code_digest
+from flankfilm.dataset import write_text
+from flankfilm.faults import Fault, InputError, SolverError
+from flankfilm.folder import claim
+from flankfilm.optimise.search import FAILED, front, search
+from flankfilm.optimise.task import Task
+from flankfilm.study.executors import Kind, default_workers
+from flankfilm.study.plan import Value
+from flankfilm.study.row import Row, RowResult
+from flankfilm.study.run import PACKAGES, Told
+from flankfilm.study.table import ROWS, Columns, append, locked, read_rows
+from flankfilm.study.workers import Workers
+
+Array = NDArray[np.float64]
+
+NOTE = "optimisation.json"
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """One point: tolerance, values of the keys, and what came of it."""
+
+    tolerance: float
+    values: tuple[Value, ...]
+    result: RowResult
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """What an optimisation gave.
+
+    Attributes
+    ----------
+    task : Task
+    evaluations : tuple of Evaluation
+        In the order in which they were asked for.
+    best : ndarray of int
+        Evaluations at the scene's tolerance that keep the limits and that none betters: one, or the front.
+    computed : int
+        Evaluations of this run; the others were there.
+    seconds : float
+        Wall time of this run.
+    """
+
+    task: Task
+    evaluations: tuple[Evaluation, ...]
+    best: NDArray[np.intp]
+    computed: int
+    seconds: float
+
+    def objectives(self) -> Array:
+        """Objectives as they are, (evaluations, m); NaN where one failed."""
+        m = len(self.task.objectives)
+        return np.array([e.result.values[:m] for e in self.evaluations])
+
+
+@dataclass
+class _Evaluator:
+    """Evaluates points, each once; what is there already is taken from the table."""
+
+    task: Task
+    path: Path
+    columns: Columns
+    workers: Workers
+    use_cache: bool
+    told: Told
+    known: dict[tuple[float, tuple[Value, ...]], RowResult]
+    asked: dict[tuple[float, tuple[Value, ...]], RowResult] = field(default_factory=dict)
+    computed: int = 0
+
+    def __call__(self, units: Array, tolerance: float) -> tuple[Array, Array]:
+        """Objectives and limits of points of the unit cube."""
+        points = [(tolerance, self.task.values(unit)) for unit in units.tolist()]
+        missing = [p for p in dict.fromkeys(points) if p not in self.known]
+        start = 1 + max((result.index for result in self.known.values()), default=-1)
+        rows = [
+            Row(start + i, self.task.raw_scene(values, tol), self.task.outputs, self.use_cache)
+            for i, (tol, values) in enumerate(missing)
+        ]
+        for result in self.workers.computed(rows):
+            tol, values = missing[result.index - start]
+            append(self.path, self.columns, (tol, *values), result)
+            self.known[tol, values] = result
+            self.computed += 1
+            self.told(len(self.known), self.task.evaluations)
+        for point in points:
+            self.asked.setdefault(point, self.known[point])
+        results = [self.known[point] for point in points]
+        return _objectives(self.task, results), _limits(self.task, results)
+
+
+def _objectives(task: Task, results: list[RowResult]) -> Array:
+    """Objectives with the sign of minimisation; a failed point is the worst of all."""
+    values = np.array([result.values[: len(task.signs)] for result in results]) * np.array(task.signs)
+    return np.where(np.isfinite(values), values, FAILED)
+
+
+def _limits(task: Task, results: list[RowResult]) -> Array:
+    """Limits, allowed where <= 0, relative to their bounds."""
+    place = {name: i for i, name in enumerate(task.outputs)}
+    columns = [
+        sign * (np.array([r.values[place[name]] for r in results]) - bound) / (abs(bound) or 1.0)
+        for name, sign, bound in task.limits
+    ]
+    values = np.column_stack(columns) if columns else np.zeros((len(results), 0))
+    return np.where(np.isfinite(values), values, FAILED)
+
+
+def optimise(
+    task: Task,
+    folder: Path,
+    *,
+    kind: Kind = "processes",
+    workers: int | None = None,
+    resume: bool = False,
+    use_cache: bool = True,
+    told: Told = lambda done, total: None,
+) -> Optimum:
+    """Search the best points of a task; every evaluation goes into ``rows.csv`` of a folder.
+
+    The search is the same whenever it runs: taken up again, it asks for the same points, finds those that are
+    there, and goes on to the same end.
+
+    Raises
+    ------
+    InputError
+        Where the folder holds something else, or evaluations of this task without `resume`.
+    SolverError
+        Where no point keeps the limits.
+    """
+    start = time.perf_counter()
+    claim(folder)
+    columns = Columns(("tolerance", *task.keys), task.outputs)
+    with locked(folder):
+        held = _take_up(task, folder, columns, resume)
+        with Workers(kind, workers or default_workers()) as staff:
+            evaluator = _Evaluator(task, folder / ROWS, columns, staff, use_cache, told, held)
+            search(task, evaluator)
+    evaluations = tuple(Evaluation(*point, result) for point, result in evaluator.asked.items())
+    best = _best(task, evaluations)
+    if not best.size:
+        reasons = sorted({e.result.fault for e in evaluations if e.result.fault})
+        why = f"; the first of {len(reasons)} faults: {reasons[0]}" if reasons else "; widen bounds or limits"
+        raise SolverError(f"none of {len(evaluations)} points keeps the limits{why}")
+    return Optimum(task, evaluations, best, evaluator.computed, time.perf_counter() - start)
+
+
+def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
+    results = [e.result for e in evaluations]
+    fine = np.array([e.tolerance == task.tolerances[1] for e in evaluations])
+    good = np.all(_limits(task, results) <= 0, axis=1) & np.array([not r.fault for r in results])
+    found = front(_objectives(task, results), fine & good)
+    return found[:1] if len(task.objectives) == 1 else found
+
+
+def _take_up(
+    task: Task, folder: Path, columns: Columns, resume: bool
+) -> dict[tuple[float, tuple[Value, ...]], RowResult]:
+    identity = {
+        "task": json.loads(json.dumps([_plain(task), task.scene])),
+        "code_sha256": code_digest(PACKAGES),
+    }
+    note, path = folder / NOTE, folder / ROWS
+    if not note.exists():
+        if path.exists():
+            raise InputError(
+                [Fault(str(folder), "", f"holds {ROWS} of something else", "Name another --out")]
+            )
+        write_text(note, json.dumps(identity, indent=1))
+        return {}
+    if json.loads(note.read_text(encoding="utf-8")) != identity:
+        told = "holds another optimisation, or this one by other code"
+        raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
+    rows = dict(_points(task, path, columns))
+    if rows and not resume:
+        told = f"holds {len(rows)} evaluations of this optimisation"
+        raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
+    return rows
+
+
+def _plain(task: Task) -> list[object]:
+    ranges = {key: span.model_dump() for key, span in task.ranges.items()}
+    follow = {key: rule.model_dump() for key, rule in task.follow.items()}
+    numbers = (task.evaluations, task.population, task.seed, task.tolerances)
+    return [task.objectives, task.signs, task.limits, ranges, follow, numbers]
+
+
+def _points(
+    task: Task, path: Path, columns: Columns
+) -> Iterator[tuple[tuple[float, tuple[Value, ...]], RowResult]]:
+    """Points of the table with their results."""
+    import csv
+
+    results = read_rows(path, columns)
+    if not results:
+        return
+    whole = [span.whole for span in task.ranges.values()] + [
+        task.ranges[rule.of].whole and rule.times.is_integer() and rule.plus.is_integer()
+        for rule in task.follow.values()
+    ]
+    with path.open(newline="", encoding="utf-8") as file:
+        for line in list(csv.reader(file))[1:]:
+            texts = line[2 : 2 + len(whole)]
+            values = tuple(int(t) if w else float(t) for t, w in zip(texts, whole, strict=True))
+            yield (float(line[1]), values), results[int(line[0])]

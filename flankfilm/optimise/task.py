@@ -1,0 +1,165 @@
+"""The optimisation file: a scene, the keys that may change and their bounds, what is wanted least, and limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError, model_validator
+
+from flankfilm.faults import Fault, InputError
+from flankfilm.scene.explain import explain_all
+from flankfilm.scene.reader import parse_toml, read_text, validated
+from flankfilm.scene.schema import Scene, Section
+from flankfilm.study.outputs import OUTPUTS
+from flankfilm.study.plan import Follow, Range, Value, base_scene, following, put
+
+COARSENING = 5.0
+"""The tolerance of the first phase, in tolerances of the scene."""
+
+
+class Limit(Section):
+    """Bounds of an output."""
+
+    at_least: float | None = None
+    at_most: float | None = None
+
+    @model_validator(mode="after")
+    def _a_bound(self) -> Limit:
+        if self.at_least is None and self.at_most is None:
+            raise ValueError("give at_least or at_most, or both")
+        return self
+
+
+class OptimisationFile(Section):
+    """A whole optimisation file."""
+
+    title: str = Field(default="", max_length=200)
+    scene: str | dict[str, Any]
+    minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = ()
+    maximise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = ()
+    evaluations: int = Field(default=300, ge=8, le=1_000_000)
+    population: int = Field(default=24, ge=8, le=1000)
+    seed: int = Field(default=1, ge=0)
+    vary: dict[str, Range] = Field(min_length=1)
+    follow: dict[str, Follow] = Field(default_factory=dict)
+    set: dict[str, Value] = Field(default_factory=dict)
+    limits: dict[str, Limit] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _something_to_want(self) -> OptimisationFile:
+        if not self.minimise and not self.maximise:
+            raise ValueError('name at least one output, such as minimise = ["transmission_error_um"]')
+        for key, rule in self.follow.items():
+            if rule.of not in self.vary:
+                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """An optimisation, ready to be searched.
+
+    Attributes
+    ----------
+    title : str
+    scene : mapping
+        The scene's keys as read, with what the file sets.
+    objectives : tuple of str
+        Outputs, those to minimise first.
+    signs : tuple of float
+        1 for an objective that is minimised, -1 for one that is maximised.
+    limits : tuple of (str, float, float)
+        Output, sign and bound: sign (value - bound) <= 0 is allowed.
+    ranges : mapping
+        Varied key to its range.
+    follow : mapping
+        Key that follows to its rule.
+    evaluations, population, seed : int
+    tolerances : tuple of float
+        Of the first phase, far from the optimum, and of the second.
+    """
+
+    title: str
+    scene: Mapping[str, Any]
+    objectives: tuple[str, ...]
+    signs: tuple[float, ...]
+    limits: tuple[tuple[str, float, float], ...]
+    ranges: Mapping[str, Range]
+    follow: Mapping[str, Follow]
+    evaluations: int
+    population: int
+    seed: int
+    tolerances: tuple[float, float]
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Outputs of each evaluation: objectives, then those that are limited alone."""
+        return tuple(dict.fromkeys((*self.objectives, *(name for name, _, _ in self.limits))))
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of the scene that change."""
+        return (*self.ranges, *self.follow)
+
+    def values(self, unit: Sequence[float]) -> tuple[Value, ...]:
+        """Values of the keys at a point of the unit cube."""
+        own = {key: span.at(u) for (key, span), u in zip(self.ranges.items(), unit, strict=True)}
+        return (*own.values(), *(following(own, rule) for rule in self.follow.values()))
+
+    def raw_scene(self, values: Sequence[Value], tolerance: float) -> dict[str, Any]:
+        """Keys of the scene with these values."""
+        raw = deepcopy(dict(self.scene))
+        for key, value in zip(self.keys, values, strict=True):
+            put(raw, key, value)
+        raw["tolerance"] = tolerance
+        return raw
+
+
+def read_task(path: Path) -> Task:
+    """Read and check an optimisation file, and the scene at both ends of every range.
+
+    Raises
+    ------
+    InputError
+        With every fault of the file.
+    """
+    raw = parse_toml(read_text(path), str(path))
+    try:
+        asked = OptimisationFile.model_validate(raw)
+    except ValidationError as error:
+        raise InputError(explain_all(error.errors(), OptimisationFile)) from error
+    names = (*asked.minimise, *asked.maximise, *asked.limits)
+    faults = [
+        Fault("outputs", repr(name), "is not an output", f"Allowed: {', '.join(OUTPUTS)}")
+        for name in names
+        if name not in OUTPUTS
+    ]
+    if faults:
+        raise InputError(faults)
+    scene = base_scene(asked.scene, asked.set, names, path.parent)
+    fine = scene.get("tolerance", Scene.model_fields["tolerance"].default)
+    task = Task(
+        title=asked.title,
+        scene=scene,
+        objectives=(*asked.minimise, *asked.maximise),
+        signs=(*(1.0 for _ in asked.minimise), *(-1.0 for _ in asked.maximise)),
+        limits=tuple(
+            (name, sign, bound)
+            for name, limit in asked.limits.items()
+            for sign, bound in ((-1.0, limit.at_least), (1.0, limit.at_most))
+            if bound is not None
+        ),
+        ranges=asked.vary,
+        follow=asked.follow,
+        evaluations=asked.evaluations,
+        population=asked.population,
+        seed=asked.seed,
+        tolerances=(min(COARSENING * fine, 0.05) if isinstance(fine, float) else 0.05, fine),
+    )
+    for end in (0.0, 1.0):
+        validated(task.raw_scene(task.values([end] * len(task.ranges)), fine))
+    return task
