@@ -104,7 +104,8 @@ class _Evaluator:
 
 def _objectives(task: Task, results: list[RowResult]) -> Array:
     """Objectives with the sign of minimisation; a failed point is the worst of all."""
-    values = np.array([result.values[: len(task.signs)] for result in results]) * np.array(task.signs)
+    m = len(task.signs)
+    values = np.array([result.values[:m] for result in results]).reshape(-1, m) * np.array(task.signs)
     return np.where(np.isfinite(values), values, FAILED)
 
 
