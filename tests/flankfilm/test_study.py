@@ -254,9 +254,16 @@ class TestCommand:
         path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.9, 0.95]')
         assert "row 0 failed" in run(path, "--out", tmp_path / "out", status=3).stdout
 
+    @pytest.mark.filterwarnings("ignore")  # of the cluster's own start and end
+    def test_a_cluster_gives_the_same_rows_to_the_last_digit(self, tmp_path):
+        pytest.importorskip("dask.distributed")
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        here = run_study(plan, tmp_path / "here", workers=1)
+        there = run_study(plan, tmp_path / "there", workers=1, kind="dask")
+        assert [row.values for row in here.rows] == [row.values for row in there.rows]
+
     @pytest.mark.parametrize("kind", ["dask", "mpi"])
     def test_an_executor_that_is_not_installed_is_named(self, tmp_path, kind):
-        pytest.importorskip("flankfilm")
         module = {"dask": "distributed", "mpi": "mpi4py"}[kind]
         blocked = (
             "import sys; sys.modules['dask'] = sys.modules['mpi4py'] = None; from flankfilm.cli import main; "
