@@ -6,11 +6,18 @@ import math
 from typing import TYPE_CHECKING
 
 from flankfilm.faults import Fault, InputError
-from flankfilm.scene.schema import ElasticSection, GearSection, PairSection, RackSection, Scene
+from flankfilm.scene.schema import (
+    DeviationsSection,
+    ElasticSection,
+    GearSection,
+    PairSection,
+    RackSection,
+    Scene,
+)
 
 if TYPE_CHECKING:
     from ehl import Lubricant
-    from gears import BasicRack, Gear, GearPair, Material
+    from gears import BasicRack, Gear, GearDeviations, GearPair, Material
     from gears import Fault as GearFault
 
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.4, 0.39)}
@@ -77,6 +84,53 @@ def pinion_torque(scene: Scene) -> float:
             [Fault("operating.pinion_torque_Nm", "", "is required", "Add the section [operating]")]
         )
     return scene.operating.pinion_torque_Nm
+
+
+def tip_roundings(scene: Scene) -> tuple[float, float]:
+    """Radii of the tip edges of pinion and wheel [m]."""
+    if scene.pair is None:
+        return 0.0, 0.0
+    return 1e-6 * scene.pair.pinion.tip_rounding_um, 1e-6 * scene.pair.wheel.tip_rounding_um
+
+
+def deviations(
+    scene: Scene, pair: GearPair, *, pitch: bool
+) -> tuple[GearDeviations | None, GearDeviations | None] | None:
+    """Deviations of both gears; those of the pitches only where every tooth counts.
+
+    A mesh cycle of one base pitch stands for all teeth: it knows the profiles alone.
+    """
+    if scene.pair is None:
+        return None
+    sections = (scene.pair.pinion, scene.pair.wheel)
+    first, second = (
+        _deviations(section.deviations, radius, pitch)
+        for section, radius in zip(sections, pair.base_radii, strict=True)
+    )
+    return None if first is None and second is None else (first, second)
+
+
+def _deviations(section: DeviationsSection | None, base_radius: float, pitch: bool) -> GearDeviations | None:
+    from gears import GearDeviations, PitchDeviations, ProfileDeviation
+
+    if section is None:
+        return None
+    curve = section.profile
+    profile = (
+        None
+        if curve is None
+        else ProfileDeviation.over_roll_angle(
+            base_radius,
+            [math.radians(angle) for angle in curve.roll_deg],
+            [1e-6 * value for value in curve.material_um],
+        )
+    )
+    pitches = None
+    if pitch and section.single_pitch_um is not None:
+        pitches = PitchDeviations.from_single([1e-6 * value for value in section.single_pitch_um])
+    elif pitch and section.cumulative_pitch_um is not None:
+        pitches = PitchDeviations(tuple(1e-6 * value for value in section.cumulative_pitch_um))
+    return None if profile is None and pitches is None else GearDeviations(profile, pitches)
 
 
 def _gear(section: GearSection, pair: PairSection) -> Gear:

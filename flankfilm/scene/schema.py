@@ -6,11 +6,24 @@ enough for every gear that is made and narrow enough to catch a wrong unit.
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Want = Literal["geometry", "closed-forms", "stiffness", "film", "fourier", "sweep", "vtk", "report"]
+Want = Literal[
+    "geometry",
+    "closed-forms",
+    "stiffness",
+    "torques",
+    "revolution",
+    "root-stress",
+    "film",
+    "fourier",
+    "sweep",
+    "vtk",
+    "report",
+]
 Positive = Annotated[float, Field(gt=0)]
 TwoNumbers = Annotated[tuple[float, float], Field(strict=False)]
 
@@ -38,6 +51,37 @@ class ReliefSection(Section):
     form: Literal["linear", "parabolic"] = "linear"
 
 
+class ProfileSection(Section):
+    """Deviation of all flanks of a gear from the involute, a smooth curve through points."""
+
+    roll_deg: Annotated[tuple[float, ...], Field(strict=False, min_length=2, max_length=10_000)]
+    material_um: Annotated[tuple[float, ...], Field(strict=False, min_length=2, max_length=10_000)]
+
+    @model_validator(mode="after")
+    def _pairs_that_rise(self) -> ProfileSection:
+        if len(self.roll_deg) != len(self.material_um):
+            raise ValueError(
+                f"{len(self.roll_deg)} roll_deg but {len(self.material_um)} material_um; give as many of each"
+            )
+        if any(b <= a for a, b in itertools.pairwise(self.roll_deg)):
+            raise ValueError("roll_deg must rise from point to point")
+        return self
+
+
+class DeviationsSection(Section):
+    """Deviations of one gear's flanks: a profile for all, and the pitches of its teeth (ISO 1328)."""
+
+    profile: ProfileSection | None = None
+    single_pitch_um: Annotated[tuple[float, ...], Field(strict=False)] | None = None
+    cumulative_pitch_um: Annotated[tuple[float, ...], Field(strict=False)] | None = None
+
+    @model_validator(mode="after")
+    def _one_kind_of_pitch(self) -> DeviationsSection:
+        if self.single_pitch_um is not None and self.cumulative_pitch_um is not None:
+            raise ValueError("give single_pitch_um or cumulative_pitch_um, not both")
+        return self
+
+
 class GearSection(Section):
     """One gear."""
 
@@ -48,6 +92,17 @@ class GearSection(Section):
     thickness_allowance_um: float = Field(default=0.0, ge=0, le=50_000, description="thins the tooth")
     tip_relief: ReliefSection | None = None
     tip_chamfer_mm: float = Field(default=0.0, ge=0, le=100)
+    tip_rounding_um: float = Field(default=0.0, ge=0, le=50_000, description="radius of the tip's edges")
+    deviations: DeviationsSection | None = None
+
+    @model_validator(mode="after")
+    def _a_pitch_for_each_tooth(self) -> GearSection:
+        some = self.deviations
+        for name in ("single_pitch_um", "cumulative_pitch_um"):
+            values = None if some is None else getattr(some, name)
+            if values is not None and len(values) != self.teeth:
+                raise ValueError(f"deviations.{name} has {len(values)} values for {self.teeth} teeth")
+        return self
 
 
 class PairSection(Section):
@@ -101,6 +156,12 @@ class OperatingSection(Section):
 
     pinion_torque_Nm: float = Field(ge=1e-9, le=1e9)
     pinion_speed_rpm: float | None = Field(default=None, ge=1e-6, le=1e6)
+    friction: float = Field(default=0.0, ge=0, le=0.5, description="coefficient; tilts the forces")
+    torques_Nm: Annotated[
+        tuple[Annotated[float, Field(ge=1e-9, le=1e9)], ...], Field(strict=False, max_length=1000)
+    ] = ()
+    pitches: int | None = Field(default=None, ge=1, le=100_000, description="of a revolution; pinion's teeth")
+    first_teeth: Annotated[tuple[int, int], Field(strict=False)] = (0, 0)
 
 
 class LubricantSection(Section):

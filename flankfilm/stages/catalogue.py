@@ -47,7 +47,7 @@ STAGES: Mapping[str, Stage] = {
             "tooth compliance by finite elements",
             lambda e: teeth.bodies(e),
             lambda scene: _sections("pair", "material", "stiffness.plane", "tolerance")(
-                teeth.without_relief(scene)
+                teeth.plain_flanks(scene)
             ),
             packages=("gears", "meshes", "fem"),
             kept=True,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.build import gear_pair, pinion_torque
+from flankfilm.build import deviations, gear_pair, pinion_torque, tip_roundings
 from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness, peak_to_peak_error, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
@@ -27,13 +27,13 @@ def pair(engine: Engine) -> GearPair:
 
 
 def bodies(engine: Engine) -> Compliance:
-    """Compliance of the pair without tip relief, which no mesh shows: one for all reliefs."""
+    """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges."""
     import fem
 
     scene = engine.scene
     split = ToleranceSplit.of(scene.tolerance)
     found = fem.compliance(
-        gear_pair(without_relief(scene)), tolerance=split.compliance, plane=scene.stiffness.plane
+        gear_pair(plain_flanks(scene)), tolerance=split.compliance, plane=scene.stiffness.plane
     )
     if not found.converged:
         raise SolverError(f"tooth compliance: {found.message}")
@@ -46,14 +46,12 @@ def compliance(engine: Engine) -> Compliance:
     return replace(nominal, pair=engine["pair"])
 
 
-def without_relief(scene: Scene) -> Scene:
-    """Give the scene with gears that have no tip relief."""
+def plain_flanks(scene: Scene) -> Scene:
+    """Give the scene with gears that have no relief, deviations or rounded edges."""
     if scene.pair is None:
         return scene
-    gears = {
-        name: getattr(scene.pair, name).model_copy(update={"tip_relief": None})
-        for name in ("pinion", "wheel")
-    }
+    plain = {"tip_relief": None, "deviations": None, "tip_rounding_um": 0.0}
+    gears = {name: getattr(scene.pair, name).model_copy(update=plain) for name in ("pinion", "wheel")}
     return scene.model_copy(update={"pair": scene.pair.model_copy(update=gears)})
 
 
@@ -69,7 +67,18 @@ def fem_cycle(engine: Engine, positions: int, film: Any = None) -> MeshCycle:
         compliance=engine["compliance"],
         beyond_path=scene.stiffness.contact_beyond_path,
         film=film,
+        **flanks(engine),
     )
+
+
+def flanks(engine: Engine, *, pitch: bool = False) -> dict[str, Any]:
+    """What the scene says of deviations, edges and friction, as `fem.mesh_cycle` takes it."""
+    scene, pair = engine.scene, engine["pair"]
+    return {
+        "deviations": deviations(scene, pair, pitch=pitch),
+        "tip_rounding": tip_roundings(scene),
+        "friction": scene.operating.friction if scene.operating else 0.0,
+    }
 
 
 def from_fem(cycle: MeshCycle, label: str) -> MeshStiffness:
