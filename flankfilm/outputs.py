@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.build import pinion_speed
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
+from flankfilm.load_outputs import load_outputs
 from flankfilm.mesh_stiffness import MeshStiffness
 
 if TYPE_CHECKING:
@@ -118,6 +120,9 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
             cycle = value if stage == "dry cycle" else value.cycle
             quantities |= cycle_quantities(cycle, prefix)
             tables[f"mesh_cycle_{prefix}"] = _cycle_columns(cycle)
+    for found, more in load_outputs(values, speed=_speed(scene)):
+        quantities |= found
+        tables |= more
     if (film := values.get("film")) is not None:
         quantities |= film_quantities(film)
         tables["film_along_path"] = {
@@ -138,6 +143,14 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
     for name, columns in tables.items():
         write_csv(folder / "csv" / f"{name}.csv", columns)
     return [folder / "results.nc", *(folder / "csv" / f"{name}.csv" for name in tables)]
+
+
+def _speed(scene: Scene) -> float | None:
+    """Pinion speed [rad/s], where the scene has one."""
+    operating = scene.operating
+    if operating is None or operating.pinion_speed_rpm is None:
+        return None
+    return pinion_speed(scene)
 
 
 def _cycle_columns(cycle: MeshStiffness) -> dict[str, Any]:

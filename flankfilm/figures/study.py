@@ -76,6 +76,6 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
 
 def _words(name: str) -> str:
     """Name of an output without its unit."""
-    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_m_per_s"):
+    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_MPa", "_m_per_s"):
         name = name.removesuffix(unit)
     return name.replace("_", " ")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flankfilm.dataset import provenance, write_text
 from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
-from flankfilm.report import film_parts, mesh_parts, motion_parts, run_parts
+from flankfilm.report import film_parts, load_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Headline, Part, render
 from flankfilm.report.run_parts import CostRow
 from flankfilm.report.text import percent
@@ -26,6 +26,16 @@ def headlines(results: Results) -> list[Headline]:
         told += mesh_parts.headlines(cycle, values["pair"].face_width)
     if (film := values.get("film")) is not None:
         told += film_parts.headlines(film)
+    if (roots := values.get("root stress")) is not None:
+        gears = (roots.stress.pinion, roots.stress.wheel)
+        largest = [f"{1e-6 * gear.greatest_tension.stress_Pa:.4g}" for gear in gears]
+        told.append(
+            Headline(
+                "greatest root stress, pinion and wheel",
+                " and ".join(largest) + " MPa",
+                f"error {percent(roots.stress.error)}",
+            )
+        )
     if (fourier := values.get("fourier")) is not None:
         kappa = (
             fourier.stiffness.amplitudes[0] / fourier.stiffness.mean if fourier.stiffness.amplitudes else 0.0
@@ -79,6 +89,12 @@ def _result_parts(results: Results) -> list[Part | None]:
         )
         if film is not None:
             parts.append(film_parts.film(pair, film, scene.tolerance))
+    if pair is not None and (torques := values.get("torques")) is not None:
+        parts.append(load_parts.over_torque(torques, pair.face_width))
+    if (whole := values.get("revolution")) is not None:
+        parts.append(load_parts.revolution(whole))
+    if (roots := values.get("root stress")) is not None:
+        parts.append(load_parts.root_stress(roots))
     if (fields := values.get("fields")) is not None:
         parts.append(mesh_parts.fields(fields))
     if (fourier := values.get("fourier")) is not None:
@@ -119,6 +135,7 @@ def _run_parts(results: Results) -> list[Part | None]:
 def _cost_rows(results: Results) -> list[CostRow]:
     """Error and work of each stage that ran, in the order of the house."""
     split = ToleranceSplit.of(results.scene.tolerance)
+    scene_tolerance = results.scene.tolerance
     rows = []
     for name, run in results.runs.items():
         value: Any = results.values.get(name)
@@ -133,6 +150,9 @@ def _cost_rows(results: Results) -> list[CostRow]:
                 sampling_error(value.secant),
             )
             note = f"{value.phase.size} positions"
+        elif name == "fillets":
+            figure, allowed, error = "greatest root stress per load", scene_tolerance, value.error
+            note = f"{value.cost.unknowns:,} unknowns"
         elif name == "film" and value.model == "ehl":
             figure, allowed, error = "film thickness", split.film, value.error
             note = f"{value.rho1.size} films of up to {value.unknowns} unknowns, {value.rounds} rounds"

@@ -7,6 +7,9 @@ from typing import Any
 
 from flankfilm.faults import Fault
 
+BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
+"""Wants that need the loaded contact by finite elements."""
+
 
 def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
     """Faults for sections that the wants of `raw` need and that are not there.
@@ -23,8 +26,8 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
     stiffness, film, dynamics = (_table(raw, n) for n in ("stiffness", "film", "dynamics"))
     given = stiffness.get("model") == "given"
     own_units = "mean_force" in dynamics
-    if listed & {"geometry", "closed-forms", "vtk", "film"}:
-        need("pair", f"wants = [{_quoted(listed & {'geometry', 'closed-forms', 'vtk', 'film'})}]")
+    if geared := listed & {"geometry", "closed-forms", "film", *BY_FINITE_ELEMENTS}:
+        need("pair", f"wants = [{_quoted(geared)}]")
     if listed & {"stiffness", "fourier", "sweep"} and not given:
         need("pair", f'stiffness.model = "{stiffness.get("model", "fem")}"')
     if "sweep" in listed:
@@ -58,20 +61,10 @@ def _deeper(
         )
     if "film" in listed and film.get("model") == "none":
         faults.append(Fault("film.model", "'none'", "excludes the wanted film", 'Take film.model = "ehl"'))
-    if "vtk" in listed and stiffness.get("model", "fem") != "fem":
-        faults.append(
-            Fault(
-                "stiffness.model",
-                repr(stiffness.get("model")),
-                'must be "fem" for the wanted vtk',
-                "Or drop vtk",
-            )
-        )
-    elif "vtk" in listed and stiffness.get("pairs", "coupled") != "coupled":
-        remedy = "Independent pairs have no common field; or drop vtk"
-        faults.append(
-            Fault("stiffness.pairs", "'independent'", 'must be "coupled" for the wanted vtk', remedy)
-        )
+    faults += _by_finite_elements(raw, listed, stiffness)
+    if "torques" in listed and "operating" in raw and not operating.get("torques_Nm"):
+        remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
+        faults.append(Fault("operating.torques_Nm", "", "is required by the wanted torques", remedy))
     if "film" in listed and stiffness.get("model") == "given":
         allowed = "has no load share, which the wanted film needs"
         faults.append(
@@ -105,6 +98,29 @@ def _deeper(
             )
         )
     return faults
+
+
+def _by_finite_elements(
+    raw: Mapping[str, Any], listed: set[str], stiffness: Mapping[str, Any]
+) -> list[Fault]:
+    """Faults of outputs and keys that only the coupled finite elements know."""
+    operating, pair = _table(raw, "operating"), _table(raw, "pair")
+    asked = [f"the wanted {want}" for want in sorted(listed & BY_FINITE_ELEMENTS)]
+    asked += ["operating.friction"] if operating.get("friction") else []
+    for gear in ("pinion", "wheel"):
+        keys = _table(pair, gear)
+        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations") if keys.get(key)]
+    if not asked:
+        return []
+    model, pairs = stiffness.get("model", "fem"), stiffness.get("pairs", "coupled")
+    told = " and ".join(asked)
+    if model != "fem":
+        remedy = "Closed forms and given stiffnesses do not know it; or drop it"
+        return [Fault("stiffness.model", repr(model), f'must be "fem" for {told}', remedy)]
+    if pairs != "coupled":
+        remedy = "Independent pairs have no common field, nor one contact; or drop it"
+        return [Fault("stiffness.pairs", repr(pairs), f'must be "coupled" for {told}', remedy)]
+    return []
 
 
 def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -6,7 +6,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from flankfilm.scene import Scene
-from flankfilm.stages import closed_forms, decide, fields, film, motion, separate_pairs, sweep, teeth
+from flankfilm.stages import (
+    closed_forms,
+    decide,
+    fields,
+    film,
+    loads,
+    motion,
+    roots,
+    separate_pairs,
+    sweep,
+    teeth,
+)
 from flankfilm.stages.engine import Stage
 from flankfilm.verify import compare
 
@@ -74,6 +85,37 @@ STAGES: Mapping[str, Stage] = {
             lambda e: teeth.dry_cycle(e),
             _TEETH,
             needs=("compliance",),
+        ),
+        Stage(
+            "torques",
+            "mesh cycles over torque",
+            lambda e: loads.torques(e),
+            _TEETH,
+            needs=("compliance", "dry cycle"),
+        ),
+        Stage(
+            "revolution",
+            "mesh cycle tooth by tooth",
+            lambda e: loads.revolution(e),
+            _TEETH,
+            needs=("compliance",),
+        ),
+        Stage(
+            "fillets",
+            "root stress per load by finite elements",
+            lambda e: roots.fillets(e),
+            lambda scene: _sections("pair", "material", "stiffness.plane", "tolerance")(
+                teeth.plain_flanks(scene)
+            ),
+            packages=("gears", "meshes", "fem"),
+            kept=True,
+        ),
+        Stage(
+            "root stress",
+            "root stress over the mesh cycle",
+            lambda e: roots.root_stress(e),
+            _sections(),
+            needs=("mesh", "fillets", "pair"),
         ),
         Stage(
             "other cycles",
@@ -153,6 +195,9 @@ def goals(scene: Scene) -> tuple[str, ...]:
             found.append("other cycles")
         if scene.film.model != "none" or "film" in wants:
             found.append("mesh")
+    found += [name for name in ("torques", "revolution") if name in wants]
+    if "root-stress" in wants:
+        found.append("root stress")
     if wants & {"fourier", "sweep"}:
         found.append("fourier")
     if "sweep" in wants:

@@ -86,6 +86,14 @@ def _at_pitch_point(film: Any, pair: Any) -> float:
     return float(np.interp(pair.points.C, film.rho1, film.central))
 
 
+def _root(meaning: str, peak: str, gear: str) -> Output:
+    def of(engine: Engine) -> float:
+        found = getattr(engine["root stress"].stress, gear)
+        return 1e-6 * float(getattr(found, peak).stress_Pa)
+
+    return Output("MPa", f"{meaning} of the {gear}", ("root-stress",), of)
+
+
 _FORMS = {
     "ishikawa": "Ishikawa",
     "weber_banaschek": "Weber-Banaschek",
@@ -125,6 +133,19 @@ OUTPUTS: Mapping[str, Output] = {
         "1",
         "estimated relative numerical error of the mean secant stiffness; nan where unknown",
         lambda cycle, _: np.nan if cycle.mean_error is None else cycle.mean_error,
+    ),
+    **{
+        f"root_{kind}_{gear}_MPa": _root(meaning, f"greatest_{kind}", gear)
+        for gear in ("pinion", "wheel")
+        for kind, meaning in (
+            ("tension", "greatest tension along the fillets"),
+            ("compression", "greatest compression along the fillets"),
+        )
+    },
+    "efficiency": _stiffness(
+        "1",
+        "power out over power in, sliding of the dry contacts alone",
+        lambda cycle, _: np.nan if cycle.contact is None else cycle.contact.efficiency,
     ),
     "least_film_um": _film("um", "least film along the path", lambda film: 1e6 * film.minimum.min()),
     "least_central_film_um": _film(

@@ -292,6 +292,14 @@ def test_every_example_is_in_order_and_its_first_row_computes(path):
 
 
 def test_outputs_carry_their_unit_in_the_name():
-    suffixes = {"mm": "_mm", "um": "_um", "deg": "_deg", "GPa": "_GPa", "m/s": "_m_per_s", "%": "_percent"}
+    suffixes = {
+        "mm": "_mm",
+        "um": "_um",
+        "deg": "_deg",
+        "GPa": "_GPa",
+        "MPa": "_MPa",
+        "m/s": "_m_per_s",
+        "%": "_percent",
+    }
     for name, output in OUTPUTS.items():
         assert name.endswith(suffixes.get(output.unit, "")), name
