@@ -1,0 +1,108 @@
+"""Torques, a revolution and root stress from a scene with real flanks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from flankfilm.faults import InputError
+from flankfilm.scene import parse_scene
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "real_flanks.toml"
+SCRIPT = Path(sys.executable).with_name("flankfilm")
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("real") / "out"
+    done = subprocess.run(
+        [str(SCRIPT), "run", str(EXAMPLE), "--out", str(folder)], capture_output=True, text=True, check=True
+    )
+    assert "greatest root stress" in done.stdout
+    return folder
+
+
+@pytest.fixture(scope="module")
+def results(run):
+    with xr.open_dataset(run / "results.nc", engine="h5netcdf") as found:
+        yield found.load()
+
+
+def test_the_scene_s_own_torque_is_one_of_the_sweep(results):
+    at = int(np.flatnonzero(results.torque.values == 600.0)[0])
+    assert results.torque.size == 9
+    assert float(results.torque_secant_stiffness[at]) == pytest.approx(
+        float(results.dry_secant_stiffness.mean()), rel=1e-9
+    )
+    assert np.all(np.diff(results.torque_secant_stiffness.values) > 0)  # contacts stiffen
+
+
+def test_a_revolution_shows_every_tooth_and_the_runout(results):
+    travel = results.revolution_travel.values
+    assert travel.size == 36 * 40
+    unloaded = results.revolution_unloaded_transmission_error.values
+    # once around the pinion: a sine of 6 um in cumulative pitch turns it by 6 cos 20 degrees along the line of action
+    first = 2 * np.abs(np.mean(unloaded * np.exp(-2j * np.pi * travel / 36)))
+    assert first == pytest.approx(6e-6 * np.cos(np.radians(20)), rel=0.1)
+    assert np.all(results.revolution_transmission_error.values > unloaded)
+
+
+def test_one_pitch_knows_the_profile_but_not_the_pitches(results):
+    whole = results.revolution_transmission_error.values.reshape(36, 40)
+    spread = np.ptp(whole.mean(axis=1))
+    assert spread > 8e-6
+    assert np.ptp(results.dry_transmission_error.values) < np.ptp(whole)
+
+
+def test_root_stress_stands_beside_the_standard(results):
+    for gear in ("pinion", "wheel"):
+        tension = float(results[f"root_tension_Pa_{gear}"].max())
+        nominal = float(results[f"iso6336_3_sigma_F0_{gear}"])
+        assert 0.7 < tension / nominal < 1.1
+        lean = results[f"root_tension_tangent_deg_{gear}"].values[
+            int(results[f"root_tension_Pa_{gear}"].argmax())
+        ]
+        assert 25 < lean < 50
+
+
+def test_hertz_contacts_carry_units_and_only_flanks(results):
+    pressure = results.dry_hertz_pressure
+    assert pressure.attrs["units"] == "Pa"
+    load, width = results.dry_force.values / 0.040, results.dry_half_width.values
+    on_flank = np.isfinite(pressure.values)
+    # w = pi/2 p a for an ellipse of pressure
+    assert np.allclose(0.5 * np.pi * pressure.values[on_flank] * width[on_flank], load[on_flank], rtol=1e-9)
+    sliding = results.dry_sliding_speed.values[on_flank]
+    assert sliding.min() < 0 < sliding.max()
+
+
+def test_tables_read_back(run):
+    for name in ("torques", "revolution", "contacts_dry", "root_stress_pinion", "fillet_stress_wheel"):
+        assert len(pd.read_csv(run / "csv" / f"{name}.csv")) > 5
+    page = (run / "report.html").read_text(encoding="utf-8")
+    for anchor in ("torques", "revolution", "roots"):
+        assert f'id="{anchor}"' in page
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ("[operating]", '[stiffness]\nmodel = "ishikawa"\n[operating]', "stiffness.model"),
+        ("[operating]", '[stiffness]\npairs = "independent"\n[operating]', "stiffness.pairs"),
+        ("torques_Nm = [50, 100, 200, 300, 400, 500, 700, 800]", "", "operating.torques_Nm"),
+        ("teeth = 36", "teeth = 35", "cumulative_pitch_um has 36 values for 35 teeth"),
+        ("roll_deg = [11.0, 16.0", "roll_deg = [16.0, 11.0", "roll_deg must rise"),
+        ("friction = 0.05", "friction = 0.9", "operating.friction"),
+    ],
+)
+def test_what_cannot_be_is_refused_under_its_key(old, new, where):
+    text = EXAMPLE.read_text(encoding="utf-8")
+    assert old in text
+    with pytest.raises(InputError, match=where):
+        parse_scene(text.replace(old, new, 1))
