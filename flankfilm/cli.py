@@ -250,6 +250,14 @@ def new(scene: Path, /) -> int:
     return 0
 
 
+for _function, _name, _help in (
+    ("import_gears", "import", "Write a scene from the gear data in FILE (REXS, XML)."),
+    ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
+):
+    # the module is loaded when the command is called
+    app.command(f"flankfilm.exchange.commands:{_function}", name=_name, help=_help)
+
+
 def parse_tolerance(text: str) -> float:
     """Read a tolerance such as ``0.5%`` or ``0.005``.
 

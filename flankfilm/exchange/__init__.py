@@ -1,0 +1,1 @@
+"""Gear data in and out: REXS files, tooth profiles as points and drawings."""

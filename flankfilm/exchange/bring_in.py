@@ -1,0 +1,79 @@
+"""From a file of gear data to a scene, with what is still open."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+from flankfilm.build import ISO_53, gear_pair
+from flankfilm.exchange.draft import Draft, scene_text
+from flankfilm.exchange.rexs_file import read_model
+from flankfilm.exchange.rexs_pair import draft_of
+from flankfilm.faults import Fault, InputError
+from flankfilm.scene import parse_scene
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A scene from a file of gear data.
+
+    Attributes
+    ----------
+    text : str
+        The scene file.
+    notes : tuple of str
+        What was left out, and what defaults stand for.
+    faults : tuple of Fault
+        What must be given before the scene can be run, or what is wrong with the gears.
+    """
+
+    text: str
+    notes: tuple[str, ...]
+    faults: tuple[Fault, ...]
+
+
+def imported(file: Path, *, stage: str | None = None, rack: str | None = None) -> Imported:
+    """Make a scene from a REXS file.
+
+    Parameters
+    ----------
+    file : Path
+    stage : str, optional
+        Id of the stage, where the file holds several.
+    rack : {"A", "B", "C", "D"}, optional
+        Basic rack of ISO 53, where the file names no tool.
+
+    Raises
+    ------
+    InputError
+        Where the file cannot be read, or holds gears that are out of scope.
+    """
+    draft = draft_of(read_model(file), str(file), stage)
+    if rack is not None:
+        _name_rack(draft, rack)
+    text = scene_text(draft)
+    faults = draft.lacking()
+    if not faults:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # flankfilm check tells them
+                gear_pair(parse_scene(text))
+        except InputError as error:
+            faults = error.faults
+    return Imported(text, tuple(draft.notes), faults)
+
+
+def _name_rack(draft: Draft, name: str) -> None:
+    """Fill in a rack of ISO 53 where the file has none."""
+    _, h_fP, rho_fP = ISO_53[name]
+    own = draft.rack
+    if not math.isnan(own.h_fP) or not math.isnan(own.rho_fP):
+        told = f"the file has its own: h_fP = {own.h_fP:g}, rho_fP = {own.rho_fP:g}"
+        raise InputError([Fault("--rack", name, told, "Leave it out, and change the scene")])
+    if not math.isnan(own.alpha_deg) and abs(own.alpha_deg - 20.0) > 1e-9:
+        told = f"has 20 deg, but the file {own.alpha_deg:g} deg"
+        raise InputError([Fault("--rack", name, told, "Give h_fP and rho_fP in the scene")])
+    own.h_fP, own.rho_fP = h_fP, rho_fP
+    draft.notes.append(f"Basic rack: ISO 53 {name}, named by --rack.")

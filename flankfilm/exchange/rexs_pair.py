@@ -1,0 +1,341 @@
+"""From the components of a REXS model to the draft of a scene.
+
+Names of components, attributes, relations and roles are those of the REXS schemas 1.0 to 2.0; the flank of a
+cylindrical gear is of type flank_geometry up to version 1.1 and cylindrical_gear_flank after it, its tool is
+named by an ordered_reference of the gear up to 1.1 and by a manufacturing_step of the flank after it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from flankfilm.exchange.draft import OPEN, Draft, GearDraft, MaterialDraft, RackDraft
+from flankfilm.exchange.rexs_file import Component, Model, Relation
+from flankfilm.faults import Fault, InputError, shorten
+
+LENGTH = {"mm": 1.0, "mum": 1e-3}  # mm
+ANGLE = {"deg": 1.0, "°": 1.0, "rad": 180.0 / math.pi}  # deg
+PURE = {"": 1.0, "none": 1.0}
+MODULUS = {"N/mm^2": 1e-3, "MPa": 1e-3}  # GPa
+DENSITY = {"kg/dm^3": 1e3}  # kg/m3
+
+SAME = 1e-9
+"""Relative difference within which two numbers of a file are one number."""
+
+MODIFICATIONS = (
+    "tip_relief",
+    "root_relief",
+    "triangular_tip_relief",
+    "triangular_root_relief",
+    "profile_crowning",
+    "profile_slope",
+    "profile_twist",
+    "profile_deviation",
+    "helix_crowning",
+    "helix_slope",
+    "helix_deviation",
+    "end_relief_datum_face",
+    "end_relief_non_datum_face",
+    "topographical_modification",
+)
+
+
+def stages(model: Model) -> dict[str, Relation]:
+    """Stages of cylindrical gears by component id."""
+    found = {}
+    for relation in model.relations:
+        stage = model.components.get(relation.roles.get("stage", ""))
+        if relation.type == "stage" and stage is not None and stage.type == "cylindrical_stage":
+            found[stage.id] = relation
+    return found
+
+
+def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
+    """Draft a scene from one stage of a model.
+
+    Parameters
+    ----------
+    model : Model
+    source : str
+        What faults and notes call the file.
+    stage : str, optional
+        Id of the stage; needed where the model holds several.
+
+    Raises
+    ------
+    InputError
+        Where there is no such stage, or with everything that the scene cannot have: helical or internal
+        gears, flanks that differ, tools with protuberance, two tools in one pair.
+    """
+    relation = _chosen(model, source, stage)
+    reader = _StageReader(model, source, relation)
+    draft = reader.draft()
+    if reader.faults:
+        raise InputError(reader.faults)
+    return draft
+
+
+def _chosen(model: Model, source: str, stage: str | None) -> Relation:
+    found = stages(model)
+    listed = "; ".join(f"--stage {key}: {shorten(model.components[key].name)}" for key in found)
+    if not found:
+        kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
+        told = "holds no stage of cylindrical gears" + (f", but {', '.join(kinds)}" if kinds else "")
+        raise InputError([Fault(source, "", told, "Pairs of external spur gears are read alone")])
+    if stage is None and len(found) > 1:
+        raise InputError([Fault(source, f"{len(found)} stages", "choose one", listed)])
+    if stage is not None and stage not in found:
+        raise InputError([Fault("--stage", shorten(stage), f"is no stage of {source}", listed)])
+    return found[stage] if stage is not None else next(iter(found.values()))
+
+
+@dataclass
+class _StageReader:
+    """Reads the numbers of one stage and gathers what is wrong with them."""
+
+    model: Model
+    source: str
+    relation: Relation
+    faults: list[Fault] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def draft(self) -> Draft:
+        stage = self.model.components[self.relation.roles["stage"]]
+        gears = self._gears(stage)
+        if gears is None:
+            return Draft("", self.source, GearDraft(""), GearDraft(""), RackDraft())
+        for gear in gears:
+            self._refuse_helical(gear)
+        module = self._common("normal_module", LENGTH, gears)
+        flanks = [self._flanks(gear) for gear in gears]
+        alpha = self._common("normal_pressure_angle", ANGLE, [f for pair in flanks for f in pair])
+        rack = self._rack(gears, flanks, module, alpha)
+        first, second = (self._gear(g, f, module, rack) for g, f in zip(gears, flanks, strict=True))
+        self._modifications(gears, flanks)
+        return Draft(
+            title=stage.name or "Imported pair",
+            source=f"{self.source}: {stage}, REXS {self.model.version}, written by {self.model.application}",
+            pinion=first,
+            wheel=second,
+            rack=rack,
+            module_mm=module,
+            face_width_mm=self._face_width(stage, gears),
+            centre_distance_mm=self._number(stage, "center_distance", LENGTH),
+            materials=self._materials(gears),
+            notes=self.notes,
+        )
+
+    def _number(self, component: Component, name: str, units: Mapping[str, float]) -> float | None:
+        """Number of an attribute in the scene's unit, or None where the component lacks it."""
+        if name not in component.attributes:
+            return None
+        text, unit = component.attributes[name]
+        scale = units.get(unit.replace(" ", ""))
+        if scale is None:
+            known = " or ".join(u for u in units if u)
+            self._refuse(component, name, f"{text} {unit}", f"must be in {known}")
+            return None
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            self._refuse(component, name, text, "must be a finite number")
+            return None
+        return float(f"{value * scale:.12g}") if scale != 1.0 else value
+
+    def _refuse(self, component: Component, name: str, value: str, told: str, remedy: str = "") -> None:
+        self.faults.append(Fault(f"{self.source}: {component}: {name}", shorten(value), told, remedy))
+
+    def _gears(self, stage: Component) -> tuple[Component, Component] | None:
+        """Driving gear and driven gear; gear 1 drives where the file does not say."""
+        listed = [self.model.components.get(self.relation.roles.get(r, "")) for r in ("gear_1", "gear_2")]
+        first, second = listed
+        for role, gear in zip(("gear_1", "gear_2"), listed, strict=True):
+            if gear is None:
+                self.faults.append(Fault(f"{self.source}: {stage}", "", f"has no {role}", "Export it again"))
+            elif gear.type != "cylindrical_gear":
+                told = "is no external cylindrical gear; internal and other gears are out of scope"
+                self.faults.append(Fault(f"{self.source}: {stage}: {role}", str(gear), told))
+        if first is None or second is None or self.faults:
+            return None
+        drives = {}
+        for relation in self.model.related("stage_gear_data", "stage", stage.id):
+            data = self.model.components.get(relation.roles.get("stage_gear_data", ""))
+            told = data.attributes.get("is_driving_gear", ("", ""))[0] if data is not None else ""
+            drives[relation.roles.get("gear", "")] = told == "true"
+        if drives.get(second.id) and not drives.get(first.id):
+            return second, first
+        if not drives.get(first.id):
+            self.notes.append(f"The file does not say which gear drives: gear 1, {first}, is the pinion.")
+        return first, second
+
+    def _refuse_helical(self, gear: Component) -> None:
+        helix = self._number(gear, "helix_angle_reference_diameter", ANGLE)
+        if helix is None and "helix_angle_reference_diameter" not in gear.attributes:
+            self.notes.append(f"{gear} has no helix angle in the file: a spur gear.")
+        elif helix:
+            self._refuse(
+                gear,
+                "helix_angle_reference_diameter",
+                f"{helix:g} deg",
+                "must be 0: helical gears are out of scope",
+            )
+
+    def _common(
+        self, name: str, units: Mapping[str, float], components: list[Component] | tuple[Component, ...]
+    ) -> float:
+        """The one number that all components have that say it."""
+        said = {c.id: v for c in components if (v := self._number(c, name, units)) is not None}
+        values = list(said.values())
+        if not values:
+            return OPEN
+        for key, value in said.items():
+            if abs(value - values[0]) > SAME * abs(values[0]):
+                component = self.model.components[key]
+                told = f"must be {values[0]:g}, as in the rest of the pair"
+                self._refuse(
+                    component, name, f"{value:g}", told, "Flanks and gears that differ are out of scope"
+                )
+        return values[0]
+
+    def _flanks(self, gear: Component) -> list[Component]:
+        relations = self.model.related("flank", "gear", gear.id)
+        ids = [r.roles.get(side, "") for r in relations for side in ("left", "right")]
+        return [self.model.components[i] for i in ids if i in self.model.components]
+
+    def _gear(self, gear: Component, flanks: list[Component], module: float, rack: RackDraft) -> GearDraft:
+        teeth = self._number(gear, "number_of_teeth", PURE)
+        shift = self._common("addendum_modification_coefficient", PURE, flanks)
+        if math.isnan(shift):
+            shift = self._common("addendum_modification", LENGTH, flanks) / module
+        tip = self._number(gear, "tip_diameter", LENGTH)
+        alteration = None
+        if tip is not None and teeth is not None:
+            exact = 0.5 * (tip / module - teeth) - rack.h_aP - shift
+            alteration = 0.0 if abs(exact) < 1e-9 else float(f"{exact:.12g}")
+        root = self._number(gear, "root_diameter", LENGTH)
+        if root is not None and teeth is not None:
+            own = module * (teeth + 2.0 * (shift - rack.h_fP))
+            if abs(own - root) > 0.01 * module:
+                self.notes.append(
+                    f"{gear}: root_diameter {root:g} mm in the file, {own:g} mm by shift and tool: the file's "
+                    "machining allowance or tooth thickness is not taken over."
+                )
+        for name in ("machining_allowance", "grinding_allowance"):
+            left = [v for f in flanks if (v := self._number(f, name, LENGTH))]
+            if left:
+                self.notes.append(
+                    f"{gear}: {name} {left[0]:g} mm is not taken over: the tooth is as finished."
+                )
+        bore = self._number(gear, "inner_diameter", LENGTH)
+        chamfer = self._common("tooth_tip_chamfer", LENGTH, flanks)
+        return GearDraft(
+            name=str(gear),
+            teeth=OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
+            profile_shift=shift,
+            tip_alteration=None if alteration is not None and math.isnan(alteration) else alteration,
+            bore_mm=bore or None,
+            tip_chamfer_mm=None if math.isnan(chamfer) else chamfer,
+        )
+
+    def _rack(
+        self,
+        gears: tuple[Component, Component],
+        flanks: list[list[Component]],
+        module: float,
+        alpha: float,
+    ) -> RackDraft:
+        every = [f for pair in flanks for f in pair]
+        addendum = self._common("addendum_coefficient_basic_profile", PURE, every)
+        h_aP = 1.0 if math.isnan(addendum) else addendum  # with a tip diameter only h_aP + k counts
+        tools = [self._tool(g, f) for g, f in zip(gears, flanks, strict=True)]
+        racks = []
+        for tool in tools:
+            if tool is None:
+                return RackDraft(h_aP=h_aP, alpha_deg=alpha)
+            for name, units in _PROTUBERANCE:
+                if self._number(tool, name, units):
+                    value = tool.attributes[name][0]
+                    self._refuse(tool, name, value, "must be 0: protuberance is out of scope")
+            depth = self._in_modules(
+                tool, "addendum_coefficient_reference_profile", "addendum_reference_profile", module
+            )
+            radius = self._in_modules(tool, "tip_radius_factor", "tip_radius", module)
+            racks.append((depth, radius))
+        first, second = racks
+        for name, a, b in zip(("addendum", "tip radius"), first, second, strict=True):
+            if abs(a - b) > SAME * abs(a):
+                told = f"must be {a:g} modules, as that of {tools[0]}: a pair has one basic rack"
+                self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", told))
+        return RackDraft(h_aP=h_aP, h_fP=first[0], rho_fP=first[1], alpha_deg=alpha)
+
+    def _in_modules(self, tool: Component, factor: str, length: str, module: float) -> float:
+        own = self._number(tool, factor, PURE)
+        if own is not None:
+            return own
+        value = self._number(tool, length, LENGTH)
+        return OPEN if value is None else float(f"{value / module:.12g}")
+
+    def _tool(self, gear: Component, flanks: list[Component]) -> Component | None:
+        """The rack-shaped tool that cut a gear, where it is the only tool."""
+        steps = [r for f in flanks for r in self.model.related("manufacturing_step", "workpiece", f.id)]
+        ids = [r.roles.get("tool", "") for r in steps]
+        for kind in ("ordered_reference", "reference"):
+            ids += [r.roles.get("referenced", "") for r in self.model.related(kind, "origin", gear.id)]
+        named = (self.model.components.get(i) for i in dict.fromkeys(ids))
+        tools = [c for c in named if c is not None and c.type.endswith("_tool")]
+        if len(tools) == 1 and tools[0].type == "rack_shaped_tool":
+            return tools[0]
+        if tools:
+            self.notes.append(
+                f"{gear}: made by {', '.join(map(str, tools))}: the fillet of one rack-shaped tool alone is generated."
+            )
+        return None
+
+    def _face_width(self, stage: Component, gears: tuple[Component, Component]) -> float:
+        common = self._number(stage, "common_face_width", LENGTH)
+        if common:
+            return common
+        widths = [v for g in gears if (v := self._number(g, "face_width", LENGTH)) is not None]
+        if len(widths) == 2 and widths[0] != widths[1]:
+            told = " and ".join(f"{w:g}" for w in widths)
+            self.notes.append(f"Face widths {told} mm: the smaller one carries and is taken.")
+        return min(widths, default=OPEN)
+
+    def _materials(self, gears: tuple[Component, Component]) -> tuple[MaterialDraft, MaterialDraft] | None:
+        found = []
+        for gear in gears:
+            named = [
+                r.roles.get("referenced", "") for r in self.model.related("reference", "origin", gear.id)
+            ]
+            for material in (self.model.components.get(i) for i in named):
+                if material is None or material.type != "material":
+                    continue
+                modulus = self._number(material, "elastic_modulus", MODULUS)
+                ratio = self._number(material, "poisson_ratio", PURE)
+                density = self._number(material, "density", DENSITY)
+                if modulus is not None and ratio is not None:
+                    found.append(MaterialDraft(modulus, ratio, density))
+                break
+        return (found[0], found[1]) if len(found) == 2 else None
+
+    def _modifications(self, gears: tuple[Component, Component], flanks: list[list[Component]]) -> None:
+        own = {c.id for c in gears} | {f.id for pair in flanks for f in pair}
+        for relation in self.model.relations:
+            members = set(relation.roles.values())
+            if not members & own:
+                continue
+            for component in (self.model.components.get(i) for i in sorted(members - own)):
+                if component is not None and component.type in MODIFICATIONS:
+                    self.notes.append(f"{component} is not taken over; tip_relief is a key of the scene.")
+
+
+_PROTUBERANCE = (
+    ("protuberance_amount", LENGTH),
+    ("protuberance_amount_factor", PURE),
+    ("machining_allowance_din_3972", LENGTH),
+    ("relative_machining_allowance_din_3972", PURE),
+)
