@@ -252,6 +252,11 @@ def new(scene: Path, /) -> int:
 
 for _function, _name, _help in (
     ("import_gears", "import", "Write a scene from the gear data in FILE (REXS, XML)."),
+    (
+        "export_profile",
+        "export-profile",
+        "Write the tooth profile of a gear of SCENE as a drawing or as points.",
+    ),
     ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
 ):
     # the module is loaded when the command is called

@@ -76,6 +76,49 @@ def export_rexs(
     return 0
 
 
+def export_profile(
+    scene: Path,
+    /,
+    *,
+    gear: Annotated[Literal["pinion", "wheel"], Parameter(help="Which gear.")] = "pinion",
+    format: Annotated[
+        Literal["dxf", "csv"], Parameter(help="A drawing (release 12, arcs exact), or points.")
+    ] = "dxf",
+    teeth: Annotated[str, Parameter(help="How many teeth about +y, with the body below; or all.")] = "1",
+    tolerance_um: Annotated[float, Parameter(help="Largest distance of a chord from its curve.")] = 1.0,
+    out: Annotated[Path | None, Parameter(help="The file; SCENE-GEAR.FORMAT beside you if left out.")] = None,
+) -> int:
+    """Write the exact tooth profile of a gear of SCENE, tip relief included, in millimetres.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML); its section pair counts.
+    """
+    from flankfilm.build import gear_pair
+    from flankfilm.exchange.profile_files import write_drawing, write_points
+    from flankfilm.faults import told_by_a_floor
+    from flankfilm.scene import read_scene
+    from gears.contour import contour
+
+    if teeth != "all" and not (teeth.isdecimal() and len(teeth) < 6):
+        raise InputError([Fault("--teeth", teeth, "must be a whole number, or all", "Such as --teeth 3")])
+    pair = gear_pair(read_scene(scene))
+    profile = pair.teeth_profiles[("pinion", "wheel").index(gear)]
+    try:
+        drawn = contour(profile, None if teeth == "all" else int(teeth), 1e-6 * tolerance_um)
+    except ValueError as error:
+        raise told_by_a_floor(error) or error from error
+    target = out if out is not None else Path(f"{scene.stem}-{gear}.{format}")
+    if format == "dxf":
+        count = write_drawing(target, drawn, (f"{gear}, {profile.teeth} teeth",))
+    else:
+        count = write_points(target, drawn)
+    arcs = ", arcs exact" if format == "dxf" else ""
+    print(f"{target}: {count:,} points, chord error at most {tolerance_um:g} µm{arcs}")
+    return 0
+
+
 def _write_new(path: Path, text: str) -> None:
     """Write a file that must not exist yet."""
     try:
