@@ -17,6 +17,9 @@ from flankfilm.scene.schema import Scene
 LARGEST_FILE = 1_000_000
 """Bytes; a scene is a few kilobytes, and a larger file is something else."""
 
+DEEPEST = 12
+"""Levels of tables and lists inside each other; a scene has four, a study with its scene in it one more."""
+
 
 def template() -> str:
     """Text of a commented scene that runs as it is."""
@@ -52,13 +55,33 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
 def parse_toml(text: str, name: str) -> dict[str, Any]:
     """Read TOML; `name` is what a fault calls the file."""
     try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as fault:
+        raw = tomllib.loads(text)
+    except ValueError as fault:  # also a number of more digits than Python reads
         raise InputError(
             [Fault(name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from")]
         ) from fault
     except RecursionError as fault:
-        raise InputError([Fault(name, "", "is nested too deeply", "a scene has two levels")]) from fault
+        raise InputError([_too_deep(name)]) from fault
+    _bounded(raw, name)
+    return raw
+
+
+def _bounded(raw: dict[str, Any], name: str) -> None:
+    """Refuse tables inside tables without end, and whole numbers that TOML leaves to the reader."""
+    level: list[Any] = [raw]
+    for _ in range(DEEPEST):
+        inside = [v for table in level for v in (table.values() if isinstance(table, dict) else table)]
+        for value in inside:
+            if isinstance(value, int) and not -(2**63) <= value < 2**63:
+                raise InputError([Fault(name, "", "holds a whole number of more than 64 bits", "Check it")])
+        level = [value for value in inside if isinstance(value, dict | list)]
+        if not level:
+            return
+    raise InputError([_too_deep(name)])
+
+
+def _too_deep(name: str) -> Fault:
+    return Fault(name, "", "is nested too deeply", "a scene has four levels at most")
 
 
 def read_text(path: Path) -> str:

@@ -22,14 +22,31 @@ from flankfilm.study.outputs import OUTPUTS
 
 MOST_ROWS = 1_000_000
 
+MOST_CELLS = 5_000_000
+"""Rows times keys; some hundred megabytes."""
+
+MOST_KEYS = 100
+"""Varied keys; a scene has fewer."""
+
+MOST_CHECKED = 20_000
+"""Rows whose scene is checked before anything is computed; of more rows these, spread evenly."""
+
+MOST_FAULTS = 50
+"""Faults of rows that are listed."""
+
+LARGEST = 1e15
+"""Of a varied number; no key of a scene takes a larger one."""
+
+Bounded = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+
 Value = bool | int | float | str
 
 
 class Range(Section):
     """Values from one end to the other."""
 
-    from_: float = Field(alias="from")
-    to: float
+    from_: Bounded = Field(alias="from")
+    to: Bounded
     steps: int | None = Field(default=None, ge=2, le=MOST_ROWS, description="of a grid or a list")
     log: bool = Field(default=False, description="equal ratios instead of equal steps")
     whole: bool = Field(default=False, description="round to whole numbers, such as teeth")
@@ -45,7 +62,8 @@ class Range(Section):
     def at(self, unit: float) -> Value:
         """Value at a place between 0 and 1."""
         if self.log:
-            value = math.exp(math.log(self.from_) + unit * math.log(self.to / self.from_))
+            low, high = math.log(self.from_), math.log(self.to)
+            value = math.exp(low + unit * (high - low))
         else:
             value = self.from_ + unit * (self.to - self.from_)
         # twelve digits: 0.1 is written as 0.1, whatever the way that led there
@@ -57,8 +75,8 @@ class Follow(Section):
     """A key that follows a varied one: times * value + plus."""
 
     of: str
-    times: float = 1.0
-    plus: float = 0.0
+    times: Bounded = 1.0
+    plus: Bounded = 0.0
 
 
 class StudyFile(Section):
@@ -70,8 +88,11 @@ class StudyFile(Section):
     design: Literal["grid", "list", "latin-hypercube", "sobol"] = "grid"
     samples: int | None = Field(default=None, ge=1, le=MOST_ROWS)
     seed: int = Field(default=1, ge=0)
-    vary: dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]]
-    follow: dict[str, Follow] = Field(default_factory=dict)
+    vary: Annotated[
+        dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]],
+        Field(max_length=MOST_KEYS),
+    ]
+    follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(default_factory=dict)
     set: dict[str, Value] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -221,22 +242,31 @@ def following(values: Mapping[str, Value], rule: Follow) -> Value:
 
 
 def _design(study: StudyFile) -> Sequence[tuple[Value, ...]]:
+    _bounded(study)
     if study.design in ("latin-hypercube", "sobol"):
         return _sampled(study)
     columns = [_listed(values) for values in study.vary.values()]
     if study.design == "grid":
-        count = math.prod(len(column) for column in columns)
-        if count > MOST_ROWS:
-            raise InputError(
-                [Fault("vary", f"{count:,} rows", f"must give at most {MOST_ROWS:,}", "Take fewer steps")]
-            )
         return list(itertools.product(*columns))
-    if len({len(column) for column in columns}) != 1:
-        lengths = ", ".join(str(len(column)) for column in columns)
-        raise InputError(
-            [Fault("vary", lengths, 'must have equally many values in a "list"', 'Or design = "grid"')]
-        )
     return list(zip(*columns, strict=True))
+
+
+def _bounded(study: StudyFile) -> None:
+    """Refuse a study of too many rows, or of columns that do not match, before any row is laid out."""
+    lengths = [(v.steps or 2) if isinstance(v, Range) else len(v) for v in study.vary.values()]
+    rows = study.samples or 1
+    for length in lengths if study.samples is None else ():
+        rows = rows * length if study.design == "grid" else max(rows, length)
+        if rows > MOST_ROWS:
+            told = f"must give at most {MOST_ROWS:,} rows"
+            raise InputError([Fault("vary", "", told, "Take fewer steps")])
+    if study.design == "list" and len(set(lengths)) != 1:
+        told = 'must have equally many values in a "list"'
+        listed = ", ".join(str(length) for length in lengths)
+        raise InputError([Fault("vary", listed, told, 'Or design = "grid"')])
+    if rows * (len(study.vary) + len(study.follow)) > MOST_CELLS:
+        told = f"must give at most {MOST_CELLS:,} rows times keys"
+        raise InputError([Fault("vary", "", told, "Take fewer rows or keys")])
 
 
 def _listed(values: Range | tuple[Value, ...]) -> tuple[Value, ...]:
@@ -267,9 +297,12 @@ def _pick(values: Range | tuple[Value, ...], unit: float) -> Value:
 
 
 def _check_rows(plan: Plan) -> None:
-    """Refuse a study whose keys or values the scene cannot have, each fault once, with its first row."""
+    """Refuse a study whose keys or values the scene cannot have, each fault once, with its first row.
+
+    Of very many rows some are checked; a row that is not and that is faulty fails by itself.
+    """
     faults: dict[tuple[str, str], Fault] = {}
-    for row in range(len(plan.rows)):
+    for row in range(0, len(plan.rows), -(-len(plan.rows) // MOST_CHECKED)):
         try:
             validated(plan.raw_scene(row))
         except InputError as error:
@@ -278,8 +311,10 @@ def _check_rows(plan: Plan) -> None:
                     (fault.where, fault.allowed),
                     Fault(f"row {row}: {fault.where}", fault.value, fault.allowed, fault.remedy),
                 )
+            if len(faults) >= MOST_FAULTS:
+                break
     if faults:
-        raise InputError(faults.values())
+        raise InputError(list(faults.values())[:MOST_FAULTS])
 
 
 __all__ = ["Plan", "StudyFile", "plan_of", "read_plan"]

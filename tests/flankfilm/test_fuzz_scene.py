@@ -1,0 +1,260 @@
+"""Malformed and extreme scenes and studies: a list of faults or success, never anything else, never a hang.
+
+The default suite tries some hundred files of each kind; the slow one ten thousand in all.
+"""
+
+from __future__ import annotations
+
+import re
+import types
+import typing
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pydantic import BaseModel
+
+from flankfilm.check import check_scene
+from flankfilm.faults import InputError
+from flankfilm.scene import Scene, parse_scene, template
+from flankfilm.study.plan import StudyFile, read_plan
+
+FEW = settings(max_examples=150, deadline=10_000, suppress_health_check=list(HealthCheck))
+MANY = settings(max_examples=2_500, deadline=10_000, suppress_health_check=list(HealthCheck))
+
+# what stands in a file by mistake or by malice: not finite, huge, of another kind, nested, Unicode, a date
+ODD = [
+    *("nan", "-nan", "inf", "-inf", "-0.0", "0", "0.0", "1e308", "-1e308", "5e-324", "1e-300"),
+    *("9" * 400, "-" + "9" * 400, "9" * 5000, "0x" + "f" * 5000, "9223372036854775808", "1_000", "1e400"),
+    *("true", '""', '"nan"', '"\\u0000"', '"\\U0001F600"', '"../../x"', '"/etc/passwd"', "'''\n'''"),
+    *("1979-05-27", "07:32:00", "1979-05-27T07:32:00Z", "[]", "{}", "[[]]", "[nan]", '{ "" = 1 }'),
+    *("[" * 3000 + "]" * 3000, "[" + "0," * 20_000 + "]", "{ a = " * 500 + "1" + " }" * 500),
+]
+
+
+def models(annotation):
+    """Models in an annotation, through unions and optionals."""
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType, typing.Annotated):
+        return [m for part in typing.get_args(annotation) for m in models(part)]
+    return [annotation] if isinstance(annotation, type) and issubclass(annotation, BaseModel) else []
+
+
+def bounds(field):
+    """Bounds of a number's field, with the numbers just inside and outside."""
+    found = [getattr(m, n) for m in field.metadata for n in ("ge", "gt", "le", "lt") if hasattr(m, n)]
+    return [v * f for v in found for f in (1, 1 + 1e-9, 1 - 1e-9, 0.5, 2)] or [0.0, 1.0]
+
+
+@st.composite
+def values(draw, field):
+    """A value for a field: plausible, at the edge, or odd."""
+    choice = draw(st.integers(0, 9))
+    if choice == 0:
+        return draw(st.sampled_from(ODD))
+    inner = models(field.annotation)
+    if inner:
+        return draw(tables(draw(st.sampled_from(inner))))
+    text = str(field.annotation)
+    if "Literal" in text and "tuple" not in text:
+        words = re.findall(r"'([^']*)'", text)
+        return f'"{draw(st.sampled_from(words))}"'
+    if "tuple" in text:
+        if "Literal" in text:
+            words = re.findall(r"'([^']*)'", text)
+            return str(draw(st.lists(st.sampled_from(words), max_size=4)))
+        return str(draw(st.lists(st.floats(0, 1e5), max_size=3)))
+    if "bool" in text:
+        return draw(st.sampled_from(["true", "false"]))
+    if "str" in text:
+        return '"' + draw(st.text("ab./\u00e9\u202e", max_size=300)) + '"'
+    if "int" in text:
+        edge = [int(v) for v in bounds(field)]
+        return str(draw(st.sampled_from([*edge, 17, 20, 40, 100])))
+    return repr(float(draw(st.one_of(st.sampled_from(bounds(field)), st.floats(1e-3, 300)))))
+
+
+@st.composite
+def tables(draw, model):
+    """An inline table of a model with most of its keys, sometimes with one that it has not."""
+    parts = []
+    for name, field in model.model_fields.items():
+        if field.is_required() or draw(st.booleans()):
+            parts.append(f"{name} = {draw(values(field))}")
+    if draw(st.integers(0, 15)) == 0:
+        unknown = draw(st.text("ab .", max_size=5))
+        parts.append(f'"{unknown}" = 1')
+    return "{ " + ", ".join(parts) + " }"
+
+
+LINES = [line.partition(" = ")[0] for line in template().splitlines() if re.match(r"\w+ = ", line)]
+
+
+@st.composite
+def changed_templates(draw):
+    """The template with some keys given other numbers or odd values: most reach the geometry."""
+    text = template()
+    for key in draw(st.lists(st.sampled_from(LINES), min_size=1, max_size=5)):
+        numbers = st.floats(1e-4, 1e4).map(repr)
+        value = draw(st.one_of(numbers, st.integers(0, 200).map(str), st.sampled_from(ODD)))
+        text = re.sub(rf"(?m)^{key} = .*$", lambda _, k=key, v=value: f"{k} = {v}", text, count=1)
+    return text
+
+
+GEAR = st.builds(
+    "{{ teeth = {}, profile_shift = {:.3f}, tip_alteration = {:.3f}, thickness_allowance_um = {:.1f}{} }}".format,
+    st.one_of(st.integers(5, 60), st.integers(5, 10_000)),
+    st.floats(-0.8, 1.5),
+    st.floats(-1, 1),
+    st.one_of(st.just(0.0), st.floats(0, 5e4)),
+    st.sampled_from(
+        [
+            "",
+            ", bore_mm = 1e6",
+            ", tip_chamfer_mm = 0.1",
+            ", tip_relief = { amount_um = 20, length_mm = 2.0 }",
+        ]
+    ),
+)
+PAIRS = st.builds(
+    'wants = ["geometry"]\n[pair]\nmodule_mm = {!r}\nface_width_mm = 10.0\npinion = {}\nwheel = {}\n{}\n{}\n'.format,
+    st.one_of(st.just(2.0), st.floats(0.01, 100)),
+    GEAR,
+    GEAR,
+    st.sampled_from(["", "backlash_um = 50", "centre_distance_mm = 76.0", "centre_distance_mm = 1e6"]),
+    st.builds(
+        "rack = {{ h_aP = {!r}, h_fP = {!r}, rho_fP = {!r}, alpha_deg = {!r} }}".format,
+        *([st.one_of(st.floats(0.5, 1.5), st.floats(0.001, 3))] * 3),
+        st.floats(10, 35),
+    ),
+)
+SCENES = st.one_of(tables(Scene).map(lambda t: "\n".join(split(t))), changed_templates(), PAIRS)
+
+
+def split(table):
+    """Top-level keys of an inline table, one a line."""
+    lines, depth, begin, quoted = [], 0, 2, False
+    for at, sign in enumerate(table):
+        if sign == '"' and table[at - 1] != "\\":
+            quoted = not quoted
+        depth += 0 if quoted else (sign in "{[") - (sign in "}]")
+        if (sign == "," and depth == 1 and not quoted) or at == len(table) - 1:
+            lines.append(table[begin:at].strip())
+            begin = at + 1
+    return lines
+
+
+def faults_of(judge):
+    """Faults that a call raises; None where it succeeds. Anything else that it raises is a failure."""
+    try:
+        judge()
+    except InputError as error:
+        return error.faults
+    return None
+
+
+def told_well(faults):
+    """Whether every fault says where and what is allowed, and the list can be read."""
+    return 0 < len(faults) <= 100 and all(f.where and f.allowed and len(str(f)) < 2000 for f in faults)
+
+
+def judged(text):
+    """A scene is accepted, or refused with a list of faults."""
+    faults = faults_of(lambda: check_scene(parse_scene(text)))
+    assert faults is None or told_well(faults)
+
+
+@st.composite
+def studies(draw):
+    """A study file: each key as it should be, at the edge, or odd."""
+    keys = [
+        "pair.module_mm",
+        "pair.pinion.profile_shift",
+        "pair.pinion.teeth",
+        "pair",
+        "tolerance",
+        "",
+        "a..b",
+        "wants",
+    ]
+    number = st.one_of(st.floats(-2, 60).map(repr), st.integers(-5, 60).map(str), st.sampled_from(ODD))
+    whole = st.one_of(st.integers(0, 6).map(str), st.sampled_from(["1000000", "1000001", *ODD]))
+    ranges = st.builds(
+        "{{ from = {}, to = {}{} }}".format,
+        number,
+        number,
+        st.one_of(
+            st.just(""),
+            whole.map(", steps = {}".format),
+            whole.map(", log = true, steps = {}".format),
+            whole.map(", whole = true, steps = {}".format),
+        ),
+    )
+    listed = st.lists(number, max_size=4).map(lambda found: "[" + ", ".join(found) + "]")
+    vary = draw(
+        st.dictionaries(st.sampled_from(keys), st.one_of(ranges, listed, st.sampled_from(ODD)), max_size=3)
+    )
+    outputs = draw(st.lists(st.sampled_from(["contact_ratio", "transmission_error", "other"]), max_size=3))
+    lines = [f"outputs = {outputs}"]
+    scenes = [
+        '"scene.toml"',
+        '"none.toml"',
+        '"."',
+        '"/dev/zero"',
+        '"\\u0000"',
+        '"' + "x" * 5000 + '"',
+        "{ pair = 1 }",
+    ]
+    lines.append(f"scene = {draw(st.one_of(st.just(scenes[0]), st.sampled_from([*scenes, *ODD])))}")
+    for key in StudyFile.model_fields:
+        if key in ("design", "samples", "seed", "title") and draw(st.booleans()):
+            words = ['"grid"', '"list"', '"sobol"', '"latin-hypercube"']
+            value = st.sampled_from(words) if key == "design" else whole
+            lines.append(f"{key} = {draw(st.one_of(value, value, st.sampled_from(ODD)))}")
+    lines += ["[vary]", *(f'"{key}" = {value}' for key, value in vary.items())]
+    if draw(st.booleans()):
+        rule = draw(
+            st.builds('{{ of = "{}", times = {}, plus = {} }}'.format, st.sampled_from(keys), number, number)
+        )
+        lines += ["[follow]", f'"pair.wheel.profile_shift" = {rule}']
+    if draw(st.booleans()):
+        lines += ["[set]", f'"{draw(st.sampled_from(keys))}" = {draw(number)}']
+    return "\n".join(lines)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("studies")
+    (place / "scene.toml").write_text(template(), encoding="utf-8")
+    return place
+
+
+def read_study(folder, text):
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    faults = faults_of(lambda: read_plan(path).identity())
+    assert faults is None or told_well(faults)
+
+
+@FEW
+@given(SCENES)
+def test_any_scene_is_in_order_or_explained(text):
+    judged(text)
+
+
+@FEW
+@given(studies())
+def test_any_study_is_in_order_or_explained(folder, text):
+    read_study(folder, text)
+
+
+@pytest.mark.slow
+class TestMany:
+    @settings(MANY, max_examples=6_000)
+    @given(SCENES)
+    def test_scenes(self, text):
+        judged(text)
+
+    @settings(MANY, max_examples=4_000)
+    @given(studies())
+    def test_studies(self, folder, text):
+        read_study(folder, text)
