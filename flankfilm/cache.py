@@ -6,11 +6,14 @@ payload, so that flipped bits and cut files are noticed, removed and computed ag
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import json
 import os
 import pickle
 import platform
+import shutil
+import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -69,8 +72,12 @@ def keep_compiled_code() -> None:
     folder = user_cache() / "compiled" / code_digest(("ehl", "dynamics"))[:16]
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
     except OSError:
-        return  # numba then finds a folder of its own
+        # numba gives up where it finds no folder that it can write: a private one for this run
+        folder = Path(tempfile.mkdtemp(prefix="flankfilm-"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
     os.environ["NUMBA_CACHE_DIR"] = str(folder)
 
 

@@ -53,9 +53,11 @@ def _prepare() -> None:
 
 
 def _read(scene: Path, tolerance: str | None) -> Scene:
-    from flankfilm.scene import read_scene
+    from flankfilm.reproduce import scene_in
 
-    wanted = read_scene(scene)
+    wanted, differences = scene_in(scene)
+    for told in differences:
+        print(f"flankfilm: {scene}: {told}", file=sys.stderr)
     if tolerance is None:
         return wanted
     return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance)})
@@ -77,7 +79,7 @@ def run(
     Parameters
     ----------
     scene : Path
-        The scene file (TOML).
+        The scene file (TOML), or a results.nc: the scene that made it is run again.
     """
     _prepare()
     from flankfilm.progress import console_progress

@@ -33,10 +33,17 @@ _ALLOWED = {
 }
 
 
+MOST_FAULTS = 90
+"""Faults of one file that are explained; a list of thousands helps nobody."""
+
+
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
     for fault in (explain(item, model) for item in items):
+        if len(joined) >= MOST_FAULTS:
+            joined["more"] = Fault("the rest", "", "has more faults", "Mend these first")
+            break
         same = joined.get(fault.where)
         if same is None:
             joined[fault.where] = fault

@@ -62,11 +62,11 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
         ) from fault
     except RecursionError as fault:
         raise InputError([_too_deep(name)]) from fault
-    _bounded(raw, name)
+    bounded(raw, name)
     return raw
 
 
-def _bounded(raw: dict[str, Any], name: str) -> None:
+def bounded(raw: dict[str, Any], name: str) -> None:
     """Refuse tables inside tables without end, and whole numbers that TOML leaves to the reader."""
     level: list[Any] = [raw]
     for _ in range(DEEPEST):

@@ -182,8 +182,8 @@ class StiffnessSection(Section):
     plane: Literal["strain", "stress"] = "strain"
     contact_beyond_path: bool = True
     mean_N_per_m: float | None = Field(default=None, ge=1.0, le=1e15)
-    amplitudes: Annotated[tuple[float, ...], Field(strict=False)] | None = None
-    phases_deg: Annotated[tuple[float, ...], Field(strict=False)] | None = None
+    amplitudes: Annotated[tuple[float, ...], Field(strict=False, max_length=50)] | None = None
+    phases_deg: Annotated[tuple[float, ...], Field(strict=False, max_length=50)] | None = None
 
     @model_validator(mode="after")
     def _given_means_given(self) -> StiffnessSection:

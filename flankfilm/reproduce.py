@@ -1,0 +1,99 @@
+"""The scene that made a results file, and what differs between the code that made it and this one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flankfilm.faults import Fault, InputError, shorten
+from flankfilm.scene import Scene, read_scene
+from flankfilm.scene.reader import LARGEST_FILE, bounded, validated
+
+SUFFIX = ".nc"
+
+
+def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
+    """Scene of a scene file, or the one that made a results file.
+
+    Parameters
+    ----------
+    path : Path
+        A scene (TOML), or a file ``results.nc`` of an earlier run.
+
+    Returns
+    -------
+    (Scene, tuple of str)
+        The scene; what differs from the code and the libraries that made the file, empty for a scene file.
+
+    Raises
+    ------
+    InputError
+        With every fault of the file.
+    """
+    if path.suffix != SUFFIX:
+        return read_scene(path), ()
+    held = _attributes(path)
+    if "design" in held:
+        told = "holds a study"
+        raise InputError([Fault(str(path), "", told, "Run its study file, or a results.nc")])
+    text = held.get("scene_json", "")
+    if not text:
+        raise InputError([Fault(str(path), "", "holds no scene", "Name a results.nc that flankfilm wrote")])
+    return _scene(text, str(path)), _differences(held)
+
+
+def _attributes(path: Path) -> dict[str, str]:
+    """Text attributes of a netCDF file."""
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "does not exist"
+        raise InputError([Fault(str(path), "", what, "Name a scene or a results.nc")])
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            names = ("scene_json", "versions_json", "code_sha256", "design")
+            return {name: str(file.attrs[name])[: LARGEST_FILE + 1] for name in names if name in file.attrs}
+    except (OSError, UnicodeDecodeError) as fault:
+        told = f"cannot be read as netCDF: {shorten(str(fault))}"
+        raise InputError([Fault(str(path), "", told, "Name a scene or a results.nc")]) from fault
+
+
+def _scene(text: str, name: str) -> Scene:
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError) as fault:
+        raise InputError([Fault(name, "", "holds a damaged scene", "Name the scene file")]) from fault
+    if not isinstance(raw, dict):
+        raise InputError([Fault(name, shorten(raw), "holds a damaged scene", "Name the scene file")])
+    bounded(raw, name)
+    return validated(_without_none(raw))
+
+
+def _without_none(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """A scene as it is written: what was not given is not there."""
+    return {
+        key: _without_none(value) if isinstance(value, dict) else value
+        for key, value in raw.items()
+        if value is not None
+    }
+
+
+def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
+    from flankfilm.dataset import provenance
+
+    here = provenance("")
+    told = []
+    try:
+        theirs: dict[str, Any] = json.loads(held.get("versions_json", "{}"))
+        own: dict[str, Any] = json.loads(here["versions_json"])
+    except ValueError:
+        theirs = own = {}
+    changed = [f"{name} {theirs.get(name, '?')}, here {version}" for name, version in own.items()]
+    changed = [text for text, name in zip(changed, own, strict=True) if theirs.get(name) != own[name]]
+    if changed:
+        told.append(f"made with {'; '.join(changed)}")
+    if held.get("code_sha256") != here["code_sha256"]:
+        told.append("made by other source code of flankfilm: numbers may differ")
+    return tuple(told)

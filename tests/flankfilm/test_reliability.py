@@ -1,0 +1,186 @@
+"""What must not go wrong: results that do not reproduce, runs at once, unwritable places, scenes of strangers."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from flankfilm.faults import InputError
+from flankfilm.reproduce import scene_in
+from flankfilm.run import run_scene
+from flankfilm.scene import parse_scene
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("flankfilm", "gears", "meshes", "fem", "ehl", "dynamics")
+
+# nothing that numba compiles, which would take most of the time
+SMALL = """
+title = '../../x<script>alert(1)</script>"; import os'
+wants = ["closed-forms", "stiffness", "fourier"]
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 600
+[stiffness]
+model = "ishikawa"
+pairs = "independent"
+"""
+
+MOTION = """
+wants = ["sweep"]
+[stiffness]
+model = "given"
+amplitudes = [0.18]
+[dynamics]
+mean_force = 0.1
+error_amplitude = 0.2
+half_backlash = 0.2
+sweep = { frequency = [0.5, 0.7], points = 8 }
+"""
+
+
+def flankfilm(*arguments, cwd, wait=True, packages=ROOT, **environment):
+    begun = subprocess.Popen(
+        [sys.executable, "-m", "flankfilm", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": str(packages), "PYTHONDONTWRITEBYTECODE": "1", **environment},
+    )
+    return ended(begun) if wait else begun
+
+
+def ended(begun, status=0):
+    out, err = begun.communicate(timeout=250)
+    assert begun.returncode == status, err
+    assert "Traceback" not in err
+    return out + err
+
+
+def listing(folder):
+    return {str(path.relative_to(folder)): path.stat().st_mtime_ns for path in folder.rglob("*")}
+
+
+@pytest.fixture(scope="module")
+def small_run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("small")
+    run_scene(parse_scene(SMALL), folder / "out", use_cache=False)
+    return folder / "out"
+
+
+def same(first, second):
+    with xr.open_dataset(first, engine="h5netcdf") as a, xr.open_dataset(second, engine="h5netcdf") as b:
+        assert set(a.variables) == set(b.variables)
+        for name in a.variables:
+            np.testing.assert_array_equal(a[name].values, b[name].values, name)
+
+
+class TestResultsReproduceThemselves:
+    def test_the_scene_in_a_results_file_gives_the_same_results(self, small_run, tmp_path):
+        scene, differences = scene_in(small_run / "results.nc")
+        assert scene == parse_scene(SMALL)
+        assert differences == ()
+        run_scene(scene, tmp_path, use_cache=False)
+        same(small_run / "results.nc", tmp_path / "results.nc")
+
+    def test_the_command_takes_a_results_file_and_says_what_differs(self, small_run, tmp_path):
+        import h5py
+
+        shutil.copy(small_run / "results.nc", tmp_path / "old.nc")
+        with h5py.File(tmp_path / "old.nc", "r+") as file:
+            file.attrs["code_sha256"] = "0" * 64
+            file.attrs["versions_json"] = '{"python": "3.0", "numpy": "1.0"}'
+        told = flankfilm("check", "old.nc", cwd=tmp_path)
+        assert "numpy 1.0, here" in told
+        assert "other source code" in told
+        assert "is in order" in told
+
+    @pytest.mark.parametrize("text", ["", "{", "[1]", "[" * 100_000, '{"wants": 3}', '{"wants": ["sweep"]}'])
+    def test_a_damaged_scene_in_it_is_refused(self, small_run, tmp_path, text):
+        import h5py
+
+        path = tmp_path / "damaged.nc"
+        shutil.copy(small_run / "results.nc", path)
+        with h5py.File(path, "r+") as file:
+            file.attrs["scene_json"] = text
+        with pytest.raises(InputError):
+            scene_in(path)
+
+    def test_other_files_are_refused(self, small_run, tmp_path):
+        whole = (small_run / "results.nc").read_bytes()
+        for name, content in (
+            ("cut.nc", whole[: len(whole) // 2]),
+            ("text.nc", b"not netCDF"),
+            ("none.nc", b""),
+        ):
+            (tmp_path / name).write_bytes(content)
+            with pytest.raises(InputError, match="cannot be read"):
+                scene_in(tmp_path / name)
+        with pytest.raises(InputError, match="does not exist"):
+            scene_in(tmp_path / "missing.nc")
+
+
+def test_two_runs_at_once_in_one_folder_and_one_cache_end_well(tmp_path, small_run):
+    (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
+    shared = {"cwd": tmp_path, "wait": False, "FLANKFILM_CACHE": str(tmp_path / "cache")}
+    begun = [flankfilm("run", "scene.toml", "--out", "out", **shared) for _ in range(2)]
+    for process in begun:
+        ended(process)
+    same(tmp_path / "out" / "results.nc", small_run / "results.nc")
+    assert [p.name for p in (tmp_path / "out").rglob(".*")] == []
+
+
+@pytest.mark.parametrize(
+    "text", [SMALL, pytest.param(MOTION, marks=pytest.mark.slow)], ids=["closed form", "compiled"]
+)
+def test_an_install_that_cannot_be_written_works(tmp_path, text):
+    # root may write everywhere, so that besides the permissions what was written is looked at
+    place = tmp_path / "packages"
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, place / package, ignore=shutil.ignore_patterns("__pycache__"))
+    before = listing(place)
+    for path in (place, *place.rglob("*")):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    flankfilm(
+        *("run", "scene.toml", "--out", "out"), cwd=tmp_path, packages=place, FLANKFILM_CACHE="/proc/none"
+    )
+    assert listing(place) == before
+    assert (tmp_path / "out" / "results.nc").exists()
+
+
+def test_compiled_code_finds_a_place_where_no_cache_can_be_kept(monkeypatch):
+    from flankfilm.cache import keep_compiled_code
+
+    monkeypatch.setenv("FLANKFILM_CACHE", "/proc/none")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    keep_compiled_code()
+    place = Path(os.environ["NUMBA_CACHE_DIR"])
+    assert place.stat().st_mode & 0o077 == 0  # private: compiled code is trusted
+    place.rmdir()
+
+
+def test_a_strangers_scene_writes_only_into_its_folder_and_runs_nothing(tmp_path, monkeypatch):
+    monkeypatch.setenv("FLANKFILM_CACHE", str(tmp_path / "cache"))
+    deep = tmp_path / "a" / "b" / "out"
+    run_scene(parse_scene(SMALL.replace('"fourier"]', '"fourier", "report"]')), deep)
+    outside = [p for p in tmp_path.rglob("*") if p.is_file() and not p.is_relative_to(deep)]
+    assert all(p.is_relative_to(tmp_path / "cache") for p in outside)
+    page = (deep / "report.html").read_text(encoding="utf-8")
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
