@@ -260,6 +260,7 @@ for _function, _name, _help in (
         "Write the tooth profile of a gear of SCENE as a drawing or as points.",
     ),
     ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
+    ("completion", "completion", "Print the script that completes commands in bash, zsh or fish."),
 ):
     # the module is loaded when the command is called
     app.command(f"flankfilm.exchange.commands:{_function}", name=_name, help=_help)

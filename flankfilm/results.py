@@ -37,3 +37,9 @@ class Results:
     runs: Mapping[str, StageRun]
     files: tuple[Path, ...]
     seconds: float
+
+    def _repr_html_(self) -> str:
+        """Headline figures, for notebooks."""
+        from flankfilm.notebook import results_html
+
+        return results_html(self)

@@ -301,3 +301,9 @@ class GearPair:
     def placement(self, rho1: float) -> Placement:
         """Rotations that bring one tooth of each gear into contact at `rho1` [m]; see `gears.Placement`."""
         return place(self, rho1)
+
+    def _repr_html_(self) -> str:
+        """Key data and a drawing, for notebooks."""
+        from gears.notebook import pair_html
+
+        return pair_html(self)

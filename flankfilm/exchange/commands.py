@@ -119,6 +119,20 @@ def export_profile(
     return 0
 
 
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
+    """Print the script that completes commands and options in SHELL.
+
+    Parameters
+    ----------
+    shell : {"bash", "zsh", "fish"}
+        Whose script.
+    """
+    from flankfilm.cli import app
+
+    print(app.generate_completion(prog_name="flankfilm", shell=shell))
+    return 0
+
+
 def _write_new(path: Path, text: str) -> None:
     """Write a file that must not exist yet."""
     try:

@@ -51,6 +51,12 @@ class StudyResults:
         """Rows that failed."""
         return tuple(row for row in self.rows if row.fault)
 
+    def _repr_html_(self) -> str:
+        """First rows, for notebooks."""
+        from flankfilm.notebook import study_html
+
+        return study_html(self)
+
 
 def run_study(
     plan: Plan,

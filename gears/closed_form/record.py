@@ -55,3 +55,9 @@ class ClosedForm:
     def __reduce__(self) -> tuple[type[ClosedForm], tuple[str, dict[str, Array]]]:
         """Pickle by the plain mapping."""
         return ClosedForm, (self.model, dict(self.parts))
+
+    def _repr_html_(self) -> str:
+        """Stiffness and the shares of the parts, for notebooks."""
+        from gears.notebook import closed_form_html
+
+        return closed_form_html(self)

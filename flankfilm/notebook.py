@@ -1,0 +1,41 @@
+"""How runs and studies show themselves in a notebook: plain HTML, every text escaped."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+from flankfilm.report.text import number
+from gears.notebook import table
+
+if TYPE_CHECKING:
+    from flankfilm.results import Results
+    from flankfilm.study.run import StudyResults
+
+MOST_ROWS = 12
+"""Rows of a study that are shown."""
+
+
+def results_html(results: Results) -> str:
+    """Headline figures of a run with their notes, and its files."""
+    from flankfilm.report.contents import headlines
+
+    rows = [(line.name, line.text, line.note) for line in headlines(results)]
+    files = ", ".join(str(path.relative_to(results.folder)) for path in results.files[:20])
+    more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""
+    told = f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s: {files}{more}"
+    title = escape(results.scene.title or "flankfilm")
+    return f"<p><b>{title}</b></p>{table((), rows)}<p>{escape(told)}</p>"
+
+
+def study_html(found: StudyResults) -> str:
+    """First rows of a study: varied keys, outputs, and why rows failed."""
+    plan = found.plan
+    rows = []
+    for row in found.rows[:MOST_ROWS]:
+        keys = (value if isinstance(value, str) else number(value) for value in plan.rows[row.index])
+        outputs = (number(value) for value in row.values)
+        rows.append((str(row.index), *keys, *outputs, row.fault))
+    head = ("row", *plan.keys, *plan.outputs, "fault")
+    told = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
+    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(told)}</p>{table(head, rows)}"
