@@ -100,6 +100,10 @@ def gear_findings(name: str, gear: Gear, module: float, rack: BasicRack) -> Find
             f"{name}.profile_shift", f"{gear.profile_shift:g}", least, "the rack cuts through the axis"
         )
         return Findings((fault,))
+    depth = module * (rack.h_aP + rack.h_fP + gear.tip_alteration)
+    if gear.tip_chamfer >= depth > 0.0:
+        allowed = f"less than the tooth depth, {depth:.4g} m"
+        return Findings((Fault(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less"),))
     tooth = generate(gear, module, rack)
     if tooth is None or not _has_flank(tooth):
         found = Fault(

@@ -208,3 +208,13 @@ def test_every_pair_is_either_refused_or_computed(z1, z2, x1, x2, k, chamfer, ap
         assert 0 < tooth.tip_half_angle < tooth.root_half_angle <= 0.5 * tooth.pitch_angle + 1e-15
         assert rho.min() >= tooth.flank_rho[0] - 1e-14
         assert np.all(np.isfinite(tooth.fillet(np.linspace(0, 1, 5))))
+
+
+@pytest.mark.parametrize("chamfer", [4.6e-3, 0.09, 1.0])
+def test_a_chamfer_higher_than_the_tooth_is_refused(chamfer):
+    # beyond 2.4 tip radii its line would miss the tip circle altogether
+    with pytest.raises(GeometryError) as caught:
+        GearPair(
+            pinion=Gear(teeth=36, tip_chamfer=chamfer), wheel=Gear(teeth=40), module=2e-3, face_width=0.04
+        )
+    assert [fault.where for fault in caught.value.faults] == ["pinion.tip_chamfer"]
