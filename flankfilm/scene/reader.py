@@ -20,6 +20,12 @@ LARGEST_FILE = 1_000_000
 DEEPEST = 12
 """Levels of tables and lists inside each other; a scene has four, a study with its scene in it one more."""
 
+MOST_SQUARED_DOTS = 50_000_000
+"""Sum over lines of squared numbers of dots: one list of 7,000 numbers, or any number of short lines."""
+
+LONGEST_LIST = 1000
+"""Entries of a list in a scene; fifty is the most that a key takes."""
+
 
 def template() -> str:
     """Text of a commented scene that runs as it is."""
@@ -54,6 +60,10 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:
     """Read TOML; `name` is what a fault calls the file."""
+    # the parser keeps every beginning of a dotted key, and looks each up from its first part
+    if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_SQUARED_DOTS:
+        told = "has a line with thousands of dots"
+        raise InputError([Fault(name, "", told, "Break long lists into lines; no key has that many parts")])
     try:
         raw = tomllib.loads(text)
     except ValueError as fault:  # also a number of more digits than Python reads
@@ -105,6 +115,7 @@ def read_text(path: Path) -> str:
 
 def validated(raw: dict[str, Any]) -> Scene:
     """Check the keys of a scene; see `read_scene`."""
+    refuse_long_lists(raw)
     try:
         scene = Scene.model_validate(raw)
     except ValidationError as error:
@@ -113,3 +124,13 @@ def validated(raw: dict[str, Any]) -> Scene:
     if missing := missing_sections(raw):
         raise InputError(missing)
     return scene
+
+
+def refuse_long_lists(raw: Any, where: str = "") -> None:
+    """Refuse lists of thousands before each of their entries is judged."""
+    if isinstance(raw, list) and len(raw) > LONGEST_LIST:
+        told = f"must have at most {LONGEST_LIST} entries"
+        raise InputError([Fault(where or "the scene", f"{len(raw):,} entries", told, "Shorten it")])
+    if isinstance(raw, dict):
+        for key, value in raw.items():
+            refuse_long_lists(value, f"{where}.{key}"[:200] if where else str(key)[:200])

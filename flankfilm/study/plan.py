@@ -16,7 +16,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from flankfilm.faults import Fault, InputError
 from flankfilm.scene.explain import explain_all
-from flankfilm.scene.reader import parse_toml, read_text, validated
+from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
 from flankfilm.scene.schema import Section
 from flankfilm.study.outputs import OUTPUTS
 
@@ -169,6 +169,7 @@ def read_plan(path: Path) -> Plan:
         With every fault of the file.
     """
     raw = parse_toml(read_text(path), str(path))
+    refuse_long_lists({key: value for key, value in raw.items() if key != "vary"})
     try:
         study = StudyFile.model_validate(raw)
     except ValidationError as error:

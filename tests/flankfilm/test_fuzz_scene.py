@@ -6,6 +6,8 @@ The default suite tries some hundred files of each kind; the slow one ten thousa
 from __future__ import annotations
 
 import re
+import time
+import tracemalloc
 import types
 import typing
 
@@ -253,6 +255,44 @@ def test_any_scene_is_in_order_or_explained(text):
 @given(studies())
 def test_any_study_is_in_order_or_explained(folder, text):
     read_study(folder, text)
+
+
+BOMBS = {
+    "dotted key": ".".join(["a"] * 100_000) + " = 1",
+    "dotted key, quoted": " . ".join(['"a"'] * 50_000) + " = 1",
+    "dotted key, just allowed": ".".join(["a"] * 7_000) + " = 1",
+    "dotted key in disguise": 'a = { b = """ " # """, ' + ".".join(["a"] * 100_000) + " = 1 }",
+    "dotted table": "[" + ".".join(["a"] * 100_000) + "]",
+    "keys": "\n".join(f"k{i}_mm = 1" for i in range(30_000)),
+    "tables": "\n".join(f"[pair.k{i}]" for i in range(30_000)),
+    "list": "wants = [" + "0," * 60_000 + "]",
+    "nested lists": "a = " + "[" * 300_000,
+    "nested tables": "a = " + "{ b = " * 400 + "1" + " }" * 400,
+    "one word": "a" * 900_000,
+    "one text": 'a = "' + "b" * 900_000 + '"',
+    "dots": "a = " + "." * 900_000,
+    "digits": "a = " + "9" * 900_000,
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_a_small_file_takes_no_time_and_no_memory(name):
+    started = time.process_time()
+    tracemalloc.start()
+    try:
+        faults = faults_of(lambda: parse_scene(BOMBS[name]))
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert told_well(faults)
+    assert most < 500e6
+    assert time.process_time() - started < 20
+
+
+def test_dots_in_values_are_no_keys():
+    text = template().replace("[500, 30000]", "[500.5, 30000.5]")
+    text = text.replace('title = "', 'title = "1.2.3.4.5.6.7.8.9.10.11.12.13.14.15 e.g. z. B. ', 1)
+    parse_scene(text + "# " + ". ".join("abcdefghijklmnopqrstuvwxyz") + "\n# ...................\n")
 
 
 @pytest.mark.slow
