@@ -36,6 +36,9 @@ _ALLOWED = {
 MOST_FAULTS = 90
 """Faults of one file that are explained; a list of thousands helps nobody."""
 
+LONGEST_PATH = 200
+"""Characters of a key's path in a fault."""
+
 
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
@@ -64,7 +67,7 @@ def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Fault:
         The model of the whole file, to suggest keys from.
     """
     location = tuple(item["loc"])
-    where = ".".join(str(part) for part in location if not _names_a_type(part)) or "the scene"
+    where = ".".join(str(part) for part in location if not _names_a_type(part))[:LONGEST_PATH] or "the scene"
     if item["type"] == "extra_forbidden":
         return _unknown_key(where, location, model)
     allowed = _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))

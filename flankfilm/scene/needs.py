@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flankfilm.faults import Fault
+from flankfilm.faults import Fault, shorten
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
@@ -29,7 +29,7 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
     if geared := listed & {"geometry", "closed-forms", "film", *BY_FINITE_ELEMENTS}:
         need("pair", f"wants = [{_quoted(geared)}]")
     if listed & {"stiffness", "fourier", "sweep"} and not given:
-        need("pair", f'stiffness.model = "{stiffness.get("model", "fem")}"')
+        need("pair", f"stiffness.model = {shorten(stiffness.get('model', 'fem'))}")
     if "sweep" in listed:
         need("dynamics", 'wants = ["sweep"]')
         if not own_units:
@@ -37,7 +37,7 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
             need("material", "a [dynamics] in physical units")
             need("operating", "a [dynamics] in physical units")
     if "film" in listed or (film and film.get("model", "auto") not in ("none", "auto")):
-        need("lubricant", "the film" if "film" in listed else f'film.model = "{film["model"]}"')
+        need("lubricant", "the film" if "film" in listed else f"film.model = {shorten(film['model'])}")
     if "pair" in needed and listed != {"geometry"}:
         need("material", f"wants = [{_quoted(listed)}]")
         need("operating", f"wants = [{_quoted(listed)}]")
@@ -92,7 +92,7 @@ def _deeper(
         faults.append(
             Fault(
                 "pair.backlash_um",
-                str(pair["backlash_um"]),
+                shorten(pair["backlash_um"]),
                 "follows from centre_distance_mm",
                 "Give one of them",
             )
@@ -116,10 +116,10 @@ def _by_finite_elements(
     told = " and ".join(asked)
     if model != "fem":
         remedy = "Closed forms and given stiffnesses do not know it; or drop it"
-        return [Fault("stiffness.model", repr(model), f'must be "fem" for {told}', remedy)]
+        return [Fault("stiffness.model", shorten(model), f'must be "fem" for {told}', remedy)]
     if pairs != "coupled":
         remedy = "Independent pairs have no common field, nor one contact; or drop it"
-        return [Fault("stiffness.pairs", repr(pairs), f'must be "coupled" for {told}', remedy)]
+        return [Fault("stiffness.pairs", shorten(pairs), f'must be "coupled" for {told}', remedy)]
     return []
 
 

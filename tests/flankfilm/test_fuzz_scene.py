@@ -271,6 +271,8 @@ BOMBS = {
     "one word": "a" * 900_000,
     "one text": 'a = "' + "b" * 900_000 + '"',
     "dots": "a = " + "." * 900_000,
+    "long key": "b" * 900_000 + " = 1",
+    "long value": 'wants = ["vtk"]\n[stiffness]\nmodel = "' + "b" * 900_000 + '"',
     "digits": "a = " + "9" * 900_000,
 }
 
