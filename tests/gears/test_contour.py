@@ -87,6 +87,20 @@ def test_chords_of_a_circle_are_the_fewest():
     assert fewest <= len(points) - 1 <= fewest + 1
 
 
+@pytest.mark.parametrize("tolerance", [0.3, 0.1, 0.05, 0.01])
+def test_points_between_the_vertices_confirm_the_tolerance(tolerance):
+    # inflections: there the estimate from curvature alone asks for too few chords
+    def wave(t):
+        return np.stack((t, 0.3 * np.sin(3 * t)), axis=-1)
+
+    points = chords(wave, 0.0, 2.0 * math.pi, tolerance)
+    exact = wave(np.linspace(0.0, 2.0 * math.pi, 20_001))
+    at = np.clip(np.searchsorted(points[:, 0], exact[:, 0]) - 1, 0, len(points) - 2)
+    chord, apart = np.diff(points, axis=0)[at], exact - points[at]
+    distance = np.abs(chord[:, 0] * apart[:, 1] - chord[:, 1] * apart[:, 0]) / np.hypot(*chord.T)
+    assert np.max(distance) <= tolerance
+
+
 @pytest.mark.parametrize("name", PROFILES)
 @pytest.mark.parametrize("teeth", [None, 1, 3])
 def test_contours_are_closed_anticlockwise_and_hold_their_area(name, teeth):
