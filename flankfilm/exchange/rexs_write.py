@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from datetime import UTC, datetime
+from importlib.metadata import version
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
@@ -63,7 +64,7 @@ class _Writer:
             {
                 "version": VERSION,
                 "applicationId": "flankfilm",
-                "applicationVersion": "",
+                "applicationVersion": version("flankfilm"),
                 "date": datetime.now(UTC).isoformat(timespec="seconds"),
             },
         )
