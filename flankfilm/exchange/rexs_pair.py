@@ -260,10 +260,8 @@ class _StageReader:
                 if self._number(tool, name, units):
                     value = tool.attributes[name][0]
                     self._refuse(tool, name, value, "must be 0: protuberance is out of scope")
-            depth = self._in_modules(
-                tool, "addendum_coefficient_reference_profile", "addendum_reference_profile", module
-            )
-            radius = self._in_modules(tool, "tip_radius_factor", "tip_radius", module)
+            depth = self._in_modules(tool, _ADDENDUM, module)
+            radius = self._in_modules(tool, _TIP_RADIUS, module)
             racks.append((depth, radius))
         first, second = racks
         for name, a, b in zip(("addendum", "tip radius"), first, second, strict=True):
@@ -272,12 +270,15 @@ class _StageReader:
                 self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", told))
         return RackDraft(h_aP=h_aP, h_fP=first[0], rho_fP=first[1], alpha_deg=alpha)
 
-    def _in_modules(self, tool: Component, factor: str, length: str, module: float) -> float:
-        own = self._number(tool, factor, PURE)
-        if own is not None:
-            return own
-        value = self._number(tool, length, LENGTH)
-        return OPEN if value is None else float(f"{value / module:.12g}")
+    def _in_modules(
+        self, tool: Component, names: tuple[tuple[str, Mapping[str, float]], ...], module: float
+    ) -> float:
+        """First of an attribute's names that the tool has, in modules."""
+        for name, units in names:
+            value = self._number(tool, name, units)
+            if value is not None:
+                return value if units is PURE else float(f"{value / module:.12g}")
+        return OPEN
 
     def _tool(self, gear: Component, flanks: list[Component]) -> Component | None:
         """The rack-shaped tool that cut a gear, where it is the only tool."""
@@ -338,4 +339,15 @@ _PROTUBERANCE = (
     ("protuberance_amount_factor", PURE),
     ("machining_allowance_din_3972", LENGTH),
     ("relative_machining_allowance_din_3972", PURE),
+    ("machining_allowance_din_3972_1952", LENGTH),
+    ("relative_machining_allowance_din_3972_1952", PURE),
+)
+
+_ADDENDUM = (("addendum_coefficient_reference_profile", PURE), ("addendum_reference_profile", LENGTH))
+
+_TIP_RADIUS = (
+    ("tip_radius_factor", PURE),
+    ("tip_radius", LENGTH),
+    ("tip_corner_radius_factor_reference_profile", PURE),  # the names of version 2.0
+    ("tip_corner_radius_reference_profile", LENGTH),
 )

@@ -234,8 +234,27 @@ def test_a_tip_diameter_becomes_a_tip_alteration(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("name", "unit", "value"),
+    [
+        ("tip_radius", "mm", "1.0"),
+        ("tip_corner_radius_factor_reference_profile", "none", "0.25"),  # version 2.0
+        ("tip_corner_radius_reference_profile", "mum", "1000.0"),
+    ],
+)
+def test_the_tools_tip_radius_has_several_names(tmp_path, name, unit, value):
+    text = OLD.replace('"tip_radius_factor" unit="none">0.25', f'"{name}" unit="{unit}">{value}')
+    text = text.replace('version="1.1"', 'version="2.0.0"')
+    assert gear_pair(parse_scene(brought(tmp_path, text).text)).rack.rho_fP == 0.25
+
+
+@pytest.mark.parametrize(
     ("old", "new", "told"),
     [
+        (
+            'id="dedendum_coefficient_reference_profile"',
+            'id="machining_allowance_din_3972_1952"',
+            "must be in mm",
+        ),
         ('unit="°">-0.0<', 'unit="°">-15.0<', "helical gears are out of scope"),
         (
             '"cylindrical_gear">\n      <attribute id="face_width"',
