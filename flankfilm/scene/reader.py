@@ -23,8 +23,8 @@ DEEPEST = 12
 MOST_SQUARED_DOTS = 50_000_000
 """Sum over lines of squared numbers of dots: one list of 7,000 numbers, or any number of short lines."""
 
-LONGEST_LIST = 1000
-"""Entries of a list in a scene; fifty is the most that a key takes."""
+LONGEST_LIST = 10_000
+"""Entries of a list in a scene: the pitches of a gear with the most teeth."""
 
 
 def template() -> str:
