@@ -52,9 +52,11 @@ def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
             )
         )
     scale = float(np.max(np.ptp(polygon, axis=0)))
+    # rounded, so that gears which differ in size alone get the same triangles whatever the last bit is
+    shape = np.round(polygon / scale, 9)
     with _one_at_a_time:
-        points, triangles = _fill(polygon / scale)
-    if not np.allclose(points[: len(polygon)], polygon / scale, rtol=0, atol=1e-13):
+        points, triangles = _fill(shape)
+    if not np.allclose(points[: len(polygon)], shape, rtol=0, atol=1e-13):
         raise MeshError(Fault("outline", "moved by gmsh", "nodes kept in place", "use smaller elements"))
     points *= scale
     points[: len(polygon)] = polygon

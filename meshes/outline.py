@@ -222,7 +222,7 @@ def sector_curves(
     )
     # a rim thinner than 1.7 modules bends: its edges are shorter in proportion
     thin = min(1.0, 0.6 * (profile.root_radius - bottom_radius) / m)
-    bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m * thin))))
+    bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m * thin) - 1e-9)))
     bottom = Curve(
         "bottom",
         -half_pitch,
