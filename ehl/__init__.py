@@ -20,11 +20,25 @@ if TYPE_CHECKING:
         dowson_toyoda_central,
         moes_central,
     )
+    from ehl.rheology import (
+        Barus,
+        ConstantDensity,
+        ConstantViscosity,
+        DensityLaw,
+        DowsonHigginson,
+        Roelands,
+        ViscosityLaw,
+    )
     from ehl.solver import solve, solve_path
 
 __all__ = [
     "DEFINITIONS",
+    "Barus",
+    "ConstantDensity",
+    "ConstantViscosity",
     "Cost",
+    "DensityLaw",
+    "DowsonHigginson",
     "EhlInputError",
     "EhlWarning",
     "Fault",
@@ -33,6 +47,8 @@ __all__ = [
     "FormulaFilm",
     "LineContact",
     "Lubricant",
+    "Roelands",
+    "ViscosityLaw",
     "dowson",
     "dowson_higginson_minimum",
     "dowson_toyoda_central",
@@ -47,6 +63,15 @@ _ROOMS = {
     "errors": ("EhlInputError", "EhlWarning", "Fault"),
     "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "hertz_approach"),
     "lubricant": ("Lubricant",),
+    "rheology": (
+        "Barus",
+        "ConstantDensity",
+        "ConstantViscosity",
+        "DensityLaw",
+        "DowsonHigginson",
+        "Roelands",
+        "ViscosityLaw",
+    ),
     "regressions": (
         "FormulaFilm",
         "dowson",

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from ehl.errors import EhlInputError, Fault, number_fault
-from ehl.lubricant import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE, Lubricant
+from ehl.lubricant import Lubricant
+from ehl.rheology import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE
 
 __all__ = ["LineContact"]
 
