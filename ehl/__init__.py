@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ehl.contact import LineContact
     from ehl.errors import EhlInputError, EhlWarning, Fault
-    from ehl.film import DEFINITIONS, Cost, Film, FilmErrors, hertz_approach
+    from ehl.film import DEFINITIONS, Cost, Film, FilmErrors, Spike, hertz_approach
     from ehl.lubricant import Lubricant
+    from ehl.path import solve_path
     from ehl.regressions import (
         FormulaFilm,
         dowson,
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
         Roelands,
         ViscosityLaw,
     )
-    from ehl.solver import solve, solve_path
+    from ehl.solver import solve
+    from ehl.supply import Meniscus, OilLayer
 
 __all__ = [
     "DEFINITIONS",
@@ -47,7 +49,10 @@ __all__ = [
     "FormulaFilm",
     "LineContact",
     "Lubricant",
+    "Meniscus",
+    "OilLayer",
     "Roelands",
+    "Spike",
     "ViscosityLaw",
     "dowson",
     "dowson_higginson_minimum",
@@ -61,7 +66,7 @@ __all__ = [
 _ROOMS = {
     "contact": ("LineContact",),
     "errors": ("EhlInputError", "EhlWarning", "Fault"),
-    "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "hertz_approach"),
+    "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"),
     "lubricant": ("Lubricant",),
     "rheology": (
         "Barus",
@@ -79,7 +84,9 @@ _ROOMS = {
         "dowson_toyoda_central",
         "moes_central",
     ),
-    "solver": ("solve", "solve_path"),
+    "path": ("solve_path",),
+    "solver": ("solve",),
+    "supply": ("Meniscus", "OilLayer"),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 

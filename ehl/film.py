@@ -15,8 +15,9 @@ from ehl.regressions import dowson_higginson_minimum, dowson_toyoda_central
 
 if TYPE_CHECKING:
     from ehl.levels import State
+    from ehl.supply import Supply
 
-__all__ = ["DEFINITIONS", "Cost", "Film", "FilmErrors", "hertz_approach"]
+__all__ = ["DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"]
 
 Array = NDArray[np.float64]
 
@@ -46,6 +47,16 @@ class FilmErrors:
 
 
 @dataclass(frozen=True)
+class Spike:
+    """The second pressure maximum, before the outlet."""
+
+    position: float  # x of the tip [m]
+    pressure: float  # p of the tip [Pa]
+    width: float  # from the tip to where the pressure has fallen by a tenth, downstream [m]
+    error: float  # change of the tip's pressure between two grids laid around it, relative; NaN if none were
+
+
+@dataclass(frozen=True)
 class Film:
     """A steady line-contact film.
 
@@ -72,6 +83,8 @@ class Film:
     cost: Cost
     converged: bool
     message: str
+    supply: Supply | None = None  # what was held: None is a flooded inlet
+    spike: Spike | None = None  # None where the pressure has no narrow second maximum
     state: State | None = field(repr=False, compare=False, default=None)  # what a next solution starts from
 
     @property
@@ -83,6 +96,14 @@ class Film:
     def minimum_moes(self) -> float:
         """Minimum film in Moes units, h_min/(R sqrt(U2)) [-]."""
         return self.minimum_thickness / self.contact.moes_film
+
+    @property
+    def fill(self) -> Array:
+        """Share of the gap that oil fills, 1 - theta, at the nodes [-]: 1 where p > 0, less in cavitation."""
+        density = self.contact.lubricant.density_ratio(self.pressure)[0]
+        full = self.pressure > 0.0
+        full[0] = True
+        return np.where(full, 1.0, np.minimum(1.0, self.flow / (density * self.thickness)))
 
     @property
     def approach(self) -> float:

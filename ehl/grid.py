@@ -7,11 +7,20 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["default_domain", "face_weights", "film_parameter", "graded_nodes", "hat_weights", "uniform_nodes"]
+__all__ = [
+    "clusters",
+    "default_domain",
+    "face_weights",
+    "film_parameter",
+    "graded_nodes",
+    "hat_weights",
+    "uniform_nodes",
+]
 
 Array = NDArray[np.float64]
 
-_SPIKE_SHARE = 1.5  # nodes at the outlet for one at the inlet: the neck converges last
+_NECK_SHARE = 1.5  # nodes at the outlet for one at the inlet: the neck converges last
+_SPIKE_SHARE = 0.6  # nodes at a spike for one at the inlet: more of them starve the inlet on coarse grids
 
 
 def film_parameter(film: float, half_width: float, radius: float) -> float:
@@ -30,7 +39,7 @@ def default_domain(H_c: float, reach: float = 40.0) -> tuple[float, float]:
     return -(1.0 + reach * root), 1.0 + 1.5 * root
 
 
-def _clusters(H_c: float) -> tuple[float, float, float]:
+def clusters(H_c: float) -> tuple[float, float, float]:
     """Width of the inlet zone, width and centre of the outlet zone [half-widths].
 
     Both scale as H_c^(2/3) in a Hertzian contact and as H_c^(1/2) for a rigid cylinder.
@@ -39,11 +48,18 @@ def _clusters(H_c: float) -> tuple[float, float, float]:
     return inlet, 0.6 * inlet, 1.0 - 0.2 * inlet
 
 
-def graded_nodes(H_c: float, n: int, domain: tuple[float, float]) -> Array:
+def graded_nodes(
+    H_c: float,
+    n: int,
+    domain: tuple[float, float],
+    spike: tuple[float, float] | None = None,
+    start: Array | None = None,
+) -> Array:
     """Nodes crowded towards the inlet zone and towards the pressure spike.
 
     The density of nodes is c + 1/sqrt((X+1)^2 + s^2) + 1.5/sqrt((X-1+0.2s)^2 + (0.6 s)^2), s the width of the
-    inlet zone. Its integral is known, so that the nodes of n and of 2n-1 are nested.
+    inlet zone, and 0.6/sqrt((X-X_s)^2 + w^2) more where a spike was found at X_s. Its integral is known, so that
+    the nodes of n and of 2n-1 are nested.
 
     Parameters
     ----------
@@ -53,30 +69,45 @@ def graded_nodes(H_c: float, n: int, domain: tuple[float, float]) -> Array:
         Number of nodes.
     domain : tuple of float
         Inlet and outlet [half-widths].
+    spike : tuple of float, optional
+        Position X_s and width w of a pressure spike [half-widths].
+    start : ndarray (n,), optional
+        Nodes close to the wanted ones, which saves a table.
     """
-    s_in, s_out, spike = _clusters(H_c)
+    s_in, s_out, neck = clusters(H_c)
     left, right = domain
+    crowds = [(-1.0, s_in, 1.0), (neck, s_out, _NECK_SHARE)]
+    if spike is not None:
+        crowds.append((spike[0], spike[1], _SPIKE_SHARE))
     c = 2.0 / (right - left)
 
     def count(X: Array) -> Array:
-        total: Array = c * X + np.arcsinh((X + 1.0) / s_in) + _SPIKE_SHARE * np.arcsinh((X - spike) / s_out)
+        total: Array = c * X
+        for at, width, share in crowds:
+            total = total + share * np.arcsinh((X - at) / width)
         return total
 
     def density(X: Array) -> Array:
-        value: Array = c + 1.0 / np.hypot(X + 1.0, s_in) + _SPIKE_SHARE / np.hypot(X - spike, s_out)
+        value: Array = np.full_like(X, c)
+        for at, width, share in crowds:
+            value += share / np.hypot(X - at, width)
         return value
 
     ends = np.array([left, right])
     low, high = count(ends)
     want = np.linspace(low, high, n)
-    # a coarse table gives the start, Newton the rest: interpolation alone would leave uneven spacings
-    sample = np.concatenate(
-        [-1.0 + s_in * np.sinh(np.linspace(-12, 12, 241)), spike + s_out * np.sinh(np.linspace(-12, 12, 241))]
-    )
-    sample = np.unique(np.concatenate([ends, sample[(sample > left) & (sample < right)]]))
-    X: Array = np.interp(want, count(sample), sample)
+    if start is None:
+        # a coarse table gives the start, Newton the rest: interpolation alone would leave uneven spacings
+        rays = np.sinh(np.linspace(-17, 17, 341))
+        sample = np.concatenate([ends, *(at + width * rays for at, width, _ in crowds)])
+        sample = np.unique(np.clip(sample, left, right))
+        start = np.interp(want, count(sample), sample)
+    X: Array = start
     for _ in range(4):
-        X = np.clip(X - (count(X) - want) / density(X), left, right)
+        change = (count(X) - want) / density(X)
+        X = np.clip(X - change, left, right)
+        if float(np.max(np.abs(change))) < 1e-14:
+            break
     X[0], X[-1] = left, right
     return X
 

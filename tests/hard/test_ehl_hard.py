@@ -94,16 +94,10 @@ def test_alpha_times_pressure_of_forty():
 def test_inlet_near_the_dry_contact():
     full = solve(PITCH).central_thickness
     last = full
-    for inlet in (-1.5, -1.2, -1.1, -1.05):
+    for inlet in (-1.5, -1.2, -1.1, -1.05, -1.03, -1.01, -1.003):
         film = sound(solve(PITCH, domain=(inlet, 1.5)))
         assert film.central_thickness < last
         last = film.central_thickness
-    for inlet in (-1.03, -1.01):
-        film = solve(PITCH, domain=(inlet, 1.5))
-        if film.converged:
-            assert sound(film).central_thickness < last
-        else:
-            assert "inlet" in refused(film)
     assert "inlet" in refused(solve(PITCH, domain=(-1.0, 1.5)))
 
 

@@ -1,0 +1,126 @@
+"""From the last two grids to the film in SI, or to the reason why there is none."""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from ehl.errors import EhlWarning
+from ehl.film import Film, FilmErrors, Spike
+from ehl.levels import Level, State, figures, spike_of
+from ehl.plan import Plan
+from ehl.response import slopes
+from ehl.run import Run
+
+__all__ = ["failed_film", "film_of"]
+
+_GRID_FACTOR = 0.4  # as for the film
+_PROP_LOSS = 20.0  # times the film's own error by the finite inlet
+_DRY = 1e-5  # h R/b^2 below which refusals are laid to a contact that is as good as dry
+
+
+def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
+    """Return the film in SI."""
+    contact, found, supply = run.contact, fine.found, run.supply
+    shown, before = figures(fine), figures(coarse)
+    slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
+    errors = FilmErrors(
+        film=error,
+        prop=_GRID_FACTOR * abs(before.prop / shown.prop - 1.0) + _PROP_LOSS * inlet,
+        approach_stiffness=abs(slope_before.prop / slope.prop - 1.0) + slope.ripple + _PROP_LOSS * inlet,
+        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + _PROP_LOSS * inlet,
+        inlet=inlet,
+    )
+    groups = fine.groups
+    x = fine.grid.nodes * groups.length
+    message = "converged"
+    if found.P[-2] > 0.0:
+        message = "converged; the film reaches the outlet of the domain, which cuts it off there"
+        warnings.warn(message, EhlWarning, stacklevel=5)
+    return Film(
+        contact=contact,
+        x=x,
+        pressure=found.P * groups.pressure,
+        thickness=found.H * groups.gap,
+        central_thickness=shown.central,
+        minimum_thickness=shown.minimum,
+        minimum_position=shown.position,
+        inlet=float(x[0]),
+        outlet=shown.outlet,
+        prop=shown.prop,
+        prop_slope=slope.prop / contact.load,
+        central_slope=slope.central / contact.load,
+        flow=fine.flow,
+        flux_error=found.flux_error,
+        load_error=found.load_error,
+        error=error,
+        errors=errors,
+        cost=run.cost(),
+        converged=True,
+        message=message,
+        supply=supply,
+        spike=_spike(coarse, fine),
+        state=State(coarse.bare(), fine.bare()),
+    )
+
+
+def _spike(coarse: Level, fine: Level) -> Spike | None:
+    """Return the spike in SI; its error is known only where both grids were laid around it."""
+    tip = spike_of(fine)
+    if tip is None:
+        return None
+    before, contact = spike_of(coarse), fine.contact
+    known = before is not None and coarse.plan.spike is not None and fine.plan.spike is not None
+    return Spike(
+        position=tip.position * contact.half_width,
+        pressure=tip.height * contact.peak_pressure,
+        width=tip.width * contact.half_width,
+        error=abs(before.height / tip.height - 1.0) if known and before is not None else math.nan,
+    )
+
+
+def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> Film:
+    """Return a film without figures."""
+    nan = math.nan
+    blank = np.full(fine.grid.nodes.size, nan)
+    length = run.contact.half_width * fine.grid.ratio
+    return Film(
+        contact=run.contact,
+        x=fine.grid.nodes * length,
+        pressure=blank,
+        thickness=blank,
+        central_thickness=nan,
+        minimum_thickness=nan,
+        minimum_position=nan,
+        inlet=float(fine.grid.nodes[0] * length),
+        outlet=nan,
+        prop=nan,
+        prop_slope=nan,
+        central_slope=nan,
+        flow=nan,
+        flux_error=nan,
+        load_error=nan,
+        error=error,
+        errors=FilmErrors(error, nan, nan, nan, nan),
+        cost=run.cost(),
+        converged=False,
+        message=f"{reason}: {_remedy(fine.plan, reason)}",
+        supply=run.supply,
+    )
+
+
+def _remedy(plan: Plan, reason: str) -> str:
+    """Say what to do about a contact that was not solved."""
+    if plan.fixed and plan.domain[0] > -1.05:
+        return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
+    if plan.H_c < _DRY:
+        return "the film is too thin beside the flattening to be resolved; take the contact as dry (prop 0)"
+    if "spike" in reason:
+        return (
+            "without compressibility the spike may have no bound; leave out spike, the film does not need it"
+        )
+    if plan.kind == "uniform":
+        return "use the graded grid, or give more nodes"
+    return "allow a larger tolerance, give more nodes, or start from a similar contact"

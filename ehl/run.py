@@ -1,0 +1,172 @@
+"""One call of the solver: grids one after another, with the ways out where Newton's method fails."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+
+from ehl.contact import LineContact
+from ehl.film import Cost
+from ehl.grid import clusters
+from ehl.levels import Level, cold, spike_of, warm
+from ehl.plan import Plan
+from ehl.supply import OilLayer, Supply
+
+__all__ = ["Run"]
+
+_STARTS = (2.0, 8.0)  # films to start from, over the expected one
+_LAYER_DONE = 1e-10  # relative difference of flow and layer
+_LAYER_TRIES = 30
+_MOST_COLD_NODES = 257  # beyond, a start from nothing costs more than it brings
+_SPIKE_ROUNDS = 5
+_SPIKE_LEAST = 1e-7  # narrowest cluster of nodes [half-widths]
+_SPIKE_FOR_FILM = 0.02  # narrowest cluster where the film alone is asked for, over the outlet zone
+_SPIKE_CELL = 0.5  # width of the cluster of nodes over that of the spike
+_SPIKE_SETTLED = 1.5  # factor of the spike's width that needs no new grid
+_SPIKE_SHRINK = 8.0  # most that the cluster narrows at once: a spike narrower than its cells is not located
+
+
+class Run:
+    """Counts what it does; ``plan`` is how the next grid is laid."""
+
+    def __init__(
+        self, contact: LineContact, plan: Plan, supply: Supply | None, *, whole_spike: bool = False
+    ) -> None:
+        self.contact = contact
+        self.plan = plan
+        self.supply = supply
+        self.narrowest = _SPIKE_LEAST if whole_spike else _SPIKE_FOR_FILM * clusters(plan.H_c)[1]
+        self.began = time.perf_counter()
+        self.iterations = 0
+        self.grids: list[int] = []
+        self.attempts = 1
+
+    def count(self, level: Level) -> Level:
+        """Add a level to the cost."""
+        self.iterations += level.found.iterations
+        self.grids.append(level.grid.nodes.size)
+        return level
+
+    def cold(self, n: int) -> Level:
+        """Solve from nothing; where that fails, from a thicker film, then by continuation in the load."""
+        return self.fed(self._cold(n))
+
+    def _cold(self, n: int) -> Level:
+        grid = self.plan.grid(n)
+        for thickness in _STARTS:
+            level = self.count(cold(self.contact, self.plan, grid, thickness * self.plan.H_c))
+            if level.found.converged:
+                return level
+            self.attempts += 1
+        return self.descend(level)
+
+    def pair(self, half: int, n: int) -> tuple[Level, Level]:
+        """Solve a coarse and a fine grid from nothing, the one that gives in first before the other."""
+        coarse = self.cold(half)
+        if coarse.found.converged:
+            return coarse, self.warm(coarse, None, n)
+        fine = self.cold(n)
+        return (self.warm(fine, None, half) if fine.found.converged else coarse), fine
+
+    def descend(self, failed: Level) -> Level:
+        """Continue in the load, from a contact soft enough to be solved from cold, on the failed grid."""
+        plan, grid = failed.plan, failed.grid
+        for factor in (0.5, 0.2, 0.05):
+            load = factor * self.contact.load
+            easier = replace(self.contact, load=load)
+            level = self.count(cold(easier, plan, grid, _STARTS[-1] * plan.H_c / factor))
+            step = 1.5
+            while level.found.converged and load < self.contact.load and step > 1.01:
+                target = min(self.contact.load, step * load)
+                trial = self.count(warm(level, replace(self.contact, load=target), plan, grid))
+                if trial.found.converged:
+                    level, load = trial, target
+                else:
+                    step = math.sqrt(step)
+            if level.found.converged and load == self.contact.load:
+                return replace(level, contact=self.contact)
+            self.attempts += 1
+        return failed
+
+    def warm(self, old: Level, grid_of: Level | None, n: int) -> Level:
+        """Solve from another level, on its grid if one is given; from cold where that fails."""
+        grid = self.plan.grid(n) if grid_of is None else grid_of.grid
+        level = self.count(warm(old, self.contact, self.plan, grid))
+        if level.found.converged:
+            return self.fed(level)
+        self.attempts += 1
+        if self.plan.spike is not None:
+            self.plan = replace(self.plan, spike=None)
+            return self.warm(old, None, n)
+        return self.cold(n) if n <= _MOST_COLD_NODES else level
+
+    def fed(self, level: Level) -> Level:
+        """Move the meniscus until the film carries away what the layer brings.
+
+        The root is sought in ln(distance) by the secant of ln(flow), kept inside what is known to hold it; the
+        plan is left at the meniscus found.
+        """
+        if not (isinstance(self.supply, OilLayer) and self.plan.fixed and level.found.converged):
+            return level
+        wanted = self.supply.thickness
+        where, miss = math.log(-1.0 - level.plan.domain[0]), math.log(level.flow / wanted)
+        low, high = -math.inf, math.inf
+        slope = 0.5
+        for _ in range(_LAYER_TRIES):
+            if abs(miss) < _LAYER_DONE:
+                return level
+            low, high = (max(low, where), high) if miss < 0.0 else (low, min(high, where))
+            step = max(-1.5, min(1.5, -miss / max(slope, 1e-3)))
+            target = where + step
+            if not low < target < high:
+                target = 0.5 * (low + high)
+            plan = level.plan.with_inlet(-1.0 - math.exp(target))
+            trial = self.count(warm(level, self.contact, plan, plan.grid(level.grid.nodes.size)))
+            if not trial.found.converged:
+                self.attempts += 1
+                high = target if target > where else high
+                low = target if target < where else low
+                slope = 2.0 * slope
+                continue
+            miss_new = math.log(trial.flow / wanted)
+            if target != where:
+                slope = max((miss_new - miss) / (target - where), 1e-4)
+            where, miss, level = target, miss_new, trial
+            self.plan = replace(plan, spike=self.plan.spike)
+        message = "the meniscus that matches the oil layer was not found"
+        return replace(level, found=replace(level.found, converged=False, message=message))
+
+    def sharpened(self, level: Level, n: int) -> Level:
+        """Lay the grid around the spike that was found, until its width no longer changes the grid."""
+        if level.grid.nodes.size != n:
+            level = self.warm(level, None, n)
+        for _ in range(_SPIKE_ROUNDS):
+            tip = spike_of(level) if level.found.converged else None
+            if tip is None:
+                return level
+            old = self.plan.spike
+            width = max(_SPIKE_CELL * tip.width, self.narrowest)
+            if old is not None:
+                width = max(width, old[1] / _SPIKE_SHRINK)
+                moved = abs(tip.position - old[0])
+                if moved < 2.0 * width and max(width / old[1], old[1] / width) < _SPIKE_SETTLED:
+                    return level
+            before = self.plan
+            self.plan = replace(before, spike=(tip.position, width))
+            trial = self.count(warm(level, self.contact, self.plan, self.plan.grid(n)))
+            if not trial.found.converged:
+                self.plan = before
+                return level
+            level = self.fed(trial)
+        return level
+
+    def cost(self) -> Cost:
+        """Return what was spent."""
+        return Cost(
+            seconds=time.perf_counter() - self.began,
+            unknowns=max(self.grids) - 1,
+            iterations=self.iterations,
+            grids=tuple(self.grids),
+            attempts=self.attempts,
+        )
