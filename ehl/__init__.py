@@ -9,10 +9,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ehl.asperities import Roughness
     from ehl.contact import LineContact
     from ehl.errors import EhlInputError, EhlWarning, Fault
     from ehl.film import DEFINITIONS, Cost, Film, FilmErrors, Spike, hertz_approach
     from ehl.lubricant import Lubricant
+    from ehl.mixed import MixedFilm, solve_mixed
     from ehl.path import solve_path
     from ehl.regressions import (
         FormulaFilm,
@@ -50,8 +52,10 @@ __all__ = [
     "LineContact",
     "Lubricant",
     "Meniscus",
+    "MixedFilm",
     "OilLayer",
     "Roelands",
+    "Roughness",
     "Spike",
     "ViscosityLaw",
     "dowson",
@@ -60,10 +64,13 @@ __all__ = [
     "hertz_approach",
     "moes_central",
     "solve",
+    "solve_mixed",
     "solve_path",
 ]
 
 _ROOMS = {
+    "asperities": ("Roughness",),
+    "mixed": ("MixedFilm", "solve_mixed"),
     "contact": ("LineContact",),
     "errors": ("EhlInputError", "EhlWarning", "Fault"),
     "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"),

@@ -1,0 +1,124 @@
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from ehl import EhlInputError, EhlWarning, LineContact, Lubricant, OilLayer, Roughness, solve, solve_mixed
+from ehl.asperities import height_integral, zhao_fit
+from ehl.mixed import central_asperity_pressure
+
+OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
+STIFF = Roughness(2e-7, 2.5e10, 1e-5, "greenwood-williamson")
+SOFT = Roughness(1e-7, 4e10, 1e-5)
+
+
+def quiet(function, *arguments, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EhlWarning)
+        return function(*arguments, **options)
+
+
+@pytest.mark.parametrize("n", [0.5, 1.5, 2.5])
+@pytest.mark.parametrize("x", [-1.0, 0.0, 1.3, 4.0, 6.0])
+def test_height_integrals_by_quadrature(n, x):
+    exact, _ = quad(
+        lambda s: (s - x) ** n * math.exp(-(s**2) / 2) / math.sqrt(2 * math.pi),
+        x,
+        x + 12,
+        epsabs=0,
+        limit=400,
+    )
+    assert float(height_integral(n, x)) == pytest.approx(exact, rel=1e-6)
+
+
+def test_the_usual_fit_of_the_height_integral():
+    assert float(height_integral(2.5, 0.0)) == pytest.approx(0.6166, rel=1e-3)
+    x = np.linspace(0.0, 2.0, 9)
+    np.testing.assert_allclose(zhao_fit(x), height_integral(2.5, x), rtol=0.12)
+    assert zhao_fit(4.0) == 0.0
+    assert height_integral(2.5, 9.0) == 0.0
+
+
+@pytest.mark.parametrize("rough", [STIFF, SOFT])
+def test_slope_of_the_asperities_pressure(rough):
+    h = np.array([0.5, 1.0, 2.0, 3.0]) * rough.deviation
+    step = 1e-5 * rough.deviation
+    high, low = (rough.pressure(h + s, 2.2e11)[0] for s in (step, -step))
+    np.testing.assert_allclose((high - low) / (2 * step), rough.pressure(h, 2.2e11)[1], rtol=1e-6)
+
+
+def test_smooth_surfaces_leave_the_smooth_film():
+    film = quiet(solve, PITCH)
+    for sigma in (1e-9, 1e-8):
+        mixed = quiet(solve_mixed, PITCH, replace(STIFF, deviation=sigma))
+        assert mixed.asperity_share == 0.0
+        assert mixed.asperity_stiffness == 0.0
+        assert mixed.central_thickness == film.central_thickness
+        assert mixed.stiffness() == film.stiffness()
+
+
+def test_film_ratio_from_three_to_a_tenth():
+    speeds = np.geomspace(3.0, 1e-4, 12)
+    films = [quiet(solve_mixed, replace(PITCH, entrainment=float(u)), STIFF) for u in speeds]
+    assert all(m.converged for m in films)
+    ratio = np.array([m.film_ratio for m in films])
+    share = np.array([m.asperity_share for m in films])
+    assert ratio[0] > 3.0
+    assert ratio[-1] < 0.11
+    assert (np.diff(ratio) < 0).all()
+    assert (np.diff(share) > 0).all()
+    assert share[0] < 0.01
+    # film to nothing: the asperities carry all, at the separation of the dry rough contact
+    assert share[-1] > 0.999
+    pressure, slope = STIFF.pressure(films[-1].central_thickness, PITCH.reduced_modulus)
+    assert pressure == pytest.approx(central_asperity_pressure(PITCH, STIFF, share[-1]), rel=1e-6)
+    assert films[-1].asperity_stiffness == pytest.approx(-PITCH.load * slope / pressure, rel=1e-3)
+    assert films[-1].stiffness() == pytest.approx(films[-1].asperity_stiffness, rel=0.1)
+
+
+@pytest.mark.parametrize("rough", [STIFF, SOFT])
+def test_the_loads_of_film_and_asperities_add_up(rough):
+    contact = replace(PITCH, entrainment=0.1)
+    mixed = quiet(solve_mixed, contact, rough)
+    film = mixed.film
+    assert film.contact.load + mixed.asperity_load == pytest.approx(contact.load, rel=1e-12)
+    assert film.contact.half_width == pytest.approx(contact.half_width, rel=1e-12)
+    pressure, _ = rough.pressure(mixed.central_thickness, contact.reduced_modulus)
+    asked = central_asperity_pressure(contact, rough, mixed.asperity_share)
+    assert pressure == pytest.approx(asked, rel=1e-6)
+    assert mixed.stiffness() == mixed.film_stiffness() + mixed.asperity_stiffness
+    assert mixed.rounds < 20
+
+
+@pytest.mark.parametrize(("u", "within"), [(1.0, 0.1), (0.001, 0.15)])
+def test_parallel_stiffness_against_differences(u, within):
+    # the parallel springs are at fixed width; a contact that widens as w^1/2 is stiffer by 1/(1 - s/2)
+    contact, step = replace(PITCH, entrainment=u), 0.01
+    mixed = quiet(solve_mixed, contact, STIFF)
+    light, heavy = (
+        quiet(solve_mixed, replace(contact, load=contact.load * f), STIFF, 1e-3) for f in (1 - step, 1 + step)
+    )
+    by_difference = -2 * step * contact.load / (heavy.central_thickness - light.central_thickness)
+    widening = 1.0 / (1.0 - 0.5 * mixed.asperity_share)
+    assert mixed.stiffness("tangent") * widening == pytest.approx(by_difference, rel=0.05 if u == 1 else 0.25)
+    assert mixed.stiffness("tangent") < by_difference * (1 + within)
+
+
+def test_starved_and_rough():
+    starved = quiet(solve_mixed, PITCH, STIFF, supply=OilLayer(0.11e-6))
+    flooded = quiet(solve_mixed, PITCH, STIFF)
+    assert starved.converged
+    assert starved.film_ratio < 1.0 < flooded.film_ratio
+    assert starved.asperity_share > 0.3
+
+
+def test_bad_roughness_is_listed_at_once():
+    with pytest.raises(EhlInputError) as caught:
+        Roughness(-1.0, 0.0, float("nan"), law="sandpaper", offset=-1)
+    assert len(caught.value.faults) == 5
+    with pytest.raises(EhlInputError, match="roughness"):
+        solve_mixed(PITCH, 1e-7)
