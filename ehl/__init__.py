@@ -22,6 +22,9 @@ if TYPE_CHECKING:
         dowson_higginson_minimum,
         dowson_toyoda_central,
         moes_central,
+        nijenbanning_line_central,
+        pan_hamrock_central,
+        pan_hamrock_minimum,
     )
     from ehl.rheology import (
         Barus,
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
         ViscosityLaw,
     )
     from ehl.solver import solve
+    from ehl.stiffness import StiffnessRow, stiffness_table
     from ehl.supply import Meniscus, OilLayer
 
 __all__ = [
@@ -57,15 +61,20 @@ __all__ = [
     "Roelands",
     "Roughness",
     "Spike",
+    "StiffnessRow",
     "ViscosityLaw",
     "dowson",
     "dowson_higginson_minimum",
     "dowson_toyoda_central",
     "hertz_approach",
     "moes_central",
+    "nijenbanning_line_central",
+    "pan_hamrock_central",
+    "pan_hamrock_minimum",
     "solve",
     "solve_mixed",
     "solve_path",
+    "stiffness_table",
 ]
 
 _ROOMS = {
@@ -90,9 +99,13 @@ _ROOMS = {
         "dowson_higginson_minimum",
         "dowson_toyoda_central",
         "moes_central",
+        "nijenbanning_line_central",
+        "pan_hamrock_central",
+        "pan_hamrock_minimum",
     ),
     "path": ("solve_path",),
     "solver": ("solve",),
+    "stiffness": ("StiffnessRow", "stiffness_table"),
     "supply": ("Meniscus", "OilLayer"),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}

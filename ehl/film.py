@@ -98,6 +98,11 @@ class Film:
         return self.minimum_thickness / self.contact.moes_film
 
     @property
+    def starved(self) -> bool:
+        """Whether a supply holds the inlet; False for a layer thicker than what the inlet takes."""
+        return self.supply is not None and (self.state is None or self.state.plan.fixed)
+
+    @property
     def fill(self) -> Array:
         """Share of the gap that oil fills, 1 - theta, at the nodes [-]: 1 where p > 0, less in cavitation."""
         density = self.contact.lubricant.density_ratio(self.pressure)[0]
@@ -130,7 +135,8 @@ class Film:
         Returns
         -------
         float
-            NaN without convergence, and for the formulas where the viscosity does not rise with pressure.
+            NaN without convergence, and for the formulas where the viscosity does not rise with pressure or
+            the contact is starved.
 
         Raises
         ------
@@ -141,7 +147,7 @@ class Film:
         if definition not in DEFINITIONS:
             allowed = "one of " + ", ".join(DEFINITIONS)
             raise EhlInputError([Fault("definition", repr(definition), allowed, "choose one of these")])
-        without_formula = definition.startswith("dowson") and self.contact.G == 0.0
+        without_formula = definition.startswith("dowson") and (self.contact.G == 0.0 or self.starved)
         if not self.converged or without_formula:
             return math.nan
         if definition == "approach":
