@@ -76,6 +76,8 @@ def graded_nodes(
     """
     s_in, s_out, neck = clusters(H_c)
     left, right = domain
+    ahead = -1.0 - left  # a near meniscus pumps the pressure up over the way it leaves
+    s_in = min(s_in, ahead) if ahead > 0.0 else s_in
     crowds = [(-1.0, s_in, 1.0), (neck, s_out, _NECK_SHARE)]
     if spike is not None:
         crowds.append((spike[0], spike[1], _SPIKE_SHARE))

@@ -202,8 +202,9 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
 def film_error(coarse: Level, fine: Level) -> float:
     """Estimated relative error of central and minimum film on the finer of two grids.
 
-    The changes of central film, of minimum film and of the film between them (root mean square over the dry
-    contact's width) are added, since any one of them may be small by accident.
+    The changes of central film, of minimum film, of the film between them (root mean square over the dry
+    contact's width) and of what it props the bodies apart by are added, since any one of them may be small by
+    accident.
     """
     before, after = figures(coarse), figures(fine)
     at = coarse.grid.nodes
@@ -211,7 +212,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     central, minimum = before.central / after.central - 1.0, before.minimum / after.minimum - 1.0
-    return _GRID_FACTOR * (abs(central) + abs(minimum) + profile)
+    return _GRID_FACTOR * (abs(central) + abs(minimum) + profile + abs(before.prop / after.prop - 1.0))
 
 
 def spike_error(coarse: Level, fine: Level) -> float:

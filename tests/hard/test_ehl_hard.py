@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ehl import EhlWarning, LineContact, Lubricant, solve, solve_path
+from ehl import EhlWarning, LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
@@ -176,21 +176,71 @@ def random_contact(rng):
             return contact
 
 
-@pytest.mark.slow
-def test_random_contacts():
+def check_random_contacts(number, sample, reference):
+    """Solve random contacts; compare some with a fine grid."""
     rng = np.random.default_rng()
-    films = [solve(random_contact(rng)) for _ in range(500)]
+    films = [solve(random_contact(rng)) for _ in range(number)]
     for film in films:
         sound(film)
         # the propping falls with the load; near M = 0.8, L = 20 it stands still and the film is rigid
         assert film.prop_slope * film.contact.load / film.prop < 0.02
-    assert sum(f.cost.attempts == 1 for f in films) >= 498
-    beyond = 0
-    for film in films[:100]:
-        fine = solve(film.contact, nodes=1025)
+    beyond = above_half = compared = 0
+    for film in films[:sample]:
+        fine = solve(film.contact, nodes=reference)
+        if not fine.converged:  # a grid given by its number of nodes has no other to fall back on
+            continue
+        compared += 1
         true = max(
             abs(film.central_thickness / fine.central_thickness - 1),
             abs(film.minimum_thickness / fine.minimum_thickness - 1),
         )
-        beyond += true > 2 * film.error
+        beyond += true > film.error
+        above_half += true > 2 * film.error
+    assert compared >= 0.9 * sample
+    return films, beyond, above_half
+
+
+def test_a_few_random_contacts():
+    films, beyond, above_half = check_random_contacts(60, 12, 513)
+    assert sum(f.cost.attempts == 1 for f in films) >= 58
+    assert beyond <= 1
+    assert above_half == 0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_random_contacts():
+    films, beyond, above_half = check_random_contacts(2000, 200, 1025)
+    # 99.9 % are expected; four more failures of the first start are chance
+    assert sum(f.cost.attempts == 1 for f in films) >= 1994
     assert beyond <= 2
+    assert above_half <= 2
+
+
+def test_starved_contacts_down_to_the_edge():
+    for X in (-1.3, -1.03, -1.01, -1.002, -1.0005):
+        for load in (PITCH.load, 1e-2 * PITCH.load):
+            contact = replace(PITCH, load=load)
+            film = sound(solve(contact, supply=Meniscus(X * contact.half_width), tolerance=0.01))
+            assert film.stiffness() > 0
+    assert "inlet" in refused(solve(PITCH, supply=Meniscus(-1.00001 * PITCH.half_width)))
+
+
+def test_supply_towards_zero():
+    last = math.inf
+    for layer in (1e-7, 1e-8, 1e-9):
+        film = sound(solve(PITCH, supply=OilLayer(layer)))
+        assert film.flow == pytest.approx(layer, rel=1e-8)
+        assert film.central_thickness < last
+        last = film.central_thickness
+    assert "inlet" in refused(solve(PITCH, supply=OilLayer(1e-14)))
+
+
+def test_starved_and_light():
+    # a pair about to leave contact: a layer thinner than what the light contact would take
+    for load in (1e4, 1e2, 1.0):
+        contact = replace(PITCH, load=load)
+        flooded = sound(solve(contact))
+        film = sound(solve(contact, supply=OilLayer(0.3 * flooded.flow)))
+        assert film.flow == pytest.approx(0.3 * flooded.flow, rel=1e-8)
+        assert film.stiffness() > flooded.stiffness()

@@ -33,7 +33,9 @@ def test_pan_and_hamrock_in_their_range(W, U):
     contact = steel(W, U, 5000.0)
     film = quiet(contact)
     assert film.minimum_thickness == pytest.approx(pan_hamrock_minimum(contact), rel=0.1)
-    assert film.central_thickness == pytest.approx(pan_hamrock_central(contact), rel=0.13)  # lies below, more so at heavy loads
+    assert film.central_thickness == pytest.approx(
+        pan_hamrock_central(contact), rel=0.13
+    )  # lies below, more so at heavy loads
 
 
 def test_pan_and_hamrock_by_hand():
