@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +33,7 @@ class Level:
     grid: Grid
     found: Iteration
 
-    @property
+    @cached_property
     def groups(self) -> Groups:
         """Dimensionless groups and scales on this grid."""
         return Groups.on(self.contact, self.grid)

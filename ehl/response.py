@@ -13,7 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ehl.contact import LineContact
-from ehl.discrete import Grid, Groups, centre_gap, film_gap, fluxes, make_grid, residual
+from ehl.discrete import (
+    Grid,
+    Groups,
+    centre_gap,
+    film_gap,
+    fluxes,
+    inlet_pressure,
+    load_inside,
+    make_grid,
+)
 from ehl.levels import Level, dry_approach
 from ehl.plan import Plan, expected_film
 from ehl.supply import OilLayer, Supply
@@ -40,7 +49,7 @@ class _Response:
 
     central: float
     prop: float
-    flow: float
+    flow: float  # NaN where it was not asked for
 
     def less(self, other: _Response, factor: float) -> _Response:
         return _Response(
@@ -59,69 +68,95 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
-    ratio = math.exp(_STEP)
-    heavier = replace(contact, load=contact.load * ratio)
+    before = _Still.of(level.grid, level.groups, level.found.P, level.found.H0)
+    heavier = replace(contact, load=contact.load * math.exp(_STEP))
     growth = expected_film(heavier) / expected_film(contact)
-    moving = _along(level, heavier, growth, supply)
+    moving = _along(level, before, heavier, growth, supply)
     if supply is None or not plan.fixed:
-        still = _differentiate(level, heavier, level.grid)
+        still = _differentiate(level, before, heavier, level.grid)
         return Slopes(still.central, moving.prop, abs(still.prop / moving.prop - 1.0))
-    still = _along(level, heavier, 1.0, supply)
+    still = _along(level, before, heavier, 1.0, supply)
     return Slopes(moving.central, moving.prop, abs(still.prop / moving.prop - 1.0))
 
 
-def _along(level: Level, heavier: LineContact, growth: float, supply: Supply | None) -> _Response:
+def _along(
+    level: Level, before: _Still, heavier: LineContact, growth: float, supply: Supply | None
+) -> _Response:
     """Differentiate by ln w on nodes that follow a film growing by a factor, with the supply as it is.
 
     A meniscus fed by a layer moves until the flow is that of the layer again.
     """
     plan = level.plan
-    by_load = _respond(level, heavier, plan.for_load(growth, heavier.load / level.contact.load, supply))
-    if not (isinstance(supply, OilLayer) and plan.fixed):
+    moved = plan.for_load(growth, heavier.load / level.contact.load, supply)
+    fed = isinstance(supply, OilLayer) and plan.fixed
+    by_load = _respond(level, before, heavier, moved, flow=fed)
+    if not fed:
         return by_load
     farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_STEP))
-    by_distance = _respond(level, level.contact, farther)
+    by_distance = _respond(level, before, level.contact, farther, flow=True)
     return by_load.less(by_distance, by_load.flow / by_distance.flow)
 
 
-def _respond(level: Level, contact: LineContact, plan: Plan) -> _Response:
+def _respond(level: Level, before: _Still, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:
     """Differentiate towards another contact on the nodes of another plan."""
     grid, ratio = level.grid, level.grid.ratio
     nodes = plan.nodes(grid.nodes.size, grid.nodes * ratio)
-    return _differentiate(level, contact, make_grid(nodes, ratio, open_inlet=grid.open))
+    moved = make_grid(nodes, ratio, open_inlet=grid.open)
+    return _differentiate(level, before, contact, moved, flow=flow)
 
 
-def _differentiate(level: Level, contact: LineContact, moved: Grid) -> _Response:
+def _differentiate(
+    level: Level, before: _Still, contact: LineContact, moved: Grid, *, flow: bool = False
+) -> _Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     found, grid, groups = level.found, level.grid, level.groups
     assert found.factors is not None, "only a converged level is differentiated"
-    net, short = residual(grid, groups, found.P, found.H0)
     after = Groups.on(contact, moved)
-    net_after, short_after = residual(moved, after, found.P, found.H0)
-    dP, dH0 = found.factors.solve((net - net_after) / _STEP, (short_after - short) / _STEP, found.P.size)
-    centre = centre_gap(grid, groups, found.P, found.H0) * groups.gap
-    centre_after = centre_gap(moved, after, found.P, found.H0) * after.gap
+    changed = _Still.of(moved, after, found.P, found.H0)
+    dP, dH0 = found.factors.solve(
+        (np.diff(before.flux) - np.diff(changed.flux)) / _STEP,
+        (changed.short - before.short) / _STEP,
+        found.P.size,
+    )
     by_pressure = groups.compliance * float(grid.centre @ dP)
     explicit = (found.H0 + dry_approach(grid)) * (after.gap - groups.gap) / _STEP
+    carried = math.nan
+    if flow:
+        by_step = (changed.flux * after.gap - before.flux * groups.gap) / _STEP
+        carried = _flow_slope(level, before, by_step, dP, dH0)
     return _Response(
-        central=(centre_after - centre) / _STEP + (dH0 - by_pressure) * groups.gap,
+        central=(changed.centre - before.centre) / _STEP + (dH0 - by_pressure) * groups.gap,
         prop=explicit + dH0 * groups.gap,
-        flow=_flow_slope(level, moved, after, dP, dH0),
+        flow=carried,
     )
 
 
-def _flow_slope(level: Level, moved: Grid, after: Groups, dP: Array, dH0: float) -> float:
+@dataclass(frozen=True)
+class _Still:
+    """What a grid and a contact make of given pressures and separation."""
+
+    flux: Array
+    slopes: Array
+    short: float  # load that is missing
+    centre: float  # gap at x = 0 [m]
+
+    @classmethod
+    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float) -> _Still:
+        P = P.copy()
+        P[0] = inlet_pressure(grid, groups)
+        flux, slopes = fluxes(grid, groups, P, film_gap(grid, groups, P, H0), grid.quick)
+        short = load_inside(grid, groups) - float(grid.weights @ P)
+        return cls(flux, slopes, short, centre_gap(grid, groups, P, H0) * groups.gap)
+
+
+def _flow_slope(level: Level, before: _Still, explicit: Array, dP: Array, dH0: float) -> float:
     """Differentiate the flow [m], taken as the mean over the second half of the film."""
-    found, grid, groups = level.found, level.grid, level.groups
-    H = film_gap(grid, groups, found.P, found.H0)
-    flux, by = fluxes(grid, groups, found.P, H, grid.quick)
-    flux_after, _ = fluxes(moved, after, found.P, film_gap(moved, after, found.P, found.H0), moved.quick)
-    dH = dH0 - groups.compliance * (grid.potential @ dP)
-    changes = (flux_after * after.gap - flux * groups.gap) / _STEP
+    dH = dH0 - level.groups.compliance * (level.grid.potential @ dP)
+    by = level.groups.gap * before.slopes
+    free = np.flatnonzero(level.found.P[1:-1] > 0.0) + 1
+    low, high = int(free[free.size // 2]), int(free[-1])
+    changes = explicit[low:high].copy()
     for k in range(3):
-        at = np.arange(flux.size) - 1 + k
-        inside = at >= 0
-        changes[inside] += groups.gap * (by[inside, k] * dP[at[inside]] + by[inside, 3 + k] * dH[at[inside]])
-    free = np.flatnonzero(found.P[1:-1] > 0.0) + 1
-    faces = changes[free[free.size // 2] : free[-1]]
-    return -float(np.mean(faces))
+        at = slice(low - 1 + k, high - 1 + k)
+        changes += by[low:high, k] * dP[at] + by[low:high, 3 + k] * dH[at]
+    return -float(np.mean(changes))

@@ -85,17 +85,17 @@ def test_stiffness_with_the_meniscus_held(X, load):
 
 @pytest.mark.parametrize("share", [0.05, 0.2, 0.5])
 def test_stiffness_with_the_layer_held(share):
-    supply, step = OilLayer(share * FLOODED.flow), 2e-2
-    film = quiet(PITCH, nodes=257, supply=supply)
+    supply, step = OilLayer(share * FLOODED.flow), 0.05
+    film = quiet(PITCH, nodes=513, supply=supply)
     light, heavy = (
-        quiet(replace(PITCH, load=PITCH.load * f), nodes=257, supply=supply) for f in (1 - step, 1 + step)
+        quiet(replace(PITCH, load=PITCH.load * f), nodes=513, supply=supply) for f in (1 - step, 1 + step)
     )
     change = 2 * step * PITCH.load
+    # the film hardly yields, hundredths of a flooded one: errors of the grid count as much more of it
     by_difference = -change / (heavy.prop - light.prop)
-    # the propping hardly changes: a ripple of the grid of 1e-5 is 1 % of the slope
-    assert film.stiffness("approach") == pytest.approx(by_difference, rel=2e-2)
+    assert film.stiffness("approach") == pytest.approx(by_difference, rel=1e-2)
     by_difference = -change / (heavy.central_thickness - light.central_thickness)
-    assert film.stiffness("tangent") == pytest.approx(by_difference, rel=1e-2)
+    assert film.stiffness("tangent") == pytest.approx(by_difference, rel=5e-3)
 
 
 def test_a_held_layer_is_stiff_and_a_held_meniscus_is_soft():
