@@ -106,20 +106,20 @@ def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> 
         errors=FilmErrors(error, nan, nan, nan, nan),
         cost=run.cost(),
         converged=False,
-        message=f"{reason}: {_remedy(fine.plan, reason)}",
+        message=f"{reason}: {_remedy(run, fine.plan)}",
         supply=run.supply,
     )
 
 
-def _remedy(plan: Plan, reason: str) -> str:
+def _remedy(run: Run, plan: Plan) -> str:
     """Say what to do about a contact that was not solved."""
     if plan.fixed and plan.domain[0] > -1.05:
         return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
     if plan.H_c < _DRY:
         return "the film is too thin beside the flattening to be resolved; take the contact as dry (prop 0)"
-    if "spike" in reason:
+    if run.whole_spike:
         return (
-            "without compressibility the spike may have no bound; leave out spike, the film does not need it"
+            "with this oil and load the spike is narrower than grids resolve; leave out spike, the film stays"
         )
     if plan.kind == "uniform":
         return "use the graded grid, or give more nodes"

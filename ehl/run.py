@@ -36,6 +36,7 @@ class Run:
         self.contact = contact
         self.plan = plan
         self.supply = supply
+        self.whole_spike = whole_spike
         self.narrowest = _SPIKE_LEAST if whole_spike else _SPIKE_FOR_FILM * clusters(plan.H_c)[1]
         self.began = time.perf_counter()
         self.iterations = 0
