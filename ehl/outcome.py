@@ -12,13 +12,12 @@ from ehl.film import Film, FilmErrors, Spike
 from ehl.levels import Level, State, figures, spike_of
 from ehl.plan import Plan
 from ehl.response import slopes
-from ehl.run import Run
+from ehl.run import DRY, Run
 
 __all__ = ["failed_film", "film_of"]
 
 _GRID_FACTOR = 0.4  # as for the film
 _PROP_LOSS = 20.0  # times the film's own error by the finite inlet
-_DRY = 1e-5  # h R/b^2 below which refusals are laid to a contact that is as good as dry
 
 
 def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
@@ -115,7 +114,7 @@ def _remedy(run: Run, plan: Plan) -> str:
     """Say what to do about a contact that was not solved."""
     if plan.fixed and plan.domain[0] > -1.05:
         return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
-    if plan.H_c < _DRY:
+    if plan.H_c < DRY:
         return "the film is too thin beside the flattening to be resolved; take the contact as dry (prop 0)"
     if run.whole_spike:
         return (

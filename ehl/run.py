@@ -13,12 +13,16 @@ from ehl.levels import Level, cold, spike_of, warm
 from ehl.plan import Plan
 from ehl.supply import OilLayer, Supply
 
-__all__ = ["Run"]
+__all__ = ["DRY", "Run"]
+
+DRY = 1e-5
+"""h R/b^2 below which a contact that is not solved is as good as dry."""
 
 _STARTS = (2.0, 8.0)  # films to start from, over the expected one
 _LAYER_DONE = 1e-10  # relative difference of flow and layer
 _LAYER_TRIES = 30
-_MOST_COLD_NODES = 257  # beyond, a start from nothing costs more than it brings
+_MOST_COLD_NODES = 1025
+_MOST_COLD_NODES_DRY = 257  # a film that such a grid does not resolve is as good as none
 _SPIKE_ROUNDS = 5
 _SPIKE_LEAST = 1e-7  # narrowest cluster of nodes [half-widths]
 _SPIKE_FOR_FILM = 0.02  # narrowest cluster where the film alone is asked for, over the outlet zone
@@ -37,6 +41,7 @@ class Run:
         self.plan = plan
         self.supply = supply
         self.whole_spike = whole_spike
+        self.most_cold = _MOST_COLD_NODES_DRY if plan.H_c < DRY else _MOST_COLD_NODES
         self.narrowest = _SPIKE_LEAST if whole_spike else _SPIKE_FOR_FILM * clusters(plan.H_c)[1]
         self.began = time.perf_counter()
         self.iterations = 0
@@ -100,7 +105,7 @@ class Run:
         if self.plan.spike is not None:
             self.plan = replace(self.plan, spike=None)
             return self.warm(old, None, n)
-        return self.cold(n) if n <= _MOST_COLD_NODES else level
+        return self.cold(n) if n <= self.most_cold else level
 
     def fed(self, level: Level) -> Level:
         """Move the meniscus until the film carries away what the layer brings.

@@ -22,7 +22,6 @@ _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257
 _MOST_NODES = 2049
-_MOST_SKIPPED_NODES = 513  # where finer grids fail too, the contact is beyond them all
 _REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the propping below 1e-3
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 _GRID_FACTOR = (
@@ -182,7 +181,7 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
     while True:
         n = 2 * fine.grid.nodes.size - 1
         if not (coarse.found.converged and fine.found.converged):
-            if coarse.found.converged and not given and n <= _MOST_SKIPPED_NODES:
+            if coarse.found.converged and not given and n <= run.most_cold:
                 fine = run.warm(coarse, None, n)
                 continue
             failed = fine if coarse.found.converged else coarse

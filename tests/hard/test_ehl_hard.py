@@ -223,7 +223,11 @@ def test_starved_contacts_down_to_the_edge():
             contact = replace(PITCH, load=load)
             film = sound(solve(contact, supply=Meniscus(X * contact.half_width), tolerance=0.01))
             assert film.stiffness() > 0
-    assert "inlet" in refused(solve(PITCH, supply=Meniscus(-1.00001 * PITCH.half_width)))
+    film = solve(PITCH, supply=Meniscus(-(1 + 1e-7) * PITCH.half_width))
+    if film.converged:
+        assert sound(film).central_thickness < 1e-12
+    else:
+        assert "inlet" in refused(film)
 
 
 def test_supply_towards_zero():
