@@ -118,7 +118,7 @@ def newton(
         system = newton_matrix(slopes, influence, grid.weights, free)
         scale = system[:-1, -1].copy()
         right = np.append(-scale * imbalance[free - 1], load - grid.weights @ P)
-        lu, pivots, step, info = dgesv(system[:, :-1], right)
+        lu, pivots, step, info = dgesv(system[:, :-1], right, overwrite_a=True, overwrite_b=True)
         if info != 0 or not np.isfinite(step).all():
             message, factors = "singular Newton matrix", None
             break

@@ -98,7 +98,7 @@ def starved_film(flooded: float, distance: float) -> float:
     """
     need = _pumping(flooded)[1][-1]
     low, high = math.log(1e-12 * flooded), math.log(flooded)
-    for _ in range(34):
+    for _ in range(24):
         middle = 0.5 * (low + high)
         ways, pumped = _pumping(math.exp(middle))
         enough = float(np.interp(distance, ways, pumped)) > need
