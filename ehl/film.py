@@ -100,7 +100,7 @@ class Film:
     @property
     def starved(self) -> bool:
         """Whether a supply holds the inlet; False for a layer thicker than what the inlet takes."""
-        return self.supply is not None and (self.state is None or self.state.plan.fixed)
+        return self.supply is not None and self.errors.inlet == 0.0
 
     @property
     def fill(self) -> Array:

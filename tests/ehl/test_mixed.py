@@ -43,6 +43,44 @@ def test_the_usual_fit_of_the_height_integral():
     assert height_integral(2.5, 9.0) == 0.0
 
 
+@pytest.mark.parametrize("h", [0.5, 1.5, 3.0])
+def test_pressures_from_hertz_contacts_of_single_asperities(h):
+    """Sum Hertz's (4/3) E* sqrt(R) d^1.5 over heights, and for two rough surfaces over misalignments."""
+    modulus = 2.2e11
+
+    def over_heights(load, sigma, offset):
+        density = 1 / (sigma * math.sqrt(2 * math.pi))
+        plane = h * sigma - offset * sigma
+        value, _ = quad(
+            lambda z: load(z - plane) * density * math.exp(-0.5 * (z / sigma) ** 2),
+            plane,
+            plane + 10 * sigma,
+            epsabs=0,
+        )
+        return value
+
+    sigma, beta, n = STIFF.deviation, STIFF.tip_radius, STIFF.density
+    one = n * over_heights(lambda d: 4 / 3 * modulus / 2 * math.sqrt(beta) * d**1.5, sigma, STIFF.offset)
+    assert STIFF.pressure(h * sigma, modulus)[0] == pytest.approx(one, rel=1e-6)
+
+    sigma, beta, n = SOFT.deviation, SOFT.tip_radius, SOFT.density
+
+    def pairs(d):
+        # tips of radius beta a distance r apart meet r^2/(4 beta) later, with the combined radius beta/2
+        value, _ = quad(
+            lambda r: (
+                4 / 3 * modulus / 2 * math.sqrt(beta / 2) * (d - r * r / (4 * beta)) ** 1.5 * 2 * math.pi * r
+            ),
+            0,
+            2 * math.sqrt(beta * d) * (1 - 1e-12),
+            epsabs=0,
+        )
+        return value
+
+    two = n**2 * over_heights(pairs, sigma, SOFT.offset)
+    assert SOFT.pressure(h * sigma, modulus)[0] == pytest.approx(two, rel=1e-5)
+
+
 @pytest.mark.parametrize("rough", [STIFF, SOFT])
 def test_slope_of_the_asperities_pressure(rough):
     h = np.array([0.5, 1.0, 2.0, 3.0]) * rough.deviation
