@@ -22,14 +22,16 @@ __all__ = ["MixedFilm", "central_asperity_pressure", "solve_mixed"]
 
 _LEAST_SHARE = 1e-10
 _LEAST_FILM_SHARE = 1e-6
+_ODDS_STEP = 0.02
 
 
 @dataclass(frozen=True)
 class MixedFilm:
     """A film between rough surfaces. Figures are NaN when ``converged`` is False.
 
-    The stiffnesses are at fixed speed and fixed width of the contact. A contact that asperities alone carry
-    widens with the load, which makes it stiffer again by up to two.
+    The stiffnesses are those of springs in parallel, at fixed speed and fixed width of the contact. A contact that
+    asperities carry widens with the load, which makes it stiffer again by up to two: ``prop_slope`` and
+    ``central_slope`` are the derivatives with all of that, -1/slope the whole stiffness.
     """
 
     contact: LineContact
@@ -37,6 +39,8 @@ class MixedFilm:
     film: Film  # of the load and modulus that are left to the film; its half-width is that of `contact`
     asperity_share: float  # s, share of the load that the asperities carry [-]
     asperity_stiffness: float  # -dw_a/dh of the asperities at the contact's width [N/m per m of face]
+    prop_slope: float  # d prop/d load of film and asperities together at fixed speed [m per N/m]
+    central_slope: float  # d h_cen/d load likewise [m per N/m]
     error: float  # estimated relative error of the film
     rounds: int  # films solved
     converged: bool
@@ -225,24 +229,57 @@ class _Search:
         return self.found(self.film_at(share), share)
 
     def found(self, film: Film, share: float) -> MixedFilm:
-        """Return the shared load; the asperities' stiffness at the contact's width."""
-        pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
-        stiffness = 0.0
-        if share > 0.0:
-            stiffness = -share * self.contact.load * float(slope) / float(pressure)
+        """Return the shared load, with the asperities' stiffness at the contact's width and both derivatives."""
         if not film.converged:
             return self.failed(film, film.message)
+        stiffness, slopes = 0.0, (film.prop_slope, film.central_slope)
+        if share > 0.0:
+            pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
+            steep = float(slope) / float(pressure)
+            stiffness = -share * self.contact.load * steep
+            try:
+                slopes = self.slopes(film, share, steep)
+            except _NoFilmError as reason:
+                return self.failed(self.last, str(reason))
         return MixedFilm(
             self.contact,
             self.roughness,
             film,
             share,
             stiffness,
+            *slopes,
             film.error,
             self.rounds,
             converged=True,
             message="converged",
         )
+
+    def slopes(self, film: Film, share: float, steep: float) -> tuple[float, float]:
+        """Derivatives of prop and central film by the load, the share moving along.
+
+        ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw; the film's own derivatives by w are known, those by s are
+        differences of two films at neighbouring odds.
+        """
+        odds = math.log(share / (1.0 - share))
+        sides = [self.film_at(1.0 / (1.0 + math.exp(-odds - step))) for step in (-_ODDS_STEP, _ODDS_STEP)]
+        for side in sides:
+            if not side.converged:
+                raise _NoFilmError(side.message)
+        prop_s, central_s = (
+            (getattr(sides[1], name) - getattr(sides[0], name)) / (2.0 * _ODDS_STEP)
+            for name in ("prop", "central_thickness")
+        )
+        prop_w, central_w = (1.0 - share) * film.prop_slope, (1.0 - share) * film.central_slope
+
+        def asked(load: float, at: float) -> float:
+            contact = replace(self.contact, load=load)
+            return math.log(central_asperity_pressure(contact, self.roughness, 1.0 / (1.0 + math.exp(-at))))
+
+        load, step = self.contact.load, 1e-6
+        by_load = (asked(load * (1 + step), odds) - asked(load * (1 - step), odds)) / (2 * step * load)
+        by_odds = (asked(load, odds + step) - asked(load, odds - step)) / (2 * step)
+        follow = (by_load - steep * central_w) / (steep * central_s - by_odds)
+        return prop_w + prop_s * follow, central_w + central_s * follow
 
     def failed(self, film: Film, reason: str) -> MixedFilm:
         """Return no figures."""
@@ -252,6 +289,8 @@ class _Search:
             self.contact,
             self.roughness,
             blank,
+            nan,
+            nan,
             nan,
             nan,
             nan,

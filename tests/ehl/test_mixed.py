@@ -132,18 +132,26 @@ def test_the_loads_of_film_and_asperities_add_up(rough):
     assert mixed.rounds < 20
 
 
-@pytest.mark.parametrize(("u", "within"), [(1.0, 0.1), (0.001, 0.15)])
-def test_parallel_stiffness_against_differences(u, within):
-    # the parallel springs are at fixed width; a contact that widens as w^1/2 is stiffer by 1/(1 - s/2)
-    contact, step = replace(PITCH, entrainment=u), 0.01
-    mixed = quiet(solve_mixed, contact, STIFF)
+@pytest.mark.parametrize("rough", [STIFF, SOFT])
+@pytest.mark.parametrize("u", [1.0, 0.1, 0.01, 1e-4])
+def test_derivatives_by_the_load_against_differences(u, rough):
+    contact, step = replace(PITCH, entrainment=u), 0.02
+    mixed = quiet(solve_mixed, contact, rough, 2e-3)
     light, heavy = (
-        quiet(solve_mixed, replace(contact, load=contact.load * f), STIFF, 1e-3) for f in (1 - step, 1 + step)
+        quiet(solve_mixed, replace(contact, load=contact.load * f), rough, 2e-3) for f in (1 - step, 1 + step)
     )
-    by_difference = -2 * step * contact.load / (heavy.central_thickness - light.central_thickness)
-    widening = 1.0 / (1.0 - 0.5 * mixed.asperity_share)
-    assert mixed.stiffness("tangent") * widening == pytest.approx(by_difference, rel=0.05 if u == 1 else 0.25)
-    assert mixed.stiffness("tangent") < by_difference * (1 + within)
+    change = 2 * step * contact.load
+    by_difference = (heavy.central_thickness - light.central_thickness) / change
+    assert mixed.central_slope == pytest.approx(by_difference, rel=0.05)
+    by_difference = (heavy.prop - light.prop) / change
+    assert mixed.prop_slope == pytest.approx(by_difference, rel=0.05)
+
+
+def test_parallel_springs_leave_out_that_the_contact_widens():
+    # p_a b ~ w with p_a and b each as w^1/2: at s = 1 half of the whole stiffness
+    for u, factor in ((1.0, 1.0), (1e-4, 0.5)):
+        mixed = quiet(solve_mixed, replace(PITCH, entrainment=u), STIFF)
+        assert mixed.stiffness("tangent") * -mixed.central_slope == pytest.approx(factor, abs=0.1)
 
 
 def test_starved_and_rough():
