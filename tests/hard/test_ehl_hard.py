@@ -248,3 +248,25 @@ def test_starved_and_light():
         film = sound(solve(contact, supply=OilLayer(0.3 * flooded.flow)))
         assert film.flow == pytest.approx(0.3 * flooded.flow, rel=1e-8)
         assert film.stiffness() > flooded.stiffness()
+
+
+def check_random_supplies(number):
+    """Starve random contacts: a meniscus 0.003 to 3 b ahead, a layer of 2 to 95 % of the flooded flow."""
+    rng = np.random.default_rng()
+    for _ in range(number):
+        contact = random_contact(rng)
+        meniscus = Meniscus(-(1 + 10 ** rng.uniform(-2.5, 0.5)) * contact.half_width)
+        sound(solve(contact, supply=meniscus))
+        layer = 10 ** rng.uniform(-1.7, -0.02) * sound(solve(contact)).flow
+        film = sound(solve(contact, supply=OilLayer(layer)))
+        if film.starved:
+            assert film.flow == pytest.approx(layer, rel=1e-8)
+
+
+def test_a_few_random_supplies():
+    check_random_supplies(8)
+
+
+@pytest.mark.slow
+def test_random_supplies():
+    check_random_supplies(300)
