@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from dynamics.grazing import contact_orbit as contact_orbit
     from dynamics.oscillator import GearOscillator as GearOscillator
     from dynamics.scaling import Scaling as Scaling
+    from dynamics.sensitivity import MapDerivatives as MapDerivatives
+    from dynamics.sensitivity import map_derivatives as map_derivatives
     from dynamics.shooting import Orbit as Orbit
     from dynamics.shooting import find_orbit as find_orbit
     from dynamics.special import SpecialPoint as SpecialPoint
@@ -55,6 +57,7 @@ _HOMES = {
     "FourierFit": "fourier",
     "FourierStiffness": "stiffness",
     "GearOscillator": "oscillator",
+    "MapDerivatives": "sensitivity",
     "Orbit": "shooting",
     "Scaling": "scaling",
     "SpecialPoint": "special",
@@ -64,6 +67,7 @@ _HOMES = {
     "contact_orbit": "grazing",
     "find_orbit": "shooting",
     "fit_fourier": "fourier",
+    "map_derivatives": "sensitivity",
     "period_map": "flow",
     "sweep": "sweeps",
     "trajectory": "flow",

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.corrector import BranchProblem, Point
+from dynamics.corrector import OrbitProblem, Point
 from dynamics.cost import Cost
-from dynamics.crossings import find_crossings, locate
+from dynamics.crossings import Crossing, find_crossings, locate
 from dynamics.errors import Faults
 from dynamics.shooting import Orbit, floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
@@ -156,7 +156,9 @@ def continue_branch(
     limit = faults.whole("max_points", max_points, 1, 10**7, "5000 is usual")
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.half_backlash, 1e-300)
-    problem = BranchProblem(orbit.oscillator, parameter, orbit.periods, low, high, scale)
+    problem = OrbitProblem(
+        orbit.oscillator, (parameter,), orbit.periods, np.array([low]), np.array([high]), scale
+    )
     flat = np.array([0.0, 0.0, 1.0])
     start = problem.correct(problem.unknowns(orbit.state, value), flat)
     if start is None:
@@ -177,7 +179,7 @@ class _Walker:
     """Steps from a start in one direction until a reason to end."""
 
     def __init__(
-        self, problem: BranchProblem, start: Point, along: FloatArray, steps: tuple[float, float, float],
+        self, problem: OrbitProblem, start: Point, along: FloatArray, steps: tuple[float, float, float],
         limit: int, progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         self.problem, self.limit, self.progress = problem, limit, progress
@@ -199,13 +201,14 @@ class _Walker:
                 self.ended = f"{self.limit} points: raise max_points"
                 return
             last = self.points[-1]
-            new = self._try(last)
-            if new is None:
+            step = self._try(last)
+            if step is None:
                 self.step *= 0.5
                 if self.step < self.min_step:
                     self.ended = f"{self.refused} at a step of {self.step:.0e}"
                 continue
-            self._accept(last, new)
+            self._accept(last, step)
+            new = step.point
             distance = float(np.linalg.norm(new.u - start.u))
             away = away or distance > 4.0 * self.max_step
             if away and distance < self.step and (start.u - last.u) @ (new.u - last.u) > 0.0:
@@ -213,7 +216,7 @@ class _Walker:
             elif float(np.max(np.abs(new.u[:2]))) > 1e6:
                 self.ended = "the motion grows without bound"
 
-    def _try(self, last: Point) -> Point | None:
+    def _try(self, last: Point) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
         guess = last.u + self.step * self.tangent
         row = self.tangent
@@ -229,28 +232,29 @@ class _Walker:
         new = self.problem.correct(guess, row)
         if new is None or new.iterations > 8:
             return None
-        if np.linalg.norm(new.u - last.u) > 2.0 * self.step and math.isnan(bound):
+        chord = new.u - last.u
+        if math.sqrt(chord @ chord) > 2.0 * self.step and math.isnan(bound):
             return None
-        tangent = self.problem.tangent(new, new.u - last.u)
+        tangent = self.problem.tangent(new, chord)
+        patient = self.step > 16.0 * self.min_step
         self.refused = "the branch has a corner"
-        if tangent @ self.tangent < 0.9 and self.step > 16.0 * self.min_step:
+        if tangent @ self.tangent < 0.9 and patient:
             return None
         self.refused = "the multipliers jump"
-        change = abs(new.trace - last.trace)
-        if change > 0.3 * max(1.0, abs(last.trace)) and self.step > 16.0 * self.min_step:
+        if abs(new.trace - last.trace) > 0.3 * max(1.0, abs(last.trace)) and patient:
             return None
-        _, explained = find_crossings(self.problem, last, new)
-        if not explained and self.step > 16.0 * self.min_step:
-            return None
-        return new
-
-    def _accept(self, last: Point, new: Point) -> None:
-        """Take a point, locate what lies between, choose the next step."""
         crossings, explained = find_crossings(self.problem, last, new)
-        if not explained:
+        if not explained and patient:
+            return None
+        return _Step(new, tangent, crossings, explained)
+
+    def _accept(self, last: Point, step: _Step) -> None:
+        """Take a point, locate what lies between, choose the next step."""
+        new = step.point
+        if not step.explained:
             self.missed.append(new.value)
         found = []
-        for crossing in crossings:
+        for crossing in step.crossings:
             special = locate(self.problem, last, new, crossing)
             if special is None:
                 self.missed.append(new.value)
@@ -261,7 +265,7 @@ class _Walker:
         self.special += found
         self.points.append(new)
         self.iterations += new.iterations
-        self.tangent = self.problem.tangent(new, chord)
+        self.tangent = step.tangent
         if new.u[2] in (0.0, 1.0):
             self.ended = "bound"
         if new.iterations <= 4:
@@ -270,7 +274,17 @@ class _Walker:
             self.progress(len(self.points), new.value)
 
 
-def _branch(problem: BranchProblem, walkers: list[_Walker], began: float) -> Branch:
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A step that may be taken."""
+
+    point: Point
+    tangent: FloatArray
+    crossings: list[Crossing]
+    explained: bool
+
+
+def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Branch:
     """Join the two directions into one record."""
     back = walkers[0]
     points, special = back.points[::-1], back.special[::-1]
@@ -284,10 +298,10 @@ def _branch(problem: BranchProblem, walkers: list[_Walker], began: float) -> Bra
     good = all(reason in ("bound", "closed") for reason in ended) and not missed
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
     if missed:
-        message += f"; not located near {problem.parameter} = {missed[0]:.10g}: lower min_step"
+        message += f"; not located near {problem.parameters[0]} = {missed[0]:.10g}: lower min_step"
     iterations = sum(w.iterations for w in walkers)
     return Branch(
-        problem.parameter,
+        problem.parameters[0],
         problem.periods,
         np.array([p.value for p in points]),
         np.array([p.state for p in points]),

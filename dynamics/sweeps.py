@@ -198,10 +198,10 @@ def repeat_after(states: FloatArray, longest: int, tolerance: float = 1e-6) -> i
 
 def _follow(table: Tables, state: FloatArray, skip: int, states: FloatArray, counts: IntArray) -> bool:
     """Fill `states` and `counts`, leave the last state in `state`; False if the motion is lost."""
-    from dynamics import kernels
+    from dynamics.kernels.flow import iterate
 
     unused = np.eye(2)
-    return not kernels.iterate(table.arrays, state, skip, 0, unused, states, counts)
+    return not iterate(table.arrays, state, skip, 0, unused, states, counts)
 
 
 def _map_error(oscillator: GearOscillator, before: FloatArray, after: FloatArray) -> float:
