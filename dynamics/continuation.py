@@ -20,6 +20,7 @@ from dynamics.special import SpecialPoint
 __all__ = ["KINDS", "Branch", "continue_branch"]
 
 FloatArray = npt.NDArray[np.float64]
+MEETS = "meets the branch of half the period"
 KINDS = ("saddle-node", "period-doubling", "grazing")
 
 
@@ -52,8 +53,8 @@ class Branch:
     cost : Cost
         Effort.
     converged : bool
-        Whether both ends were reached for a good reason (a bound, the start again) and every special point seen
-        was located.
+        Whether both ends were reached for a good reason (a bound, the start again, the branch of half the period)
+        and every special point seen was located.
     message : str
         What happened, with a remedy if not converged.
     """
@@ -187,6 +188,8 @@ class _Walker:
         self.points = [start]
         self.special: list[SpecialPoint] = []
         self.tangent = problem.tangent(start, along)
+        even = problem.periods % 2 == 0
+        self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
         self.ended = ""
         self.missed: list[float] = []
         self.iterations = 0
@@ -207,8 +210,14 @@ class _Walker:
                 if self.step < self.min_step:
                     self.ended = f"{self.refused} at a step of {self.step:.0e}"
                 continue
-            self._accept(last, step)
             new = step.point
+            if self.problem.periods % 2 == 0:
+                half = self.problem.half_way(new) - new.u[:2]
+                if half @ self.half < 0.0:  # the two halves of the orbit have changed places
+                    self.ended = MEETS
+                    return
+                self.half = half
+            self._accept(last, step)
             distance = float(np.linalg.norm(new.u - start.u))
             away = away or distance > 4.0 * self.max_step
             if away and distance < self.step and (start.u - last.u) @ (new.u - last.u) > 0.0:
@@ -295,7 +304,7 @@ def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Bran
     pairs = [floquet_multipliers(p.trace, p.determinant) for p in points]
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
-    good = all(reason in ("bound", "closed") for reason in ended) and not missed
+    good = all(reason in ("bound", "closed", MEETS) for reason in ended) and not missed
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
     if missed:
         message += f"; not located near {problem.parameters[0]} = {missed[0]:.10g}: lower min_step"

@@ -200,6 +200,18 @@ class OrbitProblem:
             return self.evaluate(u, refinement)
         return self._point(u, store, turned, residual, iterations)
 
+    def half_way(self, point: Point) -> FloatArray:
+        """Unknowns X and V after half the orbit's period; n must be even."""
+        from dynamics.kernels.flow import iterate
+        from dynamics.kernels.tables import tabulate
+
+        q, order = self.packed(point.u), self._order
+        coef, edge = tabulate(q[:8], q[8 : 8 + order], q[8 + order :], self._cells(point.u, 1), DEGREE)
+        half = self.periods // 2
+        states, counts, state = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64), point.state.copy()
+        iterate((q[:8], coef, edge), state, half - 1, 0, np.empty((3, 2)), states, counts)
+        return state / self.scale
+
     def tangent(self, point: Point, along: FloatArray) -> FloatArray:
         """Unit vector along the branch of one parameter, turned to the side of `along`."""
         (a, b, c), (d, e, f) = point.derivative.tolist()

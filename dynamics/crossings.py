@@ -106,7 +106,8 @@ def record(
         touch["stiffness"] = float(here.stiffness(here.frequency * tau))
     relative = max(float(error) / max(abs(point.value), 1e-300), EPS)
     return SpecialPoint(
-        condition.kind, point.value, point.state, multipliers, label, relative, condition.boundary, **touch
+        condition.kind, point.value, point.state, multipliers, label, relative, problem.periods,
+        condition.boundary, **touch
     )  # fmt: skip
 
 

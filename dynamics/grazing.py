@@ -209,7 +209,7 @@ def contact_grazing(
         error = max(abs(clearance(root, 2) / slope / root) if root else 0.0, EPS)
         found.append(
             SpecialPoint(
-                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, side, orbit.tau,
+                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, 1, side, orbit.tau,
                 orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
             )
         )  # fmt: skip
