@@ -96,9 +96,10 @@ def special_orbit(
             return None
         # the determinant and trace of the measure are as exact as the entries of the Jacobian
         size = float(np.max(np.abs(off))) / max(1.0, float(np.max(np.abs(point.jacobian))))
-        if size < best:
+        closed = point.residual <= rounding(point)
+        if size < best or (closed and kept is not None and kept.residual > rounding(kept)):
             best, kept = size, point
-        elif best < 1e-11:
+        elif best < 1e-11 and kept is not None and kept.residual <= rounding(kept):
             break
         try:
             step = np.linalg.solve(matrix, -off)
@@ -107,7 +108,7 @@ def special_orbit(
         length = float(np.max(np.abs(step)))
         if not length < 0.3:
             return None
-        if length < 1e-15 or (best < 1e-11 and length < 1e-13):
+        if closed and (length < 1e-15 or (best < 1e-11 and length < 1e-13)):
             break
         u = u + step
         if iteration > 4 and best > 1e-3:

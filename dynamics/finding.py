@@ -21,6 +21,7 @@ __all__ = ["IndexCount", "OrbitSet", "find_orbits"]
 
 FloatArray = npt.NDArray[np.float64]
 Region = tuple[tuple[float, float], tuple[float, float]]
+BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
@@ -132,6 +133,7 @@ def find_orbits(
     for n in wanted:
         for fineness in (1, 2, 4):
             search.run(n, side * fineness)
+            search.twins(n)
             count = search.count(n)
             if count.expected is None or count.found == count.expected:
                 break
@@ -180,6 +182,32 @@ class _Search:
         self.periods += int(used)
         for point in found[number:last]:
             if not any(np.min(np.max(np.abs(p - point), axis=1)) < 1e-7 * self.scale for p in self.points):
+                self._keep(find_orbit(self.oscillator, point, periods=n))
+
+    def twins(self, n: int) -> None:
+        """Search beside orbits close to a bifurcation for their partners, which deflation pushes away.
+
+        Those are the other orbit of a saddle node and the doubled orbit of a period doubling.
+        """
+        from dynamics.kernels.searching import hunt
+
+        starts = []
+        for orbit in self.orbits:
+            critical = {n: 1.0, n / 2: -1.0}.get(orbit.periods)
+            if critical is None:
+                continue
+            values, vectors = np.linalg.eig(orbit.jacobian)
+            k = int(np.argmin(np.abs(values - critical)))
+            if abs(values[k] - critical) < 0.5:
+                along = np.real(vectors[:, k])
+                starts += [
+                    orbit.state + sign * self.scale * size * along for size in BESIDE for sign in (1, -1)
+                ]
+        if starts:
+            found = np.empty((4096, 2))
+            last, used = hunt(self.table.arrays, np.array(starts), n, 20, self.scale, found, 0)
+            self.periods += int(used)
+            for point in found[:last]:
                 self._keep(find_orbit(self.oscillator, point, periods=n))
 
     def count(self, n: int) -> IndexCount:

@@ -221,6 +221,7 @@ class _Tracer:
         self.double: list[DoublePoint] = []
         tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3]))
         self.tangent = tangent * sign
+        self.null = _cusp(start, np.ones(2))[1]
         self.ended = ""
 
     def run(self) -> None:
@@ -274,6 +275,7 @@ class _Tracer:
         for kind, before, after in self._tests(last, new):
             if before * after < 0.0:
                 self._mark(kind, last, new, before, after)
+        self.null = _cusp(new, self.null)[1]
         self.points.append(new)
         self.tangent = tangent
         if self.condition.kind == "grazing":
@@ -298,7 +300,7 @@ class _Tracer:
         kind = self.condition.kind
         tests: list[tuple[str, float, float]] = []
         if kind == "saddle-node":
-            tests.append(("cusp", *_cusps(a, b)))
+            tests.append(("cusp", _cusp(a, self.null)[0], _cusp(b, self.null)[0]))
         if kind == "grazing":
             tests.append(("saddle-node and grazing", a.fold, b.fold))
             tests.append(("period-doubling and grazing", a.flip, b.flip))
@@ -370,18 +372,15 @@ class _Tracer:
         return "ends at a grazing" if gap < 1e-4 else "Newton's method did not arrive"
 
 
-def _cusps(a: Point, b: Point) -> tuple[float, float]:
-    """Second derivative of the map along its null vector, projected on the left one, at two neighbours."""
-    found, reference = [], None
-    for point in (a, b):
-        left, _, right = np.linalg.svd(point.jacobian - np.eye(2))
-        w, q = left[:, 1], right[1]
-        if reference is not None:
-            w = w * (1.0 if w @ reference[0] >= 0.0 else -1.0)
-            q = q * (1.0 if q @ reference[1] >= 0.0 else -1.0)
-        reference = (w, q)
-        found.append(float(w @ np.einsum("k,kij,j->i", q, point.second[:2], q)))
-    return found[0], found[1]
+def _cusp(point: Point, reference: FloatArray) -> tuple[float, FloatArray]:
+    """Second derivative of the map along its null vector, projected on the left one, and the null vector.
+
+    Its sign is that of the null vector, which is turned to the side of a reference, that of a neighbour.
+    """
+    left, _, right = np.linalg.svd(point.jacobian - np.eye(2))
+    w, q = left[:, 1], right[1] if right[1] @ reference >= 0.0 else -right[1]
+    value = float(w @ np.einsum("k,kij,j->i", q, point.second[:2], q))
+    return value if w @ q >= 0.0 else -value, q
 
 
 def _locus(problem: OrbitProblem, condition: Condition, tracers: list[_Tracer], began: float) -> Locus:

@@ -162,7 +162,8 @@ def iterate(
     region, y = start(state[0], state[1], par)
     w = state[1] * h
     if want > 0:
-        jac[1] *= h
+        jac[1, 0] *= h
+        jac[1, 1] *= h
     for period in range(skip + len(states)):
         count[0] = count[1] = 0
         for cell in range(cells):
@@ -190,7 +191,8 @@ def iterate(
     state[0] = y + region * par[HALF_BACKLASH]
     state[1] = w / h
     if want > 0:
-        jac[1] /= h
+        jac[1, 0] /= h
+        jac[1, 1] /= h
     return FINE
 
 
@@ -209,12 +211,14 @@ def partial(
     work, choose = np.empty((3, table[1].shape[2])), binomials(table[1].shape[2] - 1)
     region, y = start(state[0], state[1], par)
     w = state[1] * h
-    jac[1] *= h
+    jac[1, 0] *= h
+    jac[1, 1] *= h
     for at in range(first, first + number):
         region, y, w, flag = cross_cell(table, at % cells, region, y, w, ONE, jac, work, choose, counts)
         if flag != FINE:
             return flag
     state[0] = y + region * par[HALF_BACKLASH]
     state[1] = w / h
-    jac[1] /= h
+    jac[1, 0] /= h
+    jac[1, 1] /= h
     return FINE if abs(y) < 1e150 and abs(w) < 1e150 else DIVERGED

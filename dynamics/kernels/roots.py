@@ -21,6 +21,23 @@ def poly(c: FloatArray, first: int, t: float) -> tuple[float, float, float]:
 
 
 @helper
+def copy(source: FloatArray, target: FloatArray) -> None:
+    """Copy a vector (a slice assignment takes much longer to compile)."""
+    for k in range(len(source)):
+        target[k] = source[k]
+
+
+@helper
+def largest(matrix: FloatArray, columns: int) -> float:
+    """Largest modulus in the first columns."""
+    size = 0.0
+    for i in range(matrix.shape[0]):
+        for j in range(columns):
+            size = max(size, abs(matrix[i, j]))
+    return size
+
+
+@helper
 def binomials(n: int) -> FloatArray:
     """Table [j, i] of (i + j over j) for `shift`."""
     table = np.ones((n + 1, n + 1))

@@ -6,6 +6,7 @@ import numpy as np
 
 from dynamics.kernels.compiling import FINE, ONE, ZERO, FloatArray, IntArray, Table, kernel
 from dynamics.kernels.flow import iterate
+from dynamics.kernels.roots import largest
 
 
 @kernel
@@ -42,6 +43,38 @@ def settle(
 
 
 @kernel
+def calm(
+    table: Table, state: FloatArray, limit: int, states: FloatArray, counts: IntArray, tolerance: float
+) -> int:
+    """Follow `state` for `limit` periods, or until it repeats to rounding; returns flag < 0 or periods used.
+
+    `states`, (2 n, 2), and `counts` are work space: the motion is looked at every 2 n periods and must repeat after
+    n periods or fewer, within `tolerance` of its size.
+    """
+    jac = np.zeros((3, 2))
+    longest = len(states) // 2
+    used = 0
+    while used + len(states) <= limit:
+        flag = iterate(table, state, ZERO, ZERO, jac, states, counts)
+        if flag != FINE:
+            return -flag
+        used += len(states)
+        size = 1e-300
+        for k in range(len(states)):
+            size = max(size, abs(states[k, 0]), abs(states[k, 1]))
+        for n in range(1, longest + 1):
+            off = 0.0
+            for k in range(len(states) - n):
+                off = max(off, abs(states[k + n, 0] - states[k, 0]), abs(states[k + n, 1] - states[k, 1]))
+                if off > tolerance * size:
+                    break
+            if off <= tolerance * size:
+                return used
+    flag = iterate(table, state, limit - used, ZERO, jac, states[:0], counts[:0]) if limit > used else FINE
+    return limit if flag == FINE else -flag
+
+
+@kernel
 def hunt(
     table: Table, starts: FloatArray, periods: int, limit: int, scale: float, found: FloatArray, known: int
 ) -> tuple[int, int]:
@@ -67,7 +100,7 @@ def hunt(
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
-            stretch = max(1.0, np.max(np.abs(jac)))
+            stretch = max(1.0, largest(jac, 2))
             if near <= 1e-13 * scale * stretch:
                 break
             a, b, c, e = 1.0 - jac[0, 0], -jac[0, 1], -jac[1, 0], 1.0 - jac[1, 1]
@@ -88,7 +121,7 @@ def hunt(
             if not (abs(at0) < 1e3 * scale and abs(at1) < 1e3 * scale):
                 near = math.inf
                 break
-        if not near <= 1e-12 * scale * max(1.0, np.max(np.abs(jac))):
+        if not near <= 1e-12 * scale * max(1.0, largest(jac, 2)):
             continue
         new = True
         for k in range(known):
@@ -102,7 +135,7 @@ def hunt(
             for k in range(known):
                 old = old or max(abs(found[k, 0] - x[0]), abs(found[k, 1] - x[1])) < 1e-7 * scale
             if not old:
-                found[known] = x
+                found[known, 0], found[known, 1] = x[0], x[1]
                 known += 1
             iterate(table, x, ZERO, ZERO, jac, image, counts)
             used += 1

@@ -27,7 +27,7 @@ from dynamics.kernels.compiling import (
 )
 from dynamics.kernels.flow import basis, expand
 from dynamics.kernels.regions import clear, enter, leave, start
-from dynamics.kernels.roots import binomials, find_turn, poly, shift
+from dynamics.kernels.roots import binomials, copy, find_turn, largest, poly, shift
 from dynamics.kernels.tables import differentiate, tabulate
 
 
@@ -106,13 +106,6 @@ def play(ways: FloatArray, way: int) -> float:
 def stretch(par: FloatArray, ways: FloatArray, way: int) -> float:
     """Relative change of the cell's length in a direction."""
     return float(-ways[way - 2, FREQUENCY] / par[FREQUENCY]) if way >= 2 else 0.0
-
-
-@helper
-def copy(source: FloatArray, target: FloatArray) -> None:
-    """Copy a vector (a slice assignment takes much longer to compile)."""
-    for k in range(len(source)):
-        target[k] = source[k]
 
 
 @helper
@@ -289,16 +282,6 @@ def probe(
     state[1] = w / h
     finish(par, ways, region, w, h, lin, bend)
     return FINE, turned
-
-
-@helper
-def largest(matrix: FloatArray, columns: int) -> float:
-    """Largest modulus in the first columns."""
-    size = 0.0
-    for i in range(matrix.shape[0]):
-        for j in range(columns):
-            size = max(size, abs(matrix[i, j]))
-    return size
 
 
 @helper

@@ -18,7 +18,7 @@ from dynamics.kernels.compiling import (
 )
 from dynamics.kernels.flow import expand
 from dynamics.kernels.regions import enter, leave, start
-from dynamics.kernels.roots import binomials, find_turn, poly, shift
+from dynamics.kernels.roots import binomials, copy, find_turn, poly, shift
 
 
 @kernel
@@ -60,14 +60,14 @@ def walk(
                 samples[filled, 1] = df / h
                 filled += 1
             done = 0.0
-            rest[:] = a
+            copy(a, rest)
             while len(turns) > 0:
                 way, step = find_turn(rest, g, b, t - done, way if done == 0.0 else ZERO)
                 if step < 0.0:
                     break
                 way = -way
                 shift(rest, step, choose, spare)
-                rest[:] = spare
+                copy(spare, rest)
                 rest[1] = 0.0
                 done += step
                 if turned < len(turns):

@@ -13,6 +13,7 @@ from dynamics import (
     contact_grazing,
     contact_orbit,
     find_orbit,
+    find_orbits,
     period_map,
     sweep,
 )
@@ -188,3 +189,24 @@ def test_repeat_after():
 def test_small_subharmonic_is_a_longer_period():
     wave = np.array([[1.0, 2.0]]) + 1e-3 * (-1.0) ** np.arange(40)[:, None]
     assert repeat_after(wave, 8) == 2
+
+
+@pytest.mark.parametrize("off", [5e-4, 1e-4, 1e-5])
+def test_slow_motions_next_to_a_period_doubling_are_named_right(article, off):
+    """1-1-0 doubles at 0.8872414998606: with a multiplier of -1 + O(off) it takes up to 1e5 periods to settle."""
+    doubling = 0.8872414998606
+    before = article(frequency=doubling - off)
+    orbit = next(o for o in find_orbits(before, (1,)).orbits if o.label == "1-1-0")
+    assert orbit.multipliers[0] == pytest.approx(-1.0, abs=30 * off)
+    result = sweep(before, values=[doubling - off], initial=orbit.state + np.array([1e-4, 0.0]), keep=32)
+    assert result.labels == ("1-1-0",)
+    result = sweep(before, values=[doubling + off], initial=orbit.state + np.array([1e-4, 0.0]), keep=32)
+    assert result.periods[0] == 2
+
+
+def test_a_settled_motion_is_not_followed_to_the_end(article):
+    """The transient ends where the motion repeats to rounding; the states kept are the same."""
+    long = sweep(article(), values=[0.5], transient=2000, keep=32)
+    short = sweep(article(), values=[0.5], keep=32)
+    assert long.cost.periods < 500
+    np.testing.assert_allclose(long.states, short.states, rtol=0, atol=1e-12)
