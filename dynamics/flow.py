@@ -146,7 +146,7 @@ def tables(oscillator: GearOscillator, refinement: int = 1, degree: int = DEGREE
 
     faults = Faults()
     faults.whole("refinement", refinement, 1, 1000, "2 is enough for an error estimate")
-    faults.whole("degree", degree, 6, 60, "13 leaves rounding alone")
+    faults.whole("degree", degree, 6, 60, "12 leaves rounding alone")
     faults.raise_if_any()
     packed, order = oscillator.packed(), oscillator.stiffness.order
     cells = math.ceil(oscillator.cells) * refinement

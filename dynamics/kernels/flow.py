@@ -39,17 +39,10 @@ def basis(coef: FloatArray, row: int, s: float) -> tuple[float, float, float, fl
 
 @helper
 def expand(
-    coef: FloatArray,
-    edge: FloatArray,
-    row: int,
-    s: float,
-    y: float,
-    w: float,
-    work: FloatArray,
+    coef: FloatArray, edge: FloatArray, row: int, s: float, y: float, w: float, a: FloatArray, b: FloatArray,
     choose: FloatArray,
-) -> None:
-    """Taylor coefficients work[0] about s of the solution through (y, w) at s."""
-    a, b = work[0], work[1]
+) -> None:  # fmt: skip
+    """Taylor coefficients `a` about s of the solution through (y, w) at s; `b` is work space."""
     if s == -0.5:
         c0 = edge[row, 9] * y + edge[row, 10] * w + edge[row, 13]
         c1 = edge[row, 11] * y + edge[row, 12] * w + edge[row, 14]
@@ -89,18 +82,16 @@ def apply(edge: FloatArray, row: int, jac: FloatArray) -> None:
 
 @helper
 def cross_cell(
-    table: Table, cell: int, region: int, y: float, w: float, want: int, jac: FloatArray, work: FloatArray,
-    choose: FloatArray, count: IntArray,
+    par: FloatArray, coef: FloatArray, edge: FloatArray, cell: int, region: int, y: float, w: float, want: int,
+    jac: FloatArray, a: FloatArray, b: FloatArray, g: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
     """State at the end of a cell that may hold impacts; counts exits and entries."""
-    par, coef, edge = table
-    a, b, g = work[0], work[1], work[2]
     cells = len(edge) // 2
     s = -0.5
     fresh = ZERO
     for _ in range(MAX_EVENTS):
         row = cell if region != 0 else cell + cells
-        expand(coef, edge, row, s, y, w, work, choose)
+        expand(coef, edge, row, s, y, w, a, b, choose)
         t, hit = leave(region, par, a, g, b, 0.5 - s, fresh)
         if hit == 0 and s == -0.5:  # nothing happened: the map of the whole cell holds
             if want > 0:
@@ -154,10 +145,11 @@ def iterate(
     ends at the last period. `want` 1: the rows 0 and 1 of `jac` are multiplied by the derivative of the map;
     2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2.
     """
-    par, _, edge = table
+    par, coef, edge = table
     cells = len(edge) // 2
     h = 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose = np.empty((3, table[1].shape[2])), binomials(table[1].shape[2] - 1)
+    n = coef.shape[2]
+    a, b, g, choose = np.empty(n), np.empty(n), np.empty(n), binomials(n - 1)
     count = np.zeros(2, dtype=np.int64)
     region, y = start(state[0], state[1], par)
     w = state[1] * h
@@ -176,7 +168,9 @@ def iterate(
                 if want > 0:
                     apply(edge, row, jac)
             else:
-                region, y, w, flag = cross_cell(table, cell, region, y, w, want, jac, work, choose, count)
+                region, y, w, flag = cross_cell(
+                    par, coef, edge, cell, region, y, w, want, jac, a, b, g, choose, count
+                )
                 if flag != FINE:
                     return flag
             if want == 2 and (cell % 8 == 7 or cell == cells - 1):
@@ -205,16 +199,19 @@ def partial(
     The state is taken in (X, V) at the start of the first cell. The region of a state on a boundary is decided by
     its speed.
     """
-    par, _, edge = table
+    par, coef, edge = table
     cells = len(edge) // 2
     h = 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose = np.empty((3, table[1].shape[2])), binomials(table[1].shape[2] - 1)
+    n = coef.shape[2]
+    a, b, g, choose = np.empty(n), np.empty(n), np.empty(n), binomials(n - 1)
     region, y = start(state[0], state[1], par)
     w = state[1] * h
     jac[1, 0] *= h
     jac[1, 1] *= h
     for at in range(first, first + number):
-        region, y, w, flag = cross_cell(table, at % cells, region, y, w, ONE, jac, work, choose, counts)
+        region, y, w, flag = cross_cell(
+            par, coef, edge, at % cells, region, y, w, ONE, jac, a, b, g, choose, counts
+        )
         if flag != FINE:
             return flag
     state[0] = y + region * par[HALF_BACKLASH]

@@ -222,7 +222,7 @@ def probe(
             if event == MAX_EVENTS:
                 return CROWDED, turned
             row = cell if region != 0 else cell + cells
-            expand(coef, edge, row, s, y, w, work, choose)
+            expand(coef, edge, row, s, y, w, a, b, choose)
             t, hit = leave(region, par, a, g, b, 0.5 - s, fresh)
             done = 0.0
             copy(a, rest)

@@ -49,7 +49,7 @@ def walk(
             if event == MAX_EVENTS:
                 return CROWDED, turned, happened
             now = global_cell + s + 0.5
-            expand(coef, edge, cell if region != 0 else cell + cells, s, y, w, work, choose)
+            expand(coef, edge, cell if region != 0 else cell + cells, s, y, w, a, b, choose)
             t, hit = leave(region, par, a, g, b, 0.5 - s, fresh)
             while points > 0 and filled < len(samples):
                 at = filled * (cells / points) - now
