@@ -12,6 +12,7 @@ from dynamics.kernels.compiling import (
     HALF_BACKLASH,
     MAX_EVENTS,
     ONE,
+    SIDES,
     ZERO,
     FloatArray,
     IntArray,
@@ -38,24 +39,56 @@ def basis(coef: FloatArray, row: int, s: float) -> tuple[float, float, float, fl
 
 
 @helper
+def middle(coef: FloatArray, edge: FloatArray, row: int, s: float, y: float, w: float) -> tuple[float, float]:
+    """State at the middle of the cell of the solution through (y, w) at s."""
+    if s == -0.5:
+        c0 = edge[row, 9] * y + edge[row, 10] * w + edge[row, 13]
+        return c0, edge[row, 11] * y + edge[row, 12] * w + edge[row, 14]
+    f0, f1, f2, g0, g1, g2 = basis(coef, row, s)
+    wronskian = f0 * g1 - f1 * g0
+    p, q = y - f2, w - g2
+    return (p * g1 - q * f1) / wronskian, (q * f0 - p * g0) / wronskian
+
+
+@helper
 def expand(
     coef: FloatArray, edge: FloatArray, row: int, s: float, y: float, w: float, a: FloatArray, b: FloatArray,
     choose: FloatArray,
 ) -> None:  # fmt: skip
     """Taylor coefficients `a` about s of the solution through (y, w) at s; `b` is work space."""
-    if s == -0.5:
-        c0 = edge[row, 9] * y + edge[row, 10] * w + edge[row, 13]
-        c1 = edge[row, 11] * y + edge[row, 12] * w + edge[row, 14]
-    else:
-        f0, f1, f2, g0, g1, g2 = basis(coef, row, s)
-        wronskian = f0 * g1 - f1 * g0
-        p, q = y - f2, w - g2
-        c0, c1 = (p * g1 - q * f1) / wronskian, (q * f0 - p * g0) / wronskian
+    c0, c1 = middle(coef, edge, row, s, y, w)
+    expand_from(coef, row, s, y, w, c0, c1, a, b, choose)
+
+
+@helper
+def expand_from(
+    coef: FloatArray, row: int, s: float, y: float, w: float, c0: float, c1: float, a: FloatArray, b: FloatArray,
+    choose: FloatArray,
+) -> None:  # fmt: skip
+    """Do the same from the state at the middle."""
     for k in range(len(a)):
         b[k] = c0 * coef[row, 0, k] + c1 * coef[row, 1, k] + coef[row, 2, k]
     shift(b, s, choose, a)
     a[0] = y
     a[1] = w
+
+
+@helper
+def stays(
+    par: FloatArray, region: int, fresh: int, y: float, y_end: float, w: float, bend: float, rest: float
+) -> bool:
+    """Tell whether a motion that has just come in with speed w is proved to stay for the rest of the cell.
+
+    `bend` bounds |d2y/ds2|/8: it cannot turn back to the boundary it came through if |w| > 4 bend rest, and it stays
+    clear of the other one if both its ends do by bend rest^2.
+    """
+    if region != 0:
+        return region * w > 4.0 * bend * rest
+    if not -fresh * w > 4.0 * bend * rest:
+        return False
+    if fresh == 1 and par[SIDES] < 1.5:
+        return True
+    return bool(par[HALF_BACKLASH] - max(-fresh * y, -fresh * y_end) > bend * rest * rest)
 
 
 @helper
@@ -91,7 +124,15 @@ def cross_cell(
     fresh = ZERO
     for _ in range(MAX_EVENTS):
         row = cell if region != 0 else cell + cells
-        expand(coef, edge, row, s, y, w, a, b, choose)
+        c0, c1 = middle(coef, edge, row, s, y, w)
+        if fresh != 0:
+            y_end = c0 * edge[row, 21] + c1 * edge[row, 22] + edge[row, 23]
+            bend = abs(c0) * edge[row, 18] + abs(c1) * edge[row, 19] + edge[row, 20]
+            if stays(par, region, fresh, y, y_end, w, bend, 0.5 - s):
+                if want > 0:
+                    carry(coef, row, s, 0.5, jac)
+                return region, y_end, c0 * edge[row, 24] + c1 * edge[row, 25] + edge[row, 26], FINE
+        expand_from(coef, row, s, y, w, c0, c1, a, b, choose)
         t, hit = leave(region, par, a, g, b, 0.5 - s, fresh)
         if hit == 0 and s == -0.5:  # nothing happened: the map of the whole cell holds
             if want > 0:
