@@ -251,4 +251,4 @@ def test_chaos_by_its_statistics():
     assert np.max(np.abs(apart)) > 1e-3
     a, b = (m.mean(axis=0) for m in means)
     spread = np.sqrt(sum(m.var(axis=0, ddof=1) / batches for m in means))
-    assert np.all(np.abs(a - b) < 5 * spread)
+    assert np.all(np.abs(a - b) <= 5 * spread)  # the exits are one a period throughout
