@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.flow import DEGREE
-from dynamics.oscillator import GearOscillator, cells_per_period
+from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.shooting import EPS
 
 __all__ = ["OrbitProblem", "Point"]
@@ -230,7 +230,8 @@ class OrbitProblem:
         packed = self.packed(u)
         if not (packed[4] > 0.0 and np.all(np.isfinite(packed))):
             return 0
-        return math.ceil(cells_per_period(packed)) * refinement
+        cells = cells_per_period(packed)
+        return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
 
     def _point(self, u: FloatArray, store: _Store, turned: int, residual: float, iterations: int) -> Point:
         packed = self.packed(u)

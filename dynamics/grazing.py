@@ -108,7 +108,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     if side not in (1, -1):
         faults.add("side", side, "1 or -1", "1 is the driving side")
     faults.raise_if_any()
-    linear = dataclasses.replace(oscillator, half_backlash=0.0)
+    linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
     table = tables(linear, refinement)
     image = period_map(table, np.zeros(2))
     matrix = np.eye(2) - image.jacobian

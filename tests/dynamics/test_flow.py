@@ -329,6 +329,20 @@ def test_one_sided_play_differs_only_below(article):
         one.mirrored()
 
 
+@settings(max_examples=30, deadline=None)
+@given(oscillators(), states, st.floats(0.0, 0.5))
+def test_one_sided_play_is_a_matter_of_origin(osc, state, shift):
+    """With one flank alone a larger D moves everything by the difference, and changes nothing else."""
+    near = dataclasses.replace(osc, one_sided=True)
+    far = dataclasses.replace(near, half_backlash=osc.half_backlash + shift)
+    turns = turning_points(near, state, 2)
+    assume(np.min(np.abs(turns[:, 1] - osc.half_backlash), initial=1.0) > 1e-6)
+    assume(abs(state[0] - osc.half_backlash) > 1e-6)
+    image, moved = period_map(near, state, 2), period_map(far, (state[0] + shift, state[1]), 2)
+    np.testing.assert_allclose(moved.state - [shift, 0.0], image.state, rtol=0, atol=1e-12 * size(image))
+    assert np.array_equal(moved.counts, image.counts)
+
+
 @pytest.mark.parametrize("kept", [True, False])
 def test_a_changed_helper_is_compiled_again(tmp_path, kept):
     """Compiled code on disk is good as long as no kernel source changes, not only the caller's own file."""

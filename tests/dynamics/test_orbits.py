@@ -12,6 +12,7 @@ from dynamics import (
     GearOscillator,
     contact_grazing,
     contact_orbit,
+    continue_branch,
     find_orbit,
     find_orbits,
     period_map,
@@ -210,3 +211,14 @@ def test_a_settled_motion_is_not_followed_to_the_end(article):
     short = sweep(article(), values=[0.5], keep=32)
     assert long.cost.periods < 500
     np.testing.assert_allclose(long.states, short.states, rtol=0, atol=1e-12)
+
+
+def test_one_sided_play_has_the_same_touch(article):
+    both, one = (contact_grazing(article(one_sided=s), bounds=(0.4, 1.5)).points[0] for s in (False, True))
+    assert both.parameter == one.parameter
+    branch = continue_branch(
+        find_orbit(article(frequency=0.5, one_sided=True), (0.35, 0.0)), "frequency", (0.5, 1.2)
+    )
+    assert branch.converged, branch.message
+    assert branch.special("grazing")[0].parameter == pytest.approx(one.parameter, rel=0, abs=1e-13)
+    assert {p.boundary for p in branch.special("grazing")} == {1}
