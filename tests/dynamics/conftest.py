@@ -83,3 +83,23 @@ def article():
         return GearOscillator(stiffness=FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
 
     return make
+
+
+@pytest.fixture(scope="session", autouse=True)
+def every_orbit_keeps_the_determinant():
+    """Whatever orbit a test finds, det of its Jacobian is exp(-4 pi zeta n/omega), relative to the products in it."""
+    from dynamics import shooting
+
+    assemble = shooting.make_orbit
+
+    def checked(*arguments, **named):
+        orbit = assemble(*arguments, **named)
+        if orbit.converged and len(orbit.nodes) == 0:
+            (a, b), (c, d) = orbit.jacobian
+            size = max(abs(a * d) + abs(b * c), orbit.determinant)
+            assert abs(a * d - b * c - orbit.determinant) <= 1e-12 * size
+        return orbit
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(shooting, "make_orbit", checked)
+        yield
