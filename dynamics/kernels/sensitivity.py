@@ -378,19 +378,24 @@ def correct(
         )
         if flag != FINE:
             return flag, 0, done, best
-        if not size < best and (step < 1e-11 or done > 3):
+        if not size < best and done > 3:
             break
         done += 1
         for k in range(3):
             u[k] = trial[k]
         best = size
-        if best == 0.0 or step < 1e-11 or done >= limit:
+        if best == 0.0 or done >= limit:
             break
         step = newton_step(u, guess, across, scale, state, lin, matrix, right)
         if not step < 0.5:
             return LOST, 0, done, best
         for k in range(3):
             trial[k] = u[k] + right[k]
+        if step < 1e-11:  # the last step, to rounding: its end is evaluated in full below
+            for k in range(3):
+                u[k] = trial[k]
+            done += 1
+            break
     flag, turned, best = evaluate(
         origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
     )
