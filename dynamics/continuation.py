@@ -14,6 +14,7 @@ from dynamics.corrector import OrbitProblem, Point
 from dynamics.cost import Cost
 from dynamics.crossings import Crossing, find_crossings, locate
 from dynamics.errors import Faults
+from dynamics.flow import period_map
 from dynamics.shooting import Orbit, floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
@@ -189,6 +190,7 @@ class _Walker:
         self.special: list[SpecialPoint] = []
         self.tangent = problem.tangent(start, along)
         even = problem.periods % 2 == 0
+        self.phases = self._phases(start)
         self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
         self.ended = ""
         self.missed: list[float] = []
@@ -220,10 +222,24 @@ class _Walker:
             self._accept(last, step)
             distance = float(np.linalg.norm(new.u - start.u))
             away = away or distance > 4.0 * self.max_step
-            if away and distance < self.step and (start.u - last.u) @ (new.u - last.u) > 0.0:
+            if away and self._closed(last, new):
                 self.ended = "closed"
             elif float(np.max(np.abs(new.u[:2]))) > 1e6:
                 self.ended = "the motion grows without bound"
+
+    def _phases(self, start: Point) -> FloatArray:
+        """Unknowns of the start, its orbit taken from each excitation period on."""
+        n = self.problem.periods
+        states = period_map(self.problem.at(start.u), start.state, n).states
+        value = np.full((n, 1), start.u[2])
+        return np.hstack([np.roll(states, 1, axis=0) / self.problem.scale, value])
+
+    def _closed(self, last: Point, new: Point) -> bool:
+        """Tell whether a step passes the start, at any of the n phases of its orbit."""
+        chord, back = new.u - last.u, self.phases - last.u
+        along = back @ chord / (chord @ chord)
+        beside = np.linalg.norm(back - along[:, None] * chord, axis=1)
+        return bool(np.any((along > 0.0) & (along <= 1.0) & (beside < 0.1 * math.sqrt(chord @ chord))))
 
     def _try(self, last: Point) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
