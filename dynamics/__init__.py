@@ -34,9 +34,13 @@ if TYPE_CHECKING:
     from dynamics.grazing import ContactGrazing as ContactGrazing
     from dynamics.grazing import contact_grazing as contact_grazing
     from dynamics.grazing import contact_orbit as contact_orbit
+    from dynamics.labelling import Stretch as Stretch
+    from dynamics.labelling import stretches as stretches
     from dynamics.loci import DoublePoint as DoublePoint
     from dynamics.loci import Locus as Locus
     from dynamics.loci import continue_locus as continue_locus
+    from dynamics.manifolds import Manifold as Manifold
+    from dynamics.manifolds import manifold as manifold
     from dynamics.oscillator import GearOscillator as GearOscillator
     from dynamics.scaling import Scaling as Scaling
     from dynamics.sensitivity import MapDerivatives as MapDerivatives
@@ -73,6 +77,10 @@ _HOMES = {
     "FourierFit": "fourier",
     "FourierStiffness": "stiffness",
     "GearOscillator": "oscillator",
+    "Manifold": "manifolds",
+    "manifold": "manifolds",
+    "Stretch": "labelling",
+    "stretches": "labelling",
     "MapDerivatives": "sensitivity",
     "Orbit": "shooting",
     "Scaling": "scaling",

@@ -199,8 +199,6 @@ class _Walker:
 
     def run(self) -> None:
         """Step until the branch ends."""
-        start = self.points[0]
-        away = False
         while not self.ended:
             if len(self.points) > self.limit:
                 self.ended = f"{self.limit} points: raise max_points"
@@ -220,9 +218,7 @@ class _Walker:
                     return
                 self.half = half
             self._accept(last, step)
-            distance = float(np.linalg.norm(new.u - start.u))
-            away = away or distance > 4.0 * self.max_step
-            if away and self._closed(last, new):
+            if len(self.points) > 3 and self._closed(last, new):  # however small the loop
                 self.ended = "closed"
             elif float(np.max(np.abs(new.u[:2]))) > 1e6:
                 self.ended = "the motion grows without bound"

@@ -16,6 +16,7 @@ from dynamics.cost import Cost
 from dynamics.errors import Faults
 from dynamics.finding import find_orbits
 from dynamics.flow import period_map
+from dynamics.labelling import Stretch, stretches
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit
 from dynamics.special import SpecialPoint
@@ -104,6 +105,17 @@ class Diagram:
             If there is no such kind.
         """
         return sorted((p for b in self.branches for p in b.special(kind)), key=lambda p: p.parameter)
+
+    def stretches(self, stable: bool | None = None) -> list[Stretch]:
+        """Stretches of all branches that keep one label, by their lower ends.
+
+        Parameters
+        ----------
+        stable : bool, optional
+            Only stable or only unstable ones.
+        """
+        found = [s for b in self.branches for s in stretches(b) if stable is None or s.stable is stable]
+        return sorted(found, key=lambda s: (s.low, s.high))
 
     def table(self) -> list[tuple[int, str, float, str, float, float]]:
         """Rows branch, kind, parameter, label, X, V of every special point, branch by branch."""

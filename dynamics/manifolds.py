@@ -1,0 +1,261 @@
+"""Stable and unstable manifolds of periodic orbits; the inverse of the period map that the stable ones need."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.cost import Cost
+from dynamics.errors import Faults
+from dynamics.flow import DEGREE, Tables, period_map, tables
+from dynamics.oscillator import GearOscillator
+from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
+
+__all__ = ["Manifold", "carried", "manifold", "reversed_tables"]
+
+FloatArray = npt.NDArray[np.float64]
+Region = tuple[tuple[float, float], tuple[float, float]]
+FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
+SPLIT = 1e-12  # least gap of the start's parameter that is still halved
+
+
+@dataclass(frozen=True, eq=False)
+class Manifold:
+    """A manifold of a periodic orbit in the plane tau = 0.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The saddle.
+    kind : str
+        "stable" or "unstable".
+    curves : tuple of ndarray, shape (any, 2)
+        X and V along every branch, from the orbit outwards: two for each point of the orbit.
+    rounds : tuple of int
+        Rounds of the orbit that carried each branch out.
+    error : float
+        Bend of the first stretches, over the size of the orbit: by how much images depart from the eigenvector.
+    cost : Cost
+        Effort.
+    converged : bool
+        Whether every gap between neighbours within the region is within the spacing.
+    message : str
+        Why the branches ended.
+    """
+
+    orbit: Orbit
+    kind: str
+    curves: tuple[FloatArray, ...]
+    rounds: tuple[int, ...]
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+
+def reversed_tables(oscillator: GearOscillator) -> Tables:
+    """Tabulate the oscillator that runs backwards in time.
+
+    With time and speed reversed about tau = 0 the equation keeps its form; the damping and all phases change their
+    signs. So the inverse of the period map is as exact as the map: carry (X, -V) and reverse V again.
+    """
+    from dynamics.kernels.tables import tabulate
+
+    packed, order = oscillator.packed(), oscillator.stiffness.order
+    packed[1] = -packed[1]
+    packed[5] = -packed[5]
+    packed[8 + order :] *= -1.0
+    cells = math.ceil(oscillator.cells)
+    coef, edge = tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, DEGREE)
+    return Tables(packed, coef, edge)
+
+
+def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> FloatArray:
+    """States after whole periods, shape (any, 2); nan where a motion is lost.
+
+    Parameters
+    ----------
+    table : Tables
+        Of `tables`, or of `reversed_tables` if backwards.
+    states : array_like, shape (any, 2)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    backwards : bool
+        Whether the tables are those of the reversed oscillator.
+    """
+    from dynamics.kernels.carrying import carry
+
+    at = np.array(states, dtype=np.float64).reshape(-1, 2)
+    turn = np.array([1.0, -1.0 if backwards else 1.0])
+    at *= turn
+    carry(table.arrays, at, periods)
+    return np.asarray(at * turn)
+
+
+def manifold(
+    orbit: Orbit,
+    kind: str = "stable",
+    region: Region | None = None,
+    *,
+    length: float = 20.0,
+    spacing: float = 0.02,
+    max_points: int = 20_000,
+) -> Manifold:
+    """Follow the manifolds of a saddle.
+
+    A branch starts as a short stretch of the eigenvector, from a point to its image, and is carried on by the map
+    (its inverse for the stable manifold). Where neighbours come to lie farther apart than the spacing, points are put
+    between them at the start and carried along.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        A saddle: one multiplier outside the unit circle, one within.
+    kind : str
+        "stable": the motions that come to the orbit, which bound basins; "unstable": those that leave it.
+    region : ((x0, x1), (v0, v1)), optional
+        Outside it points are not put closer. Left out: three times the size of the orbit.
+    length : float
+        Length of each branch, over the size of the orbit.
+    spacing : float
+        Largest distance of neighbours, over the size of the orbit.
+    max_points : int
+        Points of each branch at most.
+
+    Returns
+    -------
+    Manifold
+        Its branches.
+
+    Raises
+    ------
+    DynamicsError
+        If the orbit is no saddle, or an argument is out of range.
+    """
+    began = time.perf_counter()
+    faults = Faults()
+    if kind not in ("stable", "unstable"):
+        faults.add("kind", kind, "'stable' or 'unstable'", "name one of these")
+    multipliers = np.asarray(orbit.multipliers)
+    if (
+        not orbit.converged
+        or np.iscomplexobj(multipliers)
+        or not abs(multipliers[0]) > 1.0 > abs(multipliers[1])
+    ):
+        faults.add(
+            "orbit", orbit.label or "not converged", "a saddle", "take an unstable orbit of find_orbits"
+        )
+    long = faults.number("length", length, "more than 0", "20 is usual", lambda s: s > 0.0)
+    gap = faults.number("spacing", spacing, "more than 0", "0.02 is usual", lambda s: s > 0.0)
+    most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
+    faults.raise_if_any()
+    grower = _Grower(orbit, kind == "stable", region, long, gap, most)
+    points = period_map(grower.forward, orbit.state, orbit.periods).states
+    curves, rounds, told, errors = [], [], [], []
+    for point in np.roll(points, 1, axis=0):
+        along = grower.direction(point)
+        for sign in (1.0, -1.0):
+            curve, number, ended, error = grower.grow(point, sign * along)
+            curves.append(curve)
+            rounds.append(number)
+            told.append(ended)
+            errors.append(error)
+    message = ", ".join(f"{told.count(t)} branches ended: {t}" for t in sorted(set(told)))
+    cost = Cost(time.perf_counter() - began, 2, 0, grower.periods)
+    fine = all(t in ("length", "left the region") for t in told)
+    return Manifold(orbit, kind, tuple(curves), tuple(rounds), max(errors), cost, fine, message)
+
+
+class _Grower:
+    """Carries branches of the manifolds of one orbit."""
+
+    def __init__(
+        self, orbit: Orbit, backwards: bool, region: Region | None, length: float, gap: float, most: int
+    ) -> None:
+        self.orbit, self.backwards = orbit, backwards
+        self.forward = tables(orbit.oscillator)
+        self.table = reversed_tables(orbit.oscillator) if backwards else self.forward
+        states = period_map(self.forward, orbit.state, orbit.periods).states
+        self.scale = max(float(np.max(np.abs(states))), 1e-300)
+        box = 3.0 * self.scale
+        self.region = ((-box, box), (-box, box)) if region is None else region
+        self.length, self.gap, self.most = length * self.scale, gap * self.scale, most
+        multiplier = float(orbit.multipliers[1 if backwards else 0])
+        self.round = orbit.periods * (1 if multiplier > 0.0 else 2)  # two rounds come back to the same branch
+        stretch = multiplier if multiplier > 0.0 else multiplier * multiplier
+        self.stretch = 1.0 / stretch if backwards else stretch
+        self.periods = 0
+
+    def direction(self, point: FloatArray) -> FloatArray:
+        """Eigenvector at a point of the orbit, from its exact multiplier."""
+        n = self.orbit.periods
+        jacobian = period_map(self.forward, point, n).jacobian
+        trace, determinant = float(np.trace(jacobian)), exact_determinant(self.orbit.oscillator, n)
+        wanted = float(np.real(floquet_multipliers(trace, determinant)[1 if self.backwards else 0]))
+        return np.asarray(np.linalg.svd(jacobian - wanted * np.eye(2))[2][1])
+
+    def grow(self, point: FloatArray, along: FloatArray) -> tuple[FloatArray, int, str, float]:
+        """Curve, rounds, why it ended, and the bend of its first stretch."""
+        first = FIRST * self.scale
+        share = np.linspace(0.0, 1.0, 9)
+        curves = [point[None]]
+        total, number, count = 0.0, 0, 0
+        at = self._start(point, along, share, first)
+        halved = self._carry(self._start(point, along, share, 0.5 * first), 1)
+        whole = self._carry(at, 1)
+        bend = np.max(np.abs((whole - point) - 2.0 * (halved - point)))
+        error = float(bend) / self.scale
+        while True:
+            step = np.linalg.norm(np.diff(at, axis=0), axis=1)
+            inside = self._inside(at)
+            total += float(np.sum(step[inside[:-1] & inside[1:]]))
+            count += len(at)
+            curves.append(at)
+            if not np.any(inside):
+                return np.concatenate(curves), number, "left the region", error
+            if total > self.length:
+                return np.concatenate(curves), number, "length", error
+            if count > self.most:
+                return np.concatenate(curves), number, f"{self.most} points: raise max_points", error
+            if number > 2000:
+                return np.concatenate(curves), number, "2000 rounds", error
+            number += 1
+            share, at = self._refined(point, along, first, number, share, self._carry(at, 1))
+
+    def _refined(
+        self,
+        point: FloatArray,
+        along: FloatArray,
+        first: float,
+        number: int,
+        share: FloatArray,
+        at: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Starts and points with gaps within the spacing."""
+        while True:
+            step = np.linalg.norm(np.diff(at, axis=0), axis=1)
+            inside = self._inside(at)
+            wide = (step > self.gap) & (inside[:-1] | inside[1:]) & (np.diff(share) > SPLIT)
+            if not np.any(wide) or len(at) > self.most:
+                return share, at
+            where = np.flatnonzero(wide)
+            middle = 0.5 * (share[where] + share[where + 1])
+            new = self._carry(self._start(point, along, middle, first), number)
+            share, at = np.insert(share, where + 1, middle), np.insert(at, where + 1, new, axis=0)
+
+    def _start(self, point: FloatArray, along: FloatArray, share: FloatArray, first: float) -> FloatArray:
+        return np.asarray(point + np.outer(first * self.stretch**share, along))
+
+    def _carry(self, at: FloatArray, rounds: int) -> FloatArray:
+        self.periods += len(at) * rounds * self.round
+        return carried(self.table, at, rounds * self.round, self.backwards)
+
+    def _inside(self, at: FloatArray) -> npt.NDArray[np.bool_]:
+        (x0, x1), (v0, v1) = self.region
+        with np.errstate(invalid="ignore"):
+            return np.asarray((at[:, 0] >= x0) & (at[:, 0] <= x1) & (at[:, 1] >= v0) & (at[:, 1] <= v1))
