@@ -20,16 +20,17 @@ import dynamics
 
 @dataclass(frozen=True)
 class Size:
-    """How much work: values swept, periods of the exponents, starts along each side of the basins."""
+    """How much work: values swept, periods of the exponents, starts along each side of the basins, and so on."""
 
     values: int
     periods: int
     starts: int
     searches: int
     max_period: int
+    basins: int
 
 
-SMALL, FULL = Size(41, 200, 24, 3, 2), Size(801, 4000, 200, 9, 8)
+SMALL, FULL = Size(41, 200, 24, 3, 2, 2), Size(801, 4000, 200, 9, 8, 20)
 
 
 def main(arguments: Sequence[str] | None = None) -> list[Path]:
@@ -65,7 +66,7 @@ def draw(scan: Scan, folder: Path, size: Size) -> tuple[list[Path], list[str]]:
     motions, missing = named_motions(scan, diagram)
     told += [f"{label}: no stable stretch in the diagram" for label in missing]
     files.append(drawing.save(drawing.portrait_figure(motions, osc.half_backlash), folder, "portraits"))
-    for value in scan.basins:
+    for value in scan.basins[: size.basins]:
         figure, lines = basins(scan, value, size.starts)
         told += lines
         files.append(drawing.save(figure, folder, f"basins_{value:g}"))
@@ -112,7 +113,7 @@ def basins(scan: Scan, value: float, starts: int) -> tuple[object, list[str]]:
     """Basins at a value with unstable orbits and the stable manifolds of those of least period."""
     here = scan.oscillator.with_parameter(scan.parameter, value)
     (x0, x1), (v0, v1) = scan.box
-    result = dynamics.basins(here, (x0, x1, starts), (v0, v1, starts))
+    result = dynamics.basins(here, (x0, x1, starts), (v0, v1, starts), limit=scan.patience)
     periods = sorted({1, 2, *(a.orbit.periods for a in result.attractors if a.orbit is not None)})
     orbits = [o for o in dynamics.find_orbits(here, periods).orbits if not o.stable]
     saddles = [o for o in orbits if not np.iscomplexobj(o.multipliers) and abs(o.multipliers[1]) < 1.0]

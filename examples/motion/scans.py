@@ -29,6 +29,8 @@ class Scan:
         Value at which an aperiodic motion is drawn.
     max_period : int
         Longest period that the diagram follows.
+    patience : int
+        Periods after which a start of the basins without an attractor is looked at: chaotic transients last long.
     """
 
     oscillator: GearOscillator
@@ -39,6 +41,7 @@ class Scan:
     box: tuple[tuple[float, float], tuple[float, float]]
     chaos: float
     max_period: int
+    patience: int = 1000
 
 
 def _oscillator(

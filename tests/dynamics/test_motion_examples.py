@@ -47,3 +47,17 @@ def test_lubricated_frequency_scan_in_full(tmp_path: Path):
     told = ran("6.1", tmp_path)
     assert "6-4-4: no stable stretch" not in told
     assert "4-3-0: no stable stretch" not in told
+
+
+def test_table_of_the_error_scan():
+    told = "\n".join(example("table").main(["6.3", "6.4"]))
+    assert told.count("| reproduced") == 3
+    assert "printed late by 7.1e-04" in told
+    assert told.count("not identified") == 8
+
+
+@pytest.mark.slow
+def test_table_of_all_scans():
+    told = "\n".join(example("table").main([]))
+    assert told.count("| reproduced") == 14
+    assert told.count("printed late") == 4
