@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from dynamics.manifolds import Manifold as Manifold
     from dynamics.manifolds import manifold as manifold
     from dynamics.oscillator import GearOscillator as GearOscillator
+    from dynamics.robustness import ForceRange as ForceRange
+    from dynamics.robustness import force_range as force_range
+    from dynamics.robustness import special_sensitivities as special_sensitivities
     from dynamics.scaling import Scaling as Scaling
     from dynamics.sensitivity import MapDerivatives as MapDerivatives
     from dynamics.sensitivity import map_derivatives as map_derivatives
@@ -77,6 +80,9 @@ _HOMES = {
     "FourierFit": "fourier",
     "FourierStiffness": "stiffness",
     "GearOscillator": "oscillator",
+    "ForceRange": "robustness",
+    "force_range": "robustness",
+    "special_sensitivities": "robustness",
     "Manifold": "manifolds",
     "manifold": "manifolds",
     "Stretch": "labelling",

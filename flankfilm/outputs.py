@@ -10,6 +10,7 @@ import numpy as np
 
 from flankfilm.build import pinion_speed
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
+from flankfilm.diagram_outputs import diagram_quantities, diagram_tables
 from flankfilm.load_outputs import load_outputs
 from flankfilm.mesh_stiffness import MeshStiffness
 
@@ -138,6 +139,9 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
         quantities |= sweep_quantities(sweep)
         for direction, states in sweep.states.items():
             tables[f"sweep_{direction}"] = _sweep_columns(sweep, direction, states)
+    if (diagram := values.get("diagram")) is not None:
+        quantities |= diagram_quantities(diagram)
+        tables |= diagram_tables(diagram)
     attributes = {"title": scene.title, **provenance(scene.model_dump_json())}
     write_netcdf(folder / "results.nc", to_dataset(quantities, attributes))
     for name, columns in tables.items():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flankfilm.dataset import provenance, write_text
 from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
-from flankfilm.report import film_parts, load_parts, mesh_parts, motion_parts, run_parts
+from flankfilm.report import diagram_parts, film_parts, load_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Headline, Part, render
 from flankfilm.report.run_parts import CostRow
 from flankfilm.report.text import percent
@@ -46,6 +46,8 @@ def headlines(results: Results) -> list[Headline]:
             else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
         )
         told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
+    if (diagram := values.get("diagram")) is not None:
+        told.append(diagram_parts.headline(diagram))
     return told
 
 
@@ -103,6 +105,8 @@ def _result_parts(results: Results) -> list[Part | None]:
         parts.append(motion_parts.scaling(scaling))
         if (sweep := values.get("sweep")) is not None:
             parts.append(motion_parts.sweep(sweep))
+        if (diagram := values.get("diagram")) is not None:
+            parts.append(diagram_parts.diagram(diagram))
     return parts
 
 
@@ -162,6 +166,9 @@ def _cost_rows(results: Results) -> list[CostRow]:
         elif name == "sweep":
             figure, error = "settled motions", value.error
             note = f"{value.periods:,} periods"
+        elif name == "diagram":
+            figure, error = "special points", value.diagram.error
+            note = f"{len(value.diagram.branches)} branches"
         elif run.seconds < 0.005:
             continue
         rows.append(CostRow(run.title, figure, allowed, error, note, run.seconds, run.cached))

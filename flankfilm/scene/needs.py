@@ -28,10 +28,11 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
     own_units = "mean_force" in dynamics
     if geared := listed & {"geometry", "closed-forms", "film", *BY_FINITE_ELEMENTS}:
         need("pair", f"wants = [{_quoted(geared)}]")
-    if listed & {"stiffness", "fourier", "sweep"} and not given:
+    moving = listed & {"sweep", "diagram"}
+    if listed & {"stiffness", "fourier", *moving} and not given:
         need("pair", f"stiffness.model = {shorten(stiffness.get('model', 'fem'))}")
-    if "sweep" in listed:
-        need("dynamics", 'wants = ["sweep"]')
+    if moving:
+        need("dynamics", f"wants = [{_quoted(moving)}]")
         if not own_units:
             need("pair", "a [dynamics] in physical units")
             need("material", "a [dynamics] in physical units")
@@ -71,17 +72,19 @@ def _deeper(
             Fault("stiffness.model", "'given'", allowed, 'Take "fem" or a closed form, or drop film')
         )
     dynamics = _table(raw, "dynamics")
-    if "sweep" in listed and "dynamics" in raw and "sweep" not in dynamics:
-        faults.append(
-            Fault(
-                "dynamics.sweep",
-                "",
-                "is required by the wanted sweep",
-                "Add sweep = { speed_rpm = [500, 30000] }",
-            )
+    faults += [
+        Fault(
+            f"dynamics.{want}",
+            "",
+            f"is required by the wanted {want}",
+            f"Add {want} = {{ speed_rpm = [500, 30000] }}",
         )
+        for want in ("sweep", "diagram")
+        if want in listed and "dynamics" in raw and want not in dynamics
+    ]
     given = stiffness.get("model") == "given"
-    if "sweep" in listed and given and "mean_force" not in dynamics and "mean_N_per_m" not in stiffness:
+    moving = listed & {"sweep", "diagram"}
+    if moving and given and "mean_force" not in dynamics and "mean_N_per_m" not in stiffness:
         faults.append(
             Fault(
                 "stiffness.mean_N_per_m", "", "is required by a [dynamics] in physical units", "Give the mean"

@@ -21,6 +21,7 @@ Want = Literal[
     "film",
     "fourier",
     "sweep",
+    "diagram",
     "vtk",
     "report",
 ]
@@ -227,15 +228,14 @@ class ExtraInertia(Section):
     wheel: float = Field(default=0.0, ge=0, le=1e9)
 
 
-class SweepSection(Section):
-    """Sweep over pinion speed, or over the dimensionless mesh frequency."""
+class SpeedRange(Section):
+    """Range of pinion speed, or of the dimensionless mesh frequency."""
 
     speed_rpm: TwoNumbers | None = None
     frequency: TwoNumbers | None = None
-    points: int = Field(default=400, ge=2, le=100_000)
 
     @model_validator(mode="after")
-    def _one_range(self) -> SweepSection:
+    def _one_range(self) -> SpeedRange:
         given = [r for r in (self.speed_rpm, self.frequency) if r is not None]
         if len(given) != 1:
             raise ValueError("give either speed_rpm = [from, to] or frequency = [from, to]")
@@ -243,6 +243,19 @@ class SweepSection(Section):
         if not 0 < low < high <= 1e7:
             raise ValueError(f"the range [{low:g}, {high:g}] must rise from above 0, to at most 1e7")
         return self
+
+
+class SweepSection(SpeedRange):
+    """Sweep up and down."""
+
+    points: int = Field(default=400, ge=2, le=100_000)
+
+
+class DiagramSection(SpeedRange):
+    """Bifurcation diagram: every branch of periodic motions, stable or not."""
+
+    max_period: int = Field(default=8, ge=1, le=64)
+    searches: int = Field(default=9, ge=1, le=1000)
 
 
 class DynamicsSection(Section):
@@ -258,7 +271,9 @@ class DynamicsSection(Section):
     mean_force: float | None = Field(default=None, ge=0, le=1e6)
     error_amplitude: float | None = Field(default=None, ge=0, le=1e6)
     half_backlash: float | None = Field(default=None, ge=0, le=1e6)
+    one_sided: bool = False
     sweep: SweepSection | None = None
+    diagram: DiagramSection | None = None
     portraits_rpm: Annotated[tuple[Positive, ...], Field(strict=False, max_length=12)] = ()
     portraits_frequency: Annotated[tuple[Positive, ...], Field(strict=False, max_length=12)] = ()
 
@@ -278,8 +293,11 @@ class DynamicsSection(Section):
             raise ValueError(
                 f"{', '.join(physical)} and the dimensionless {', '.join(own)} exclude each other"
             )
-        if not missing and self.sweep is not None and self.sweep.speed_rpm is not None:
-            raise ValueError("the dimensionless form needs sweep = { frequency = [from, to] }, not speed_rpm")
+        for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram)):
+            if not missing and ranged is not None and ranged.speed_rpm is not None:
+                raise ValueError(
+                    f"the dimensionless form needs {name} = {{ frequency = [from, to] }}, not speed_rpm"
+                )
         if not missing and self.portraits_rpm:
             raise ValueError("the dimensionless form needs portraits_frequency, not portraits_rpm")
         return self

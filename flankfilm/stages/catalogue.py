@@ -9,6 +9,7 @@ from flankfilm.scene import Scene
 from flankfilm.stages import (
     closed_forms,
     decide,
+    diagram,
     fields,
     film,
     loads,
@@ -174,6 +175,15 @@ STAGES: Mapping[str, Stage] = {
             kept=True,
         ),
         Stage(
+            "diagram",
+            "every branch of motions",
+            lambda e: diagram.diagram(e),
+            _sections("dynamics"),
+            needs=("fourier", "scaling"),
+            packages=("dynamics", "flankfilm", "gears"),
+            kept=True,
+        ),
+        Stage(
             "fields", "stress and displacement fields", lambda e: fields.fields(e), _TEETH, needs=("mesh",)
         ),
     )
@@ -198,10 +208,11 @@ def goals(scene: Scene) -> tuple[str, ...]:
     found += [name for name in ("torques", "revolution") if name in wants]
     if "root-stress" in wants:
         found.append("root stress")
-    if wants & {"fourier", "sweep"}:
+    if wants & {"fourier", "sweep", "diagram"}:
         found.append("fourier")
-    if "sweep" in wants:
-        found += ["scaling", "sweep"]
+    for name in ("sweep", "diagram"):
+        if name in wants:
+            found += ["scaling", name]
     if "vtk" in wants:
         found.append("fields")
     return tuple(dict.fromkeys(found))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from flankfilm.build import pinion_torque
@@ -143,7 +143,8 @@ def scaling(engine: Engine) -> ScalingStage:
         assert section.error_amplitude is not None
         assert section.half_backlash is not None
         assert section.mean_force is not None
-        frequency = section.sweep.frequency[0] if section.sweep and section.sweep.frequency else 1.0
+        ranged = section.sweep or section.diagram
+        frequency = ranged.frequency[0] if ranged and ranged.frequency else 1.0
         oscillator = GearOscillator(
             stiffness=series.normalised(),
             damping_ratio=section.damping_ratio,
@@ -152,6 +153,7 @@ def scaling(engine: Engine) -> ScalingStage:
             frequency=frequency,
             half_backlash=section.half_backlash,
             error_phase=phase,
+            one_sided=section.one_sided,
         )
         return ScalingStage(oscillator, None)
     pair = engine["pair"]
@@ -171,7 +173,8 @@ def scaling(engine: Engine) -> ScalingStage:
     error = 1e-6 * (section.error_amplitude_um or 0.0)
     rpm = scene.operating.pinion_speed_rpm if scene.operating else None
     if rpm is None:
-        rpm = section.sweep.speed_rpm[0] if section.sweep and section.sweep.speed_rpm else 60.0
+        ranged = section.sweep or section.diagram
+        rpm = ranged.speed_rpm[0] if ranged and ranged.speed_rpm else 60.0
     oscillator = scales.oscillator(
         stiffness=series,
         damping_ratio=section.damping_ratio,
@@ -181,6 +184,7 @@ def scaling(engine: Engine) -> ScalingStage:
         speed=rpm * math.pi / 30,
         error_phase=phase,
     )
+    oscillator = replace(oscillator, one_sided=section.one_sided)
     return ScalingStage(oscillator, scales, force, error, pair.backlash, (inertias[0], inertias[1]))
 
 

@@ -1,0 +1,124 @@
+"""How a special point moves with every parameter, and how large the force of a motion gets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.conditions import Condition
+from dynamics.corrector import OrbitProblem
+from dynamics.errors import Faults
+from dynamics.flow import trajectory
+from dynamics.oscillator import GearOscillator
+from dynamics.special import SpecialPoint
+
+__all__ = ["ForceRange", "force_range", "special_sensitivities"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def special_sensitivities(
+    oscillator: GearOscillator, parameter: str, point: SpecialPoint, names: Sequence[str] | None = None
+) -> dict[str, float]:
+    r"""Derivatives of a special point's parameter value with respect to the other parameters.
+
+    The point solves G = 0: the orbit closes (two equations) and its condition holds. With the columns for X, V and
+    the parameter in A and that for another parameter p in b, the change with p is the last component of
+    :math:`-A^{-1} b`. All entries are exact.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its value of the parameter is not used. A harmonic of amplitude zero may be among its series:
+        the derivative tells what that harmonic would do.
+    parameter : str
+        The parameter in which the point was found.
+    point : SpecialPoint
+        A saddle node, period doubling or grazing.
+    names : sequence of str, optional
+        As in `GearOscillator.with_parameter`. Left out: all others.
+
+    Returns
+    -------
+    dict
+        Name to derivative; nan where the system is singular (a point of codimension two).
+
+    Raises
+    ------
+    DynamicsError
+        If there is no such parameter.
+    """
+    here = oscillator.with_parameter(parameter, point.parameter)
+    wanted = [n for n in (here.parameters if names is None else names) if n != parameter]
+    scale = max(float(np.max(np.abs(point.state))), here.half_backlash, 1e-300)
+    phase = 0.0 if np.isnan(point.tau) else (point.tau / (point.periods * here.period)) % 1.0
+    kindred = 0 if point.kind != "grazing" else int(np.sign(point.acceleration))
+    condition = Condition(point.kind, point.boundary, kindred, phase)
+    found = {}
+    for name in wanted:
+        value = here.get(name)
+        low, high = np.array([point.parameter, value]), np.array([point.parameter + 1.0, value + 1.0])
+        problem = OrbitProblem(here, (parameter, name), point.periods, low, high, scale)
+        at = problem.evaluate(problem.unknowns(point.state, low))
+        found[name] = np.nan
+        if at is None:
+            continue
+        rows = np.array([*(at.derivative - np.eye(2, 4)), condition.gradient(problem, at)])
+        try:
+            found[name] = float(-np.linalg.solve(rows[:, :3], rows[:, 3])[2])
+        except np.linalg.LinAlgError:
+            continue
+    return found
+
+
+@dataclass(frozen=True)
+class ForceRange:
+    """Least and greatest force of a motion, over the mean force.
+
+    Parameters
+    ----------
+    least, greatest : float
+        Of K(tau) f(X) / F_m; negative where the back flanks touch.
+    error : float
+        Change of the two with half as many samples, the larger one.
+    """
+
+    least: float
+    greatest: float
+    error: float
+
+
+def force_range(
+    oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
+) -> ForceRange:
+    """Least and greatest force of a motion.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its mean force must not be zero.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    samples : int
+        Samples per period, even; the force is taken there, on the exact motion.
+
+    Raises
+    ------
+    DynamicsError
+        If there is no mean force, or an argument is out of range.
+    """
+    faults = Faults()
+    number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
+    faults.number("mean_force", oscillator.mean_force, "not zero", "give a load", lambda f: f != 0.0)
+    faults.raise_if_any()
+    motion = trajectory(oscillator, state, periods, number)
+    stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
+    force = stiffness * oscillator.deflection(motion.x) / oscillator.mean_force
+    low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
+    error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
+    return ForceRange(low, high, error)
