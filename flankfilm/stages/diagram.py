@@ -155,7 +155,7 @@ def _jump(engine: Engine, oscillator: GearOscillator, stretch: Stretch, point: S
     extended, dropped = _longer(engine, oscillator, order + DROPPED)
     slopes = special_sensitivities(extended, "frequency", point)
     here = point.parameter
-    stiffness = (cycle.mean_error or 0.0) + (getattr(engine.results().get("film"), "error", None) or 0.0)
+    stiffness = (cycle.mean_error or 0.0) + _film_error(engine, fourier.kind)
     force = abs(0.5 - slopes["mean_force"] * oscillator.mean_force / here)
     kept = [
         abs(slopes[f"stiffness.amplitudes[{j}]"]) * oscillator.stiffness.amplitudes[j] / here
@@ -170,6 +170,15 @@ def _jump(engine: Engine, oscillator: GearOscillator, stretch: Stretch, point: S
         "flow": point.error,
     }
     return Jump(here, rising, stretch.label, budget, left[0] if left else 0.0)
+
+
+def _film_error(engine: Engine, kind: str) -> float:
+    """Relative error of the stiffness from that of the films: in proportion to what the films change it by."""
+    if engine["film model"].model == "none":
+        return 0.0
+    film = engine["film"]
+    change: float = film.change_secant if kind == "secant" else film.change_tangent
+    return abs(change) * (film.error or 0.0)
 
 
 def _longer(

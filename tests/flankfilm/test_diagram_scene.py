@@ -1,0 +1,99 @@
+"""Bifurcation diagrams from scenes: files, jumps, error budgets, forces."""
+
+from __future__ import annotations
+
+import csv
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PAIR = """
+title = "Pair, branches"
+wants = ["diagram", "report"]
+
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+backlash_um = 50
+
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+density_kg_per_m3 = 7850
+
+[operating]
+pinion_torque_Nm = 600
+
+[stiffness]
+model = "potential-energy"
+pairs = "independent"
+
+[dynamics]
+fourier_order = 2
+error_amplitude_um = 10
+diagram = { speed_rpm = [7000, 12000], max_period = 1, searches = 2 }
+"""
+
+
+def run(scene: Path, out: Path, monkeypatch) -> Path:
+    monkeypatch.setenv("FLANKFILM_CACHE", str(out / "cache"))
+    command = [sys.executable, "-m", "flankfilm", "run", str(scene), "--out", str(out / "run")]
+    subprocess.run(command, check=True, timeout=200, capture_output=True)
+    return out / "run"
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_example_of_branches(tmp_path: Path, monkeypatch):
+    """The folds of the lubricated scan, in the files and in the report."""
+    folder = run(EXAMPLES / "motion" / "branches.toml", tmp_path, monkeypatch)
+    jumps = [(float(r["frequency"]), r["speed"], r["motion"]) for r in rows(folder / "csv" / "jumps.csv")]
+    assert jumps[0] == (pytest.approx(0.5694026368887, abs=1e-11), "falling", "1-1-1")
+    assert jumps[1] == (pytest.approx(0.6555759637891, abs=1e-11), "rising", "1-1-0")
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Branches and jumps" in text
+    assert "beyond max_period" in text
+    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as data:
+        assert set(np.unique(data.diagram_stable)) == {0, 1}
+        assert data.jump_frequency.values[0] == pytest.approx(0.5694026368887, abs=1e-11)
+    motions = {r["motion"] for r in rows(folder / "csv" / "stable_motions.csv")}
+    assert {"1-0-0", "1-1-0", "1-1-1"} <= motions
+
+
+def test_no_jumps_are_said_to_be_none(tmp_path: Path, monkeypatch):
+    text = (EXAMPLES / "motion" / "branches.toml").read_text(encoding="utf-8")
+    quiet = tmp_path / "quiet.toml"
+    quiet.write_text(text.replace("[0.5, 1.2]", "[0.2, 0.5]"), encoding="utf-8")
+    folder = run(quiet, tmp_path, monkeypatch)
+    assert rows(folder / "csv" / "jumps.csv") == []
+    assert "none in range" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_jump_speeds_of_a_pair_with_their_budget(tmp_path: Path, monkeypatch):
+    scene = tmp_path / "pair.toml"
+    scene.write_text(PAIR, encoding="utf-8")
+    folder = run(scene, tmp_path, monkeypatch)
+    jumps = rows(folder / "csv" / "jumps.csv")
+    assert jumps
+    for jump in jumps:
+        assert 7000 < float(jump["speed_rpm"]) < 12000
+        series, second = float(jump["error_series"]), float(jump["second_harmonic"])
+        assert math.isfinite(float(jump["error_stiffness"]))
+        assert abs(second) <= series * (1 + 1e-12)
+    forces = rows(folder / "csv" / "force_over_speed.csv")
+    assert all(float(r["K_v_iso6336"]) >= 1.0 for r in forces)
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert "tangent, order 2" in text
+    assert "secant, order 3" in text
+    assert "ISO 6336-1, method B" in text
