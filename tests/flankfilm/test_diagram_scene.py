@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from flankfilm.run import run_scene
+from flankfilm.scene import parse_scene
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "motion" / "branches.toml"
 PAIR = """
 title = "Pair, branches"
 wants = ["diagram", "report"]
@@ -43,11 +44,9 @@ diagram = { speed_rpm = [7000, 12000], max_period = 1, searches = 2 }
 """
 
 
-def run(scene: Path, out: Path, monkeypatch) -> Path:
-    monkeypatch.setenv("FLANKFILM_CACHE", str(out / "cache"))
-    command = [sys.executable, "-m", "flankfilm", "run", str(scene), "--out", str(out / "run")]
-    subprocess.run(command, check=True, timeout=200, capture_output=True)
-    return out / "run"
+def run(text: str, out: Path) -> Path:
+    run_scene(parse_scene(text, "scene.toml"), out, use_cache=False)
+    return out
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -55,9 +54,9 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_example_of_branches(tmp_path: Path, monkeypatch):
+def test_example_of_branches(tmp_path: Path):
     """The folds of the lubricated scan, in the files and in the report."""
-    folder = run(EXAMPLES / "motion" / "branches.toml", tmp_path, monkeypatch)
+    folder = run(EXAMPLE.read_text(encoding="utf-8"), tmp_path)
     jumps = [(float(r["frequency"]), r["speed"], r["motion"]) for r in rows(folder / "csv" / "jumps.csv")]
     assert jumps[0] == (pytest.approx(0.5694026368887, abs=1e-11), "falling", "1-1-1")
     assert jumps[1] == (pytest.approx(0.6555759637891, abs=1e-11), "rising", "1-1-0")
@@ -71,19 +70,15 @@ def test_example_of_branches(tmp_path: Path, monkeypatch):
     assert {"1-0-0", "1-1-0", "1-1-1"} <= motions
 
 
-def test_no_jumps_are_said_to_be_none(tmp_path: Path, monkeypatch):
-    text = (EXAMPLES / "motion" / "branches.toml").read_text(encoding="utf-8")
-    quiet = tmp_path / "quiet.toml"
-    quiet.write_text(text.replace("[0.5, 1.2]", "[0.2, 0.5]"), encoding="utf-8")
-    folder = run(quiet, tmp_path, monkeypatch)
+def test_no_jumps_are_said_to_be_none(tmp_path: Path):
+    text = EXAMPLE.read_text(encoding="utf-8")
+    folder = run(text.replace("[0.5, 1.2]", "[0.2, 0.5]"), tmp_path)
     assert rows(folder / "csv" / "jumps.csv") == []
     assert "none in range" in (folder / "report.html").read_text(encoding="utf-8")
 
 
-def test_jump_speeds_of_a_pair_with_their_budget(tmp_path: Path, monkeypatch):
-    scene = tmp_path / "pair.toml"
-    scene.write_text(PAIR, encoding="utf-8")
-    folder = run(scene, tmp_path, monkeypatch)
+def test_jump_speeds_of_a_pair_with_their_budget(tmp_path: Path):
+    folder = run(PAIR, tmp_path)
     jumps = rows(folder / "csv" / "jumps.csv")
     assert jumps
     for jump in jumps:
