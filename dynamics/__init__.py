@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from dynamics.grazing import ContactGrazing as ContactGrazing
     from dynamics.grazing import contact_grazing as contact_grazing
     from dynamics.grazing import contact_orbit as contact_orbit
+    from dynamics.inverse import Event as Event
+    from dynamics.inverse import Identification as Identification
+    from dynamics.inverse import identify as identify
     from dynamics.labelling import Stretch as Stretch
     from dynamics.labelling import stretches as stretches
     from dynamics.loci import DoublePoint as DoublePoint
@@ -83,6 +86,9 @@ _HOMES = {
     "ForceRange": "robustness",
     "force_range": "robustness",
     "special_sensitivities": "robustness",
+    "Event": "inverse",
+    "Identification": "inverse",
+    "identify": "inverse",
     "Manifold": "manifolds",
     "manifold": "manifolds",
     "Stretch": "labelling",
