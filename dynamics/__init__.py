@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from dynamics.attraction import Attractor as Attractor
     from dynamics.attraction import BasinResult as BasinResult
     from dynamics.attraction import basins as basins
+    from dynamics.boundary import BasinBoundary as BasinBoundary
+    from dynamics.boundary import basin_boundary as basin_boundary
+    from dynamics.boundary import share_interval as share_interval
     from dynamics.continuation import Branch as Branch
     from dynamics.continuation import continue_branch as continue_branch
     from dynamics.cost import Cost as Cost
@@ -89,6 +92,9 @@ _HOMES = {
     "Event": "inverse",
     "Identification": "inverse",
     "identify": "inverse",
+    "BasinBoundary": "boundary",
+    "basin_boundary": "boundary",
+    "share_interval": "boundary",
     "Manifold": "manifolds",
     "manifold": "manifolds",
     "Stretch": "labelling",

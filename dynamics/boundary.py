@@ -1,0 +1,226 @@
+"""Boundaries of basins, refined where the label changes; their dimension; shares with confidence intervals."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.attraction import Attractor
+from dynamics.cost import Cost
+from dynamics.errors import Faults
+from dynamics.flow import Tables, tables
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+Region = tuple[tuple[float, float], tuple[float, float]]
+COUNTED = 5  # last levels from which the dimension is taken
+
+
+@dataclass(frozen=True, eq=False)
+class BasinBoundary:
+    """Boundary between basins.
+
+    Parameters
+    ----------
+    points : ndarray, shape (any, 2)
+        X and V in the middle of the smallest cells whose corners differ.
+    cell : tuple of float
+        Sides of these cells.
+    counts : ndarray of int
+        Cells with different corners at every level; from one to the next the sides are halved.
+    dimension : float
+        Box-counting dimension: slope of log2 of the counts over the level, from the last five levels.
+    dimension_error : float
+        Standard error of the slope.
+    shares : ndarray, shape (attractors + 1,)
+        Part of the region that comes to each attractor, from the areas of the cells; last, what comes to none of them.
+    error : float
+        Half the area of the smallest cells on the boundary, over the region: what the shares leave open.
+    cost : Cost
+        Effort.
+    converged : bool
+        Whether no level had more cells than allowed.
+    message : str
+        What was found.
+    """
+
+    points: FloatArray
+    cell: tuple[float, float]
+    counts: IntArray
+    dimension: float
+    dimension_error: float
+    shares: FloatArray
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+
+def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[float, float]:
+    r"""Confidence interval of a share from independent random starts (Wilson's score interval).
+
+    .. math:: \frac{\hat p + z^2/2n \pm z\sqrt{\hat p (1 - \hat p)/n + z^2/4n^2}}{1 + z^2/n}
+
+    Parameters
+    ----------
+    hits, starts : int
+        Starts that came to the attractor, and all.
+    confidence : float
+        Between 0 and 1.
+
+    Raises
+    ------
+    DynamicsError
+        If the numbers do not fit.
+    """
+    from statistics import NormalDist
+
+    faults = Faults()
+    n = faults.whole("starts", starts, 1, 10**12, "give the number of starts")
+    k = faults.whole("hits", hits, 0, n, "give at most the number of starts")
+    level = faults.number("confidence", confidence, "between 0 and 1", "0.95", lambda c: 0.0 < c < 1.0)
+    faults.raise_if_any()
+    z = NormalDist().inv_cdf(0.5 + 0.5 * level)
+    share = k / n
+    middle = share + z * z / (2 * n)
+    half = z * math.sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n))
+    whole = 1.0 + z * z / n
+    return max((middle - half) / whole, 0.0), min((middle + half) / whole, 1.0)
+
+
+def basin_boundary(
+    oscillator: GearOscillator,
+    attractors: Sequence[Attractor],
+    region: Region,
+    *,
+    cells: int = 16,
+    levels: int = 6,
+    limit: int = 2000,
+    radius: float = 1e-4,
+    max_cells: int = 200_000,
+) -> BasinBoundary:
+    """Refine the cells of a grid whose corners come to different attractors.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    attractors : sequence of Attractor
+        Periodic ones, as `basins` finds them; what comes to none of them within `limit` is one further kind.
+    region : ((x0, x1), (v0, v1))
+        Starts.
+    cells : int
+        Cells along each side at the first level. A tongue that passes between their corners is missed.
+    levels : int
+        Halvings.
+    limit : int
+        Periods that a start is given.
+    radius : float
+        Nearness to an attractor, over its size, as in `basins`.
+    max_cells : int
+        Cells of one level at most.
+
+    Returns
+    -------
+    BasinBoundary
+        The boundary and what follows from it.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range, or no attractor is periodic.
+    """
+    began = time.perf_counter()
+    faults = Faults()
+    side = faults.whole("cells", cells, 2, 10_000, "16 is usual")
+    halvings = faults.whole("levels", levels, 1, 20, "6 is usual")
+    wait = faults.whole("limit", limit, 1, 10**7, "2000 is usual")
+    near = faults.number("radius", radius, "between 0 and 0.1", "1e-4", lambda r: 0.0 < r < 0.1)
+    homes = [a for a in attractors if a.orbit is not None]
+    if not homes:
+        faults.add("attractors", len(attractors), "a periodic one at least", "find them with basins")
+    for k, (low, high) in enumerate(region):
+        if not low < high:
+            faults.add(f"region[{k}]", (low, high), "the lower value first", "give ((x0, x1), (v0, v1))")
+    faults.raise_if_any()
+    labeller = _Labeller(tables(oscillator), homes, near, wait)
+    origin, width = np.array([r[0] for r in region]), np.array([r[1] - r[0] for r in region])
+    corners = np.array([(i, j) for i in range(side) for j in range(side)], dtype=np.int64)
+    counts, shares, fine = [], np.zeros(len(homes) + 1), True
+    for level in range(halvings + 1):
+        number = side * 2**level
+        kinds = labeller.at(corners, origin, width / number, number)
+        mixed = np.any(kinds != kinds[:, :1], axis=1)
+        shares += np.bincount(kinds[~mixed, 0], minlength=len(shares)) / number**2
+        boundary, at = kinds[mixed], corners[mixed]
+        counts.append(len(at))
+        if level == halvings or len(at) == 0:
+            break
+        if 4 * len(at) > max_cells:
+            fine = False
+            break
+        corners = (2 * at[:, None, :] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])).reshape(-1, 2)
+    for kind in range(len(shares)):
+        shares[kind] += np.mean(boundary == kind, axis=1).sum() / number**2
+    size = width / number
+    slope, scatter = _slope(np.array(counts))
+    cost = Cost(time.perf_counter() - began, 2, len(labeller.known), labeller.periods)
+    message = (
+        f"{counts[-1]} boundary cells, {len(counts) - 1} halvings, dimension {slope:.3f} +- {scatter:.3f}"
+    )
+    return BasinBoundary(
+        origin + (at + 0.5) * size, (float(size[0]), float(size[1])), np.array(counts), slope, scatter, shares,
+        0.5 * counts[-1] / number**2, cost, fine, message + ("" if fine else ": raise max_cells"),
+    )  # fmt: skip
+
+
+class _Labeller:
+    """Labels of corners, each followed once."""
+
+    def __init__(self, table: Tables, homes: Sequence[Attractor], near: float, limit: int) -> None:
+        self.table, self.limit, self.none = table, limit, len(homes)
+        rows = [
+            np.column_stack([a.states, np.full(len(a.states), i), np.full(len(a.states), len(a.states))])
+            for i, a in enumerate(homes)
+        ]
+        self.homes = np.vstack(rows)
+        self.radius = near * float(np.max(np.abs(self.homes[:, :2])))
+        self.known: dict[tuple[float, float], int] = {}
+        self.periods = 0
+
+    def at(self, cells: IntArray, low: FloatArray, size: FloatArray, number: int) -> IntArray:
+        """Labels of the four corners of cells, shape (any, 4)."""
+        from dynamics.kernels.searching import settle
+
+        places = cells[:, None, :] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+        unique, back = np.unique(places.reshape(-1, 2), axis=0, return_inverse=True)
+        keys = [
+            (float(i) / number, float(j) / number) for i, j in unique
+        ]  # exact: dyadic shares of the region
+        new = [k for k, key in enumerate(keys) if key not in self.known]
+        starts = low + unique[new] * size
+        labels = np.full(len(new), -1, dtype=np.int64)
+        self.periods += int(settle(self.table.arrays, starts, self.homes, self.radius, self.limit, labels))
+        labels[labels < 0] = self.none
+        self.known.update((keys[k], int(label)) for k, label in zip(new, labels, strict=True))
+        return np.array([self.known[key] for key in keys], dtype=np.int64)[back].reshape(-1, 4)
+
+
+def _slope(counts: IntArray) -> tuple[float, float]:
+    """Slope of log2 of the counts per level and its standard error; nan from fewer than three levels."""
+    used = counts[-COUNTED:]
+    if len(used) < 3 or np.any(used == 0):
+        return math.nan, math.nan
+    level = np.arange(len(used)) - 0.5 * (len(used) - 1)
+    height = np.log2(used)
+    slope = float(level @ height / (level @ level))
+    rest = height - height.mean() - slope * level
+    return slope, math.sqrt(float(rest @ rest) / (len(used) - 2) / float(level @ level))
