@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from dynamics.continuation import Branch as Branch
     from dynamics.continuation import continue_branch as continue_branch
     from dynamics.cost import Cost as Cost
+    from dynamics.crises import Crisis as Crisis
+    from dynamics.crises import boundary_crisis as boundary_crisis
     from dynamics.diagrams import Diagram as Diagram
     from dynamics.diagrams import diagram as diagram
     from dynamics.errors import DynamicsError as DynamicsError
@@ -95,6 +97,8 @@ _HOMES = {
     "BasinBoundary": "boundary",
     "basin_boundary": "boundary",
     "share_interval": "boundary",
+    "Crisis": "crises",
+    "boundary_crisis": "crises",
     "Manifold": "manifolds",
     "manifold": "manifolds",
     "Stretch": "labelling",

@@ -1,0 +1,57 @@
+"""A boundary crisis of the lubricated scan: where chaos ends, two independent ways."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dynamics import (
+    DynamicsError,
+    FourierStiffness,
+    GearOscillator,
+    basins,
+    boundary_crisis,
+    find_orbits,
+)
+
+
+def scan(frequency: float) -> GearOscillator:
+    return GearOscillator(
+        FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, frequency, half_backlash=0.2
+    )
+
+
+def saddle(label: str):
+    return next(o for o in find_orbits(scan(1.13), (3,)).orbits if o.label == label)
+
+
+@pytest.mark.slow
+def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
+    """The tangency with U3-3-1 does not depend on how many points follow its manifold, and parts lasting chaos from
+    chaos that dies out: below it every start comes to 6-4-4 if one waits."""
+    found = boundary_crisis(saddle("U3-3-1"), "frequency", (1.116, 1.13))
+    again = boundary_crisis(saddle("U3-3-1"), "frequency", (1.117, 1.125), points=1500)
+    assert found.converged
+    assert found.saddle.label == "U3-3-1"
+    assert found.overshoot[0] > 0.0 > found.overshoot[1]
+    assert found.parameter == pytest.approx(1.119740782, abs=2e-9)
+    assert again.parameter == pytest.approx(found.parameter, abs=1e-9)
+    for shift, kinds in ((-0.004, {"6-4-4"}), (0.004, {"6-4-4", "aperiodic"})):
+        here = scan(found.parameter + shift)
+        labels = {
+            a.label for a in basins(here, (-1.5, 1.5, 8), (-1.5, 1.5, 8), limit=10_000).attractors if a.share
+        }
+        assert labels == kinds
+
+
+def test_no_crisis_is_said_to_be_none():
+    found = boundary_crisis(saddle("U3-3-1"), "frequency", (1.128, 1.132), points=200, periods=40)
+    assert not found.converged
+    assert np.isnan(found.parameter)
+    assert "no crisis" in found.message
+
+
+def test_only_saddles_are_taken():
+    stable = next(o for o in find_orbits(scan(0.6), (1,)).orbits if o.stable)
+    with pytest.raises(DynamicsError, match="saddle"):
+        boundary_crisis(stable, "frequency", (0.5, 0.7))
