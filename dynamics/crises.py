@@ -41,7 +41,7 @@ class Crisis:
         At both bounds: how far motions from that branch come past the stable manifold, over the size of the saddle.
         Positive: they leave; negative: all turn back, the attractor is closed.
     error : float
-        Change of the parameter from the last two steps, relative.
+        Width of the bracket, relative.
     cost : Cost
         Effort.
     converged : bool
@@ -119,26 +119,21 @@ def boundary_crisis(
         cost = Cost(time.perf_counter() - began, 2, 0, search.periods)
         return Crisis(math.nan, saddle, 0, (math.nan, math.nan), math.nan, cost, False, message)
     side = sides[0]
-    (a, b), (at_a, at_b) = (low, high), ends[side]
-    steps, root, change = 0, math.nan, math.inf
-    while change > 1e-10 * abs(b) and steps < 60:
-        share = at_a / (at_a - at_b) if steps % 3 and LOST not in (at_a, at_b) else 0.5
-        middle = a + share * (b - a)
-        change, root = abs(middle - root) if steps else math.inf, middle
-        value = search.overshoot(middle, side)
-        if value == 0.0:
-            break
-        if value * at_a > 0.0:
-            a, at_a = middle, value
+    (a, b), at_a = (low, high), ends[side][0]
+    steps = 0
+    while b - a > 1e-10 * abs(b) and steps < 60:  # halving: the overshoot has kinks where another lobe leads
+        middle = 0.5 * (a + b)
+        if search.overshoot(middle, side) * at_a > 0.0:
+            a = middle
         else:
-            b, at_b = middle, value
-        change = min(change, b - a) if steps % 3 else change
+            b = middle
         steps += 1
+    root = 0.5 * (a + b)
     at = search.saddle(root)
     message = f"{at.label} and the attractor beside it meet at {parameter} = {root:.10g}"
     cost = Cost(time.perf_counter() - began, 2, steps, search.periods)
     return Crisis(
-        root, at, side, (ends[side][0], ends[side][1]), change / abs(root), cost, change <= 1e-9 * abs(root), message
+        root, at, side, (ends[side][0], ends[side][1]), (b - a) / abs(root), cost, b - a <= 1e-9 * abs(root), message
     )  # fmt: skip
 
 

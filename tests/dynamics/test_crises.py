@@ -30,7 +30,7 @@ def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
     """The tangency with U3-3-1 does not depend on how many points follow its manifold, and parts lasting chaos from
     chaos that dies out: below it every start comes to 6-4-4 if one waits."""
     found = boundary_crisis(saddle("U3-3-1"), "frequency", (1.116, 1.13))
-    again = boundary_crisis(saddle("U3-3-1"), "frequency", (1.117, 1.125), points=1500)
+    again = boundary_crisis(saddle("U3-3-1"), "frequency", (1.1175, 1.131), points=1500)
     assert found.converged
     assert found.saddle.label == "U3-3-1"
     assert found.overshoot[0] > 0.0 > found.overshoot[1]
