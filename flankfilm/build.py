@@ -16,7 +16,6 @@ from flankfilm.scene.schema import (
 )
 
 if TYPE_CHECKING:
-    from ehl import Lubricant
     from gears import BasicRack, Gear, GearDeviations, GearPair, Material
     from gears import Fault as GearFault
 
@@ -51,22 +50,6 @@ def gear_pair(scene: Scene) -> GearPair:
         return pair if not section.backlash_um else pair.with_backlash(1e-6 * section.backlash_um)
     except GeometryError as error:
         raise InputError([_scene_fault(fault) for fault in error.faults]) from error
-
-
-def lubricant(scene: Scene) -> Lubricant:
-    """Build the oil of a scene."""
-    from ehl import Lubricant
-
-    oil = scene.lubricant
-    if oil is None:
-        raise InputError([Fault("[lubricant]", "", "is required by the film", "Add the section [lubricant]")])
-    return Lubricant(
-        viscosity=oil.viscosity_Pa_s,
-        pressure_viscosity=1e-9 * oil.pressure_viscosity_per_GPa,
-        density=oil.density_kg_per_m3,
-        roelands_z=oil.roelands_z,
-        compressible=oil.compressible,
-    )
 
 
 def pinion_speed(scene: Scene) -> float:

@@ -6,7 +6,17 @@ Near a film solved at the force :math:`F_0` the prop follows
 
 which meets value and slope :math:`ds/dF = -1/k` there, stays positive and falls with the force: the form that
 every film formula has. Iterated with new films it needs two or three rounds, where a straight line
-can turn negative at small forces. Between two films along the path, what each says of the force in question
+can turn negative at small forces.
+
+Behind a meniscus that stays in place n is ten and more, since a heavier contact widens towards it. A lighter
+one leaves it behind and is flooded: its prop S, which follows a power law :math:`m` of its own, bounds the law,
+
+.. math:: s(F) = \frac{S_0 \, (F/F_0)^{-m}}{1 + c \, (F/F_0)^r},
+   \qquad c = \frac{S_0}{s_0} - 1, \quad r = (n - m) \frac{1 + c}{c},
+
+with the same value and slope at :math:`F_0`.
+
+Between two films along the path, what each says of the force in question
 is weighted linearly: place changes radius and speed by little from one film to the next.
 """
 
@@ -21,6 +31,7 @@ Array = NDArray[np.float64]
 
 
 _LEAST_RATIO = 0.01
+_LARGEST_LOGARITHM = 300.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +48,17 @@ class FilmLaw:
         Prop there [m].
     exponent : ndarray, shape (n,)
         n, at least zero [-].
+    flooded_prop, flooded_exponent : ndarray, shape (n,), optional
+        S_0 [m] and m [-] of the flooded contact, for films that a meniscus holds. Where S_0 is no larger
+        than s_0, or m no less than n, the plain power law stands.
     """
 
     rho1: Array
     force: Array
     prop: Array
     exponent: Array
+    flooded_prop: Array | None = None
+    flooded_exponent: Array | None = None
 
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
         """Prop [m] and its slope [m/N] at given places and forces.
@@ -83,9 +99,27 @@ class FilmLaw:
         """Prop and slope by one film each."""
         solved, exponent = self.force[film], self.exponent[film]
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
-        prop = self.prop[film] * ratio**-exponent
-        slope = np.where(ratio > _LEAST_RATIO, -exponent * prop / (ratio * solved), 0.0)
+        if self.flooded_prop is None or self.flooded_exponent is None:
+            prop, local = self.prop[film] * ratio**-exponent, exponent
+        else:
+            flooded, slow = self.flooded_prop[film], self.flooded_exponent[film]
+            prop, local = _bounded(self.prop[film], exponent, flooded, slow, ratio)
+        slope = np.where(ratio > _LEAST_RATIO, -local * prop / (ratio * solved), 0.0)
         return prop, slope
+
+
+def _bounded(prop: Array, exponent: Array, flooded: Array, slow: Array, ratio: Array) -> tuple[Array, Array]:
+    """Prop and its local exponent by the law that the flooded film bounds."""
+    lacking = flooded / prop - 1.0
+    bounds = (lacking > 0.0) & (exponent > slow)
+    c = np.where(bounds, lacking, 1.0)
+    steep = (exponent - slow) * (1.0 + c) / c
+    choked = c * np.exp(np.minimum(steep * np.log(ratio), _LARGEST_LOGARITHM))
+    held = flooded * ratio**-slow / (1.0 + choked)
+    return (
+        np.where(bounds, held, prop * ratio**-exponent),
+        np.where(bounds, slow + steep * choked / (1.0 + choked), exponent),
+    )
 
 
 @dataclass(frozen=True, eq=False)
