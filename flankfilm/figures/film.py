@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from ehl import Film
     from flankfilm.mesh_stiffness import MeshStiffness
+    from flankfilm.stages.film import FilmStage
 
 Array = NDArray[np.float64]
 
@@ -50,6 +51,38 @@ def film_along_path(
             ylim=(0, None),
         )
         _mark((upper, lower), marks)
+    return drawn
+
+
+def families(stages: Mapping[str, FilmStage], start: float) -> Figure:
+    """Draw films of several scenes: through the contact at C on the left, along the path on the right.
+
+    Parameters
+    ----------
+    stages : mapping
+        Label to the films of a scene.
+    start : float
+        Curvature radius of the pinion's flank at A [m].
+    """
+    with styled():
+        drawn = figure(7.6, 4.4)
+        (pressure, hertz), (thickness, along) = drawn.subplots(2, 2)
+        for (label, stage), colour, dash in zip(stages.items(), COLOURS, DASHES, strict=False):
+            look = {"color": colour, "linestyle": dash}
+            film = stage.profiles["C"]
+            x = film.x / film.contact.half_width
+            pressure.plot(x, 1e-9 * film.pressure, label=label, **look)
+            thickness.plot(x, 1e6 * film.thickness, **look)
+            travel = 1e3 * (stage.rho1 - start)
+            hertz.plot(travel, 1e-9 * stage.hertz_pressure, **look)
+            along.plot(travel, 1e6 * stage.minimum, **look)
+        legend_above(drawn, pressure)
+        thickest = max(stage.profiles["C"].central_thickness for stage in stages.values())
+        pressure.set(ylabel="pressure at C [GPa]", xlim=(-1.5, 1.2), ylim=(0, None))
+        thickness.set(ylabel="film at C [µm]", xlim=(-1.5, 1.2), ylim=(0, 2e6 * thickest))
+        thickness.set(xlabel="distance from the middle [half-widths]")
+        hertz.set(ylabel="Hertz pressure [GPa]", ylim=(0, None))
+        along.set(xlabel="travel along the path from A [mm]", ylabel="least film [µm]", ylim=(0, None))
     return drawn
 
 

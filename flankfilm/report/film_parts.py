@@ -64,7 +64,7 @@ def _figures(pair: GearPair, stage: FilmStage, dry: MeshStiffness) -> list[Drawi
     if stage.profiles:
         told = (
             "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
-            "The grids resolve the pressure spike to 1 %, unless it is narrower than any grid would."
+            "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
         )
         figures.append(drawing(film_figures.film_profiles(stage.profiles), "filmprofile", told))
     if stage.otherwise:
@@ -72,9 +72,14 @@ def _figures(pair: GearPair, stage: FilmStage, dry: MeshStiffness) -> list[Drawi
             "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
             "layer stayed when the load changes."
         )
-        cycles = (replace(stage.cycle, label=_as_it_is(stage)), *stage.otherwise.values())
-        figures.append(drawing(film_figures.stiffness_changes(cycles, dry), "filmheld", told))
+        held = film_figures.stiffness_changes(starved_cycles(stage), dry)
+        figures.append(drawing(held, "filmheld", told))
     return figures
+
+
+def starved_cycles(stage: FilmStage) -> tuple[MeshStiffness, ...]:
+    """Mesh with a starved film as it is, flooded, and with the other of meniscus and layer held."""
+    return (replace(stage.cycle, label=_as_it_is(stage)), *stage.otherwise.values())
 
 
 def _definitions(stage: FilmStage) -> Table:
