@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flankfilm.build import pinion_speed
 from flankfilm.build_film import lubricant, roughness, supply_of
 from flankfilm.faults import SolverError
-from flankfilm.film_law import FilmLaw
+from flankfilm.film_law import FilmLaw, HeldMeniscus
 from flankfilm.mesh_stiffness import MeshStiffness
 
 if TYPE_CHECKING:
@@ -164,9 +164,12 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
     exponent = np.array([_exponent(film, definition) for film in path.films])
     if not path.flooded or not any(_by_meniscus(film) for film in path.films):
         return FilmLaw(path.rho1, force, props, exponent)
-    flooded = np.array([film.prop for film in path.flooded])
-    slow = np.array([_exponent(film, "approach") for film in path.flooded])
-    return FilmLaw(path.rho1, force, props, exponent, flooded, slow)
+    held = HeldMeniscus(
+        np.array([-film.inlet / film.contact.half_width for film in map(film_inside, path.films)]),
+        np.array([film.prop for film in path.flooded]),
+        np.array([_exponent(film, "approach") for film in path.flooded]),
+    )
+    return FilmLaw(path.rho1, force, props, exponent, held)
 
 
 def _by_meniscus(film: Solved) -> bool:

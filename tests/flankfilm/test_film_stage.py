@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flankfilm.cache import Cache
+from flankfilm.faults import InputError
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine
@@ -165,3 +166,16 @@ def test_the_stiffness_table_is_of_the_contact_nearest_to_c(flooded: FilmStage):
     # one pair by Ishikawa carries all at C: 16.6 N/(mm um) at E = 206 GPa
     film = rows["approach"].stiffness
     assert rows["approach"].loss * film / (1 - rows["approach"].loss) == pytest.approx(16.1 * 40e6, rel=0.02)
+
+
+def test_a_meniscus_at_the_contacts_edge_is_solved(flooded: FilmStage):
+    """A thousandth of a half-width ahead: props fall as the six-hundredth power of the load."""
+    tight = stage('supply = "meniscus"\nmeniscus_half_widths = 1.001\n')
+    assert tight.mismatch < 1e-4
+    assert tight.central.max() < 0.01 * flooded.central.min()
+    assert tight.change_tangent < 8 * flooded.change_tangent
+
+
+def test_a_meniscus_in_place_is_refused_inside_a_contact_on_the_path():
+    with pytest.raises(InputError, match=r"film\.meniscus_mm"):
+        stage('supply = "meniscus"\nmeniscus_mm = 0.1\n')
