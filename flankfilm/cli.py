@@ -259,6 +259,11 @@ for _function, _name, _help in (
         "export-profile",
         "Write the tooth profile of a gear of SCENE as a drawing or as points.",
     ),
+    (
+        "export_mesh",
+        "export",
+        "Write both gears of SCENE, loaded as they mesh, for CalculiX, Abaqus or gmsh.",
+    ),
     ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
     ("completion", "completion", "Print the script that completes commands in bash, zsh or fish."),
 ):
