@@ -87,7 +87,9 @@ def run(
     from flankfilm.run import run_scene
 
     wanted = _read(scene, tolerance)
-    folder = out if out is not None else Path(f"{scene.stem}-results")
+    # a results file is called like all others: its folder tells it apart
+    name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
+    folder = out if out is not None else Path(f"{name}-results")
     with console_progress() as progress:
         results = run_scene(wanted, folder, use_cache=cache, progress=progress)
     for line in summary(results):
