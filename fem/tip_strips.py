@@ -30,6 +30,9 @@ FIRST_EDGE, RATIO, REACH, RESOLVED = 1e-4, 1.25, 0.5, 0.01
 """End of the strip at the corner, ratio of successive widths, total width, and the distance from the corner
 below which the finite elements are not asked (all in modules of arc length)."""
 
+FARTHER = 6
+"""Strips by which pairs are moved out to see what is linear in the distance from the corner."""
+
 
 @dataclass(frozen=True, eq=False)
 class TipStrips:
@@ -115,7 +118,7 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
     """Load the middles of strips near the tip corner, and take the displacements there.
 
     The strips' widths are in geometric progression. Two strips nearer to the corner than the elements
-    resolve see only the wedge: their regular part is that of two resolved strips in the same ratio.
+    resolve see the wedge and the tooth's turn: their regular part follows from resolved strips in the same ratio.
     """
     m, law = profile.module, ring.law
     distance, width = sharp_layout(m)
@@ -123,22 +126,35 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
     rho = np.sqrt(profile.flank_rho[1] ** 2 - 2 * profile.base_radius * distance)
     solved = int(np.searchsorted(distance, RESOLVED * m))
     normal = flank_points(ring.mesh, rho, flank)
-    fields = _regular(ring, normal, normal.towards_tip(), solved)
-    first, second = np.indices((count, count))
+    nn, nt, tn, tt = _regular(ring, normal, normal.towards_tip(), solved)
+    angle, _ = corner_logarithm(ring.mesh, law, flank)
+    c_nn, c_nt, c_tt = wedge_logarithms(angle, law)
+    upper = np.triu(np.ones((count, count), dtype=bool))
+    regular = (
+        _scaled(nn, c_nn, solved),
+        np.where(upper, _scaled(nt, c_nt, solved), _scaled(tn, c_nt, solved)),
+        _scaled(tt, c_tt, solved),
+    )
+    flat = flat_kernels(distance, width, law, m)
+    kernel, mixed, tangential = (part + half_plane for part, half_plane in zip(regular, flat, strict=True))
+    return TipStrips(distance, width, rho, kernel, mixed, tangential, law, m)
+
+
+def _scaled(part: Array, logarithm: float, solved: int) -> Array:
+    """Regular part of all pairs of strips from that of pairs (points, loads from ``solved`` on).
+
+    Of two strips the one farther from the corner is loaded. Two strips that are both nearer than the first
+    load are moved out together, to that load, and to another one farther out: the two differ by the wedge's
+    logarithm and by what the tooth adds, linear in the distances, which is taken off.
+    """
+    first, second = np.indices((len(part), len(part)))
     larger, smaller = np.maximum(first, second), np.minimum(first, second)
     shift = np.maximum(solved - larger, 0)
-    # of two strips the one farther from the corner is loaded
-    nn, nt, tn, tt = (field[smaller + shift, larger + shift - solved] for field in fields)
-    nt = np.where(first <= second, nt, tn)
-    angle, _ = corner_logarithm(ring.mesh, law, flank)
-    flat = flat_kernels(distance, width, law, m)
-    kernel, mixed, tangential = (
-        part - coefficient * np.log(RATIO) * shift + half_plane
-        for part, coefficient, half_plane in zip(
-            (nn, nt, tt), wedge_logarithms(angle, law), flat, strict=True
-        )
-    )
-    return TipStrips(distance, width, rho, kernel, mixed, tangential, law, m)
+    near = part[smaller + shift, larger + shift - solved]
+    more = np.where(shift > 0, FARTHER, 0)
+    far = part[smaller + shift + more, larger + shift + more - solved]
+    linear = (far - near - logarithm * np.log(RATIO) * more) / (RATIO**FARTHER - 1)
+    return np.asarray(near - logarithm * np.log(RATIO) * shift - linear * (1 - RATIO ** -shift.astype(float)))
 
 
 def _regular(ring: Ring, normal: FlankPoints, tangent: FlankPoints, solved: int) -> tuple[Array, ...]:

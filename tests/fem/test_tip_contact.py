@@ -93,7 +93,7 @@ def wheel_tip(article_pair):
 def test_opening_is_the_angle_between_the_normals_of_the_placed_flanks(article_pair):
     line, rho1 = article_pair.line_of_action, np.array([article_pair.points.A - 0.7e-3])
     rho2 = article_pair.teeth_profiles[1].flank_rho[1] - np.array([0.0, 2e-4])
-    _, where = unloaded_gap(article_pair.base_radii, line, rho1, rho2)
+    gap, where = unloaded_gap(article_pair.base_radii, line, rho1, rho2)
     angle = opening(article_pair.base_radii, line, rho1, where, rho2)[0]
     for k in (0, 1):
         tangents = []
@@ -106,7 +106,9 @@ def test_opening_is_the_angle_between_the_normals_of_the_placed_flanks(article_p
     # the leaning force misses the axis of its own gear by the lever that the other formula gives
     ratio = rho2[0] / article_pair.base_radii[1]
     lever = lever_ratio(article_pair, where[:, 0], rho1, 1)[0]
-    assert np.cos(angle[0]) - ratio * np.sin(angle[0]) == pytest.approx(lever, rel=1e-12)
+    assert np.cos(angle[0]) - ratio * np.sin(angle[0]) == pytest.approx(
+        lever, abs=gap[0, 0] / article_pair.base_radii[1]
+    )
 
 
 def test_kernel_is_symmetric_and_definite(wheel_tip):
@@ -136,15 +138,15 @@ def test_regular_parts_are_smooth_where_strips_pass_one_another_and_the_elements
     _, strips = wheel_tip
     flat = flat_kernels(strips.distance, strips.width, LAW, 2e-3)
     for whole, half_plane in zip((strips.kernel, strips.mixed, strips.tangential), flat, strict=True):
-        regular = (whole - half_plane)[3:, 3:] * LAW.plane_modulus
+        regular = (whole - half_plane)[3:31, 3:31] * LAW.plane_modulus  # up to .1 modules
         for axis in (0, 1):
-            assert np.abs(np.diff(regular, n=2, axis=axis)).max() < 0.06  # of 8 to 13
+            assert np.abs(np.diff(regular, n=2, axis=axis)).max() < 0.03  # of 8 to 15
 
 
 def test_leaning_kernel_against_plain_finite_elements(article_pair):
     """A strip pulled obliquely on the whole annulus with fine elements at the tip, no singularity taken out."""
     profile = article_pair.teeth_profiles[1]
-    fine = mesh_sector(profile, Sizes(flank=0.01, tip=0.01), refinements=0)
+    fine = mesh_sector(profile, Sizes(flank=0.03), refinements=1)
     gear, solve = whole_annulus(profile, mesh_sector(profile, refinements=1), {0: fine})
     edges, arcs = gear.nodes[0][fine.facets["flank_left"]], fine.parameters["flank_left"]
     end = profile.flank_rho[1] ** 2 / (2 * profile.base_radius)
