@@ -153,7 +153,11 @@ class LineLoads:
 
         On tooth 0 itself this is the regular part u_r, to which ``singular`` has to be added.
         """
-        return where.component(_nodal(self.ring, self._inner(tooth)))
+        nodes, local = np.unique(where.nodes, return_inverse=True)
+        # no point of a flank is on a cut or on the hub
+        asked = np.searchsorted(self.ring.inner, (2 * nodes[:, None] + np.arange(2)).ravel())
+        moved = self._inner(tooth, asked).reshape(len(nodes), 2, -1)
+        return replace(where, nodes=local.reshape(where.nodes.shape)).component(moved)
 
     def singular(self, where: FlankPoints) -> Array:
         """u_s along the directions of points of tooth 0 (points, loads); zero at the loads themselves."""
@@ -164,17 +168,11 @@ class LineLoads:
             part[apart, i] = np.einsum("na,na->n", u, where.direction[apart])
         return part
 
-    def _inner(self, tooth: int) -> Array:
+    def _inner(self, tooth: int, some: Index | slice = slice(None)) -> Array:
+        """Inner unknowns of a tooth's sector, all or some: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
-        inner = -self.ring.inner_by_cut @ cuts
-        return np.asarray(inner + self.own_inner if tooth == 0 else inner)
-
-
-def _nodal(ring: Ring, inner: Array) -> Array:
-    """Spread inner unknowns over (nodes, 2, ...); cuts and hub stay zero, no flank touches them."""
-    full = np.zeros((ring.mesh.unknowns, *inner.shape[1:]))
-    full[ring.inner] = inner
-    return full.reshape(-1, 2, *inner.shape[1:])
+        inner = -self.ring.inner_by_cut[some] @ cuts
+        return np.asarray(inner + self.own_inner[some] if tooth == 0 else inner)
 
 
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:

@@ -87,6 +87,7 @@ def _edge_table(given: Setting, bodies: Compliance, where: Meshing) -> tuple[Tab
         return None, np.zeros(0)
     places: list[NDArray[np.int64]] = []
     laws: list[tuple[Array, Array]] = []
+    ends: list[Array] = []
     for corner, chosen in where.corners():
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
         law = edge_laws(
@@ -100,11 +101,12 @@ def _edge_table(given: Setting, bodies: Compliance, where: Meshing) -> tuple[Tab
         )
         places.append(np.flatnonzero(chosen).astype(np.int64))
         laws.append((law.force, law.approach - law.approach[:, :1]))
+        ends.append(law.largest)
     points = max(force.shape[1] for force, _ in laws)
     order = np.argsort(np.concatenate(places))
     force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
     approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
-    largest = np.concatenate([force[:, -1] for force, _ in laws])[order]
+    largest = np.concatenate(ends)[order]
     return Table.through(force, approach), largest
 
 
@@ -116,10 +118,15 @@ def _extended(values: Array, points: int) -> Array:
 
 
 def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
-    """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
+    """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
+
+    The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
+    """
     width = bodies.pair.face_width
     for corner, chosen in where.corners():
         gear = (bodies.pinion, bodies.wheel)[corner]
         position, column = np.nonzero(chosen)
-        at_end = gear.own(where.rho[corner][position, column]) / width
-        matrix[position, column, column] -= at_end
+        rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
+        angle = where.leaning[corner][position, column]
+        lever = np.cos(angle) - np.sin(angle) * rho / gear.base_radius
+        matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width

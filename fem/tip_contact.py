@@ -86,8 +86,11 @@ class EdgeLaw:
     force : (n, k) array
         Growing forces on the line of action that turn the pinion as the contact's do [N], the first one zero.
     approach : (n, k) array
-        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part and without other
-        teeth; at zero force that at which the tip touches.
+        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part, without the turn of
+        the tip's own body on its hub, and without other teeth; at zero force that at which the tip touches.
+    largest : (n,) array
+        Force [N] up to which the law holds: over all strips, or until strips farther in would let it fall.
+        Beyond it goes on straight.
     where : (n,) array
         Curvature radius at which the other gear's flank is touched [m].
     """
@@ -95,6 +98,7 @@ class EdgeLaw:
     force: Array
     approach: Array
     where: Array
+    largest: Array
 
 
 def _nothing(rho: Array) -> Array:
@@ -181,11 +185,27 @@ def edge_laws(
     place = rho1 if corner == 1 else pair.line_of_action - rho1
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     angle = opening(radii, pair.line_of_action, place, touched, tip.unrounded_rho)
-    kernel = answer.leaning(angle) + flat_kernel(tip.distance, tip.width, other, pair.module)
+    own = answer.lever(angle)
+    turned = answer.hub_windup * own[:, :, None] * own[:, None, :]
+    kernel = answer.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
     levers = _levers(pair, corner, touched, rho1)
     if sharp and removed is None:
         first = (end / _levers(pair, corner, where, rho1))[:, 0]
         force, approach = from_the_corner(kernel, gaps, first, levers)
     else:
         force, approach = from_the_nearest(kernel, gaps, levers)
-    return EdgeLaw(force * pair.face_width, approach, where[:, 0])
+    force, approach, largest = _growing(force * pair.face_width, approach)
+    return EdgeLaw(force, approach, where[:, 0], largest)
+
+
+def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:
+    """Laws up to where force or approach first fall, straight from there on; and that force."""
+    grow = (np.diff(force) > 0) & (np.diff(approach) > 0)
+    last = np.logical_and.accumulate(grow, axis=1).sum(axis=1)[:, None]
+    beyond = np.maximum(np.arange(force.shape[1]) - last, 0)
+
+    def straight(values: Array) -> Array:
+        end, before = (np.take_along_axis(values, at, axis=1) for at in (last, last - 1))
+        return np.where(beyond > 0, end + beyond * (end - before), values)
+
+    return straight(force), straight(approach), np.take_along_axis(force, last, axis=1)[:, 0]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.elasticity import PlaneElasticity
-from fem.flexibility import corner_logarithm, wedge_logarithms
+from fem.flexibility import corner_logarithm, hub_windup, wedge_logarithms
 from fem.line_load import FlankPoints, flank_points, line_loads
 from fem.strip_contact import flat_kernels
 
@@ -56,6 +56,10 @@ class TipStrips:
         Of the tooth.
     length : float
         Unit of length of the logarithms, the module [m].
+    base_radius : float
+        [m]
+    hub_windup : float
+        Part of the kernels that is the body's turning, times the levers over the base radius [m per N/m].
     """
 
     distance: Array
@@ -66,6 +70,8 @@ class TipStrips:
     tangential: Array
     law: PlaneElasticity
     length: float
+    base_radius: float
+    hub_windup: float
 
     def leaning(self, angle: Array) -> Array:
         """Kernels for forces and displacements that lean from the inward normals away from the tip.
@@ -87,6 +93,10 @@ class TipStrips:
         by_normal = self.kernel * cos[:, None, :] - self.mixed * sin[:, None, :]
         by_tangent = self.tangential * sin[:, None, :] - self.mixed.T * cos[:, None, :]
         return np.asarray(cos[:, :, None] * by_normal + sin[:, :, None] * by_tangent)
+
+    def lever(self, angle: Array) -> Array:
+        """Levers of leaning forces about the gear's own axis, over the base radius; angles (..., n) [rad]."""
+        return np.asarray(np.cos(angle) - np.sin(angle) * self.rho / self.base_radius)
 
     def on(self, distance: Array, width: Array) -> TipStrips:
         """Other strips of the same tip: the regular parts are smooth in the logarithms of both distances."""
@@ -137,7 +147,8 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
     )
     flat = flat_kernels(distance, width, law, m)
     kernel, mixed, tangential = (part + half_plane for part, half_plane in zip(regular, flat, strict=True))
-    return TipStrips(distance, width, rho, kernel, mixed, tangential, law, m)
+    turned = hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, law)
+    return TipStrips(distance, width, rho, kernel, mixed, tangential, law, m, profile.base_radius, turned)
 
 
 def _scaled(part: Array, logarithm: float, solved: int) -> Array:
