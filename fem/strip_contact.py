@@ -48,9 +48,9 @@ def flat_kernels(distance: Array, width: Array, law: PlaneElasticity, length: fl
 def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> tuple[Array, Array]:
     """Law of contacts that spread from the first strip inwards, strip by strip.
 
-    A contact that covers the first k strips has no pressure on the last of them. The kernel is symmetric but for
-    unequal strips; with its symmetric part K = L L^T the leading blocks are L_k L_k^T, so one factor serves every
-    k: with w = L^-1 l and y = L^-1 g, D_k = y_k/w_k and F_k = D_k sum w_j^2 - sum w_j y_j.
+    A contact that covers the first k strips has no load on the last of them. With K = L U the leading blocks
+    are L_k U_k, so one elimination of K bordered by levers and gaps serves every k: with w = L^-1 l, y = L^-1 g
+    and v = U^-T l, D_k = y_k/w_k and F_k = D_k sum v_j w_j - sum v_j y_j.
 
     Parameters
     ----------
@@ -68,12 +68,22 @@ def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> 
     force, approach : (contacts, strips) arrays
         Growing line loads from 0 [N/m], approach [m].
     """
-    lower = np.linalg.cholesky(0.5 * (kernel + np.swapaxes(kernel, -1, -2)))
-    by_lever, by_gap = np.moveaxis(np.linalg.solve(lower, np.stack([levers, gaps], axis=-1)), -1, 0)
+    contacts, strips = gaps.shape
+    # contacts along the last axis; no pivoting, since the kernel is almost symmetric and definite
+    whole = np.empty((strips + 1, strips + 2, contacts))
+    whole[:strips, :strips] = np.moveaxis(np.broadcast_to(kernel, (contacts, strips, strips)), 0, -1)
+    whole[-1, :strips] = whole[:strips, -2] = levers.T
+    whole[:strips, -1], whole[-1, -2:] = gaps.T, 0.0
+    sums = np.empty((strips, contacts))
+    for k in range(strips):
+        lower = whole[k + 1 :, k] / whole[k, k]
+        whole[k + 1 :, k + 1 :] -= lower[:, None] * whole[k, k + 1 :]
+        sums[k] = lower[-1]
+    by_lever, by_gap = whole[:strips, -2], whole[:strips, -1]
     approach = by_gap / by_lever
-    force = approach * np.cumsum(by_lever**2, axis=1) - np.cumsum(by_lever * by_gap, axis=1)
-    force[:, 0], approach[:, 0] = 0.0, first
-    return force, approach
+    force = approach * np.cumsum(sums * by_lever, axis=0) - np.cumsum(sums * by_gap, axis=0)
+    force[0], approach[0] = 0.0, first
+    return np.ascontiguousarray(force.T), np.ascontiguousarray(approach.T)
 
 
 def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array]:

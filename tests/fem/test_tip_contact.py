@@ -195,7 +195,8 @@ def test_at_A_the_law_meets_hertz(article_pair, article_bodies):
     force = np.array([2e3, 5e3, 1e4])
     edge = np.interp(force, law.force[0], law.approach[0])
     A = np.full(3, article_pair.points.A)
-    wheel = article_bodies.wheel.own(article_pair.line_of_action - A) / article_pair.face_width
+    wheel = article_bodies.wheel.own(article_pair.line_of_action - A) - article_bodies.wheel.hub_windup
+    wheel = wheel / article_pair.face_width
     hertz = article_bodies.hertz(A).approach(force) + wheel * force
     np.testing.assert_allclose(edge, hertz, rtol=0.03)
 
@@ -304,7 +305,9 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         leaning = np.zeros((2, len(on)))
         leaning[0, edge] = angle
         bulk = article_bodies.bulk(first, second, leaning)
-        bulk[edge, edge] -= corner  # the law of the edge has its own tooth in it
+        # the law of the edge has its own tooth in it, but not the turn on the hub
+        lever = np.cos(angle) - np.sin(angle) * pinion.rho_range[1] / pinion.base_radius
+        bulk[edge, edge] -= corner - pinion.hub_windup / article_pair.face_width * lever**2
         way = bulk @ force
         # the law is in the force that turns the pinion as much, and in the pinion's turn
         turned = kappa[edge] * force[edge]

@@ -72,7 +72,8 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     strips = article_bodies.tips[1]
     from fem.strip_contact import flat_kernel
 
-    leaning = strips.leaning(np.full((1, len(strips.rho)), flank - turn))[0]
+    angle = np.full((1, len(strips.rho)), flank - turn)
+    leaning = strips.leaning(angle)[0] - strips.hub_windup * strips.lever(angle[0]) ** 2
     regular = leaning - flat_kernel(strips.distance, strips.width, strips.law, m)
     own = np.interp(np.log(distance), np.log(strips.distance), np.diag(regular))
     R = 1 / (1 / radius + 1 / law.where[0])
