@@ -16,11 +16,15 @@ if TYPE_CHECKING:
     from dynamics.continuation import Branch as Branch
     from dynamics.continuation import continue_branch as continue_branch
     from dynamics.cost import Cost as Cost
+    from dynamics.diagrams import Diagram as Diagram
+    from dynamics.diagrams import diagram as diagram
     from dynamics.errors import DynamicsError as DynamicsError
     from dynamics.errors import DynamicsWarning as DynamicsWarning
     from dynamics.errors import Fault as Fault
     from dynamics.exponents import LyapunovResult as LyapunovResult
     from dynamics.exponents import lyapunov_exponents as lyapunov_exponents
+    from dynamics.finding import OrbitSet as OrbitSet
+    from dynamics.finding import find_orbits as find_orbits
     from dynamics.flow import Trajectory as Trajectory
     from dynamics.flow import period_map as period_map
     from dynamics.flow import trajectory as trajectory
@@ -30,16 +34,30 @@ if TYPE_CHECKING:
     from dynamics.grazing import ContactGrazing as ContactGrazing
     from dynamics.grazing import contact_grazing as contact_grazing
     from dynamics.grazing import contact_orbit as contact_orbit
+    from dynamics.loci import DoublePoint as DoublePoint
+    from dynamics.loci import Locus as Locus
+    from dynamics.loci import continue_locus as continue_locus
     from dynamics.oscillator import GearOscillator as GearOscillator
     from dynamics.scaling import Scaling as Scaling
+    from dynamics.sensitivity import MapDerivatives as MapDerivatives
+    from dynamics.sensitivity import map_derivatives as map_derivatives
     from dynamics.shooting import Orbit as Orbit
     from dynamics.shooting import find_orbit as find_orbit
     from dynamics.special import SpecialPoint as SpecialPoint
     from dynamics.stiffness import FourierStiffness as FourierStiffness
     from dynamics.sweeps import SweepResult as SweepResult
     from dynamics.sweeps import sweep as sweep
+    from dynamics.switching import doubled_orbit as doubled_orbit
 
 _HOMES = {
+    "DoublePoint": "loci",
+    "Locus": "loci",
+    "continue_locus": "loci",
+    "Diagram": "diagrams",
+    "diagram": "diagrams",
+    "doubled_orbit": "switching",
+    "OrbitSet": "finding",
+    "find_orbits": "finding",
     "Attractor": "attraction",
     "BasinResult": "attraction",
     "Branch": "continuation",
@@ -55,6 +73,7 @@ _HOMES = {
     "FourierFit": "fourier",
     "FourierStiffness": "stiffness",
     "GearOscillator": "oscillator",
+    "MapDerivatives": "sensitivity",
     "Orbit": "shooting",
     "Scaling": "scaling",
     "SpecialPoint": "special",
@@ -64,6 +83,7 @@ _HOMES = {
     "contact_orbit": "grazing",
     "find_orbit": "shooting",
     "fit_fourier": "fourier",
+    "map_derivatives": "sensitivity",
     "period_map": "flow",
     "sweep": "sweeps",
     "trajectory": "flow",

@@ -213,7 +213,7 @@ class _Found:
 
     def settle(self, starts: FloatArray, limit: int, labels: IntArray) -> None:
         """Follow all undecided starts until they arrive at a known periodic attractor."""
-        from dynamics import kernels
+        from dynamics.kernels.searching import settle
 
         rows = [
             np.column_stack([p, np.full(len(p), i), np.full(len(p), len(p))])
@@ -222,7 +222,7 @@ class _Found:
         ]
         homes = np.vstack(rows) if rows else np.zeros((0, 4))
         radius = self.near * float(np.max(np.abs(homes[:, :2]), initial=0.0))
-        self.periods += int(kernels.settle(self.table.arrays, starts, homes, radius, limit, labels))
+        self.periods += int(settle(self.table.arrays, starts, homes, radius, limit, labels))
 
     def attractors(self, labels: IntArray) -> tuple[Attractor, ...]:
         """Records with their shares."""

@@ -10,16 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.corrector import BranchProblem, Point
+from dynamics.corrector import OrbitProblem, Point
 from dynamics.cost import Cost
-from dynamics.crossings import find_crossings, locate
+from dynamics.crossings import Crossing, find_crossings, locate
 from dynamics.errors import Faults
+from dynamics.flow import period_map
 from dynamics.shooting import Orbit, floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
 __all__ = ["KINDS", "Branch", "continue_branch"]
 
 FloatArray = npt.NDArray[np.float64]
+MEETS = "meets the branch of half the period"
 KINDS = ("saddle-node", "period-doubling", "grazing")
 
 
@@ -52,8 +54,8 @@ class Branch:
     cost : Cost
         Effort.
     converged : bool
-        Whether both ends were reached for a good reason (a bound, the start again) and every special point seen
-        was located.
+        Whether both ends were reached for a good reason (a bound, the start again, the branch of half the period)
+        and every special point seen was located.
     message : str
         What happened, with a remedy if not converged.
     """
@@ -156,7 +158,9 @@ def continue_branch(
     limit = faults.whole("max_points", max_points, 1, 10**7, "5000 is usual")
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.half_backlash, 1e-300)
-    problem = BranchProblem(orbit.oscillator, parameter, orbit.periods, low, high, scale)
+    problem = OrbitProblem(
+        orbit.oscillator, (parameter,), orbit.periods, np.array([low]), np.array([high]), scale
+    )
     flat = np.array([0.0, 0.0, 1.0])
     start = problem.correct(problem.unknowns(orbit.state, value), flat)
     if start is None:
@@ -177,7 +181,7 @@ class _Walker:
     """Steps from a start in one direction until a reason to end."""
 
     def __init__(
-        self, problem: BranchProblem, start: Point, along: FloatArray, steps: tuple[float, float, float],
+        self, problem: OrbitProblem, start: Point, along: FloatArray, steps: tuple[float, float, float],
         limit: int, progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         self.problem, self.limit, self.progress = problem, limit, progress
@@ -185,6 +189,9 @@ class _Walker:
         self.points = [start]
         self.special: list[SpecialPoint] = []
         self.tangent = problem.tangent(start, along)
+        even = problem.periods % 2 == 0
+        self.phases = self._phases(start)
+        self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
         self.ended = ""
         self.missed: list[float] = []
         self.iterations = 0
@@ -199,21 +206,42 @@ class _Walker:
                 self.ended = f"{self.limit} points: raise max_points"
                 return
             last = self.points[-1]
-            new = self._try(last)
-            if new is None:
+            step = self._try(last)
+            if step is None:
                 self.step *= 0.5
                 if self.step < self.min_step:
                     self.ended = f"{self.refused} at a step of {self.step:.0e}"
                 continue
-            self._accept(last, new)
+            new = step.point
+            if self.problem.periods % 2 == 0:
+                half = self.problem.half_way(new) - new.u[:2]
+                if half @ self.half < 0.0:  # the two halves of the orbit have changed places
+                    self.ended = MEETS
+                    return
+                self.half = half
+            self._accept(last, step)
             distance = float(np.linalg.norm(new.u - start.u))
             away = away or distance > 4.0 * self.max_step
-            if away and distance < self.step and (start.u - last.u) @ (new.u - last.u) > 0.0:
+            if away and self._closed(last, new):
                 self.ended = "closed"
             elif float(np.max(np.abs(new.u[:2]))) > 1e6:
                 self.ended = "the motion grows without bound"
 
-    def _try(self, last: Point) -> Point | None:
+    def _phases(self, start: Point) -> FloatArray:
+        """Unknowns of the start, its orbit taken from each excitation period on."""
+        n = self.problem.periods
+        states = period_map(self.problem.at(start.u), start.state, n).states
+        value = np.full((n, 1), start.u[2])
+        return np.hstack([np.roll(states, 1, axis=0) / self.problem.scale, value])
+
+    def _closed(self, last: Point, new: Point) -> bool:
+        """Tell whether a step passes the start, at any of the n phases of its orbit."""
+        chord, back = new.u - last.u, self.phases - last.u
+        along = back @ chord / (chord @ chord)
+        beside = np.linalg.norm(back - along[:, None] * chord, axis=1)
+        return bool(np.any((along > 0.0) & (along <= 1.0) & (beside < 0.1 * math.sqrt(chord @ chord))))
+
+    def _try(self, last: Point) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
         guess = last.u + self.step * self.tangent
         row = self.tangent
@@ -229,28 +257,29 @@ class _Walker:
         new = self.problem.correct(guess, row)
         if new is None or new.iterations > 8:
             return None
-        if np.linalg.norm(new.u - last.u) > 2.0 * self.step and math.isnan(bound):
+        chord = new.u - last.u
+        if math.sqrt(chord @ chord) > 2.0 * self.step and math.isnan(bound):
             return None
-        tangent = self.problem.tangent(new, new.u - last.u)
+        tangent = self.problem.tangent(new, chord)
+        patient = self.step > 16.0 * self.min_step
         self.refused = "the branch has a corner"
-        if tangent @ self.tangent < 0.9 and self.step > 16.0 * self.min_step:
+        if tangent @ self.tangent < 0.9 and patient:
             return None
         self.refused = "the multipliers jump"
-        change = abs(new.trace - last.trace)
-        if change > 0.3 * max(1.0, abs(last.trace)) and self.step > 16.0 * self.min_step:
+        if abs(new.trace - last.trace) > 0.3 * max(1.0, abs(last.trace)) and patient:
             return None
-        _, explained = find_crossings(self.problem, last, new)
-        if not explained and self.step > 16.0 * self.min_step:
-            return None
-        return new
-
-    def _accept(self, last: Point, new: Point) -> None:
-        """Take a point, locate what lies between, choose the next step."""
         crossings, explained = find_crossings(self.problem, last, new)
-        if not explained:
+        if not explained and patient:
+            return None
+        return _Step(new, tangent, crossings, explained)
+
+    def _accept(self, last: Point, step: _Step) -> None:
+        """Take a point, locate what lies between, choose the next step."""
+        new = step.point
+        if not step.explained:
             self.missed.append(new.value)
         found = []
-        for crossing in crossings:
+        for crossing in step.crossings:
             special = locate(self.problem, last, new, crossing)
             if special is None:
                 self.missed.append(new.value)
@@ -261,7 +290,7 @@ class _Walker:
         self.special += found
         self.points.append(new)
         self.iterations += new.iterations
-        self.tangent = self.problem.tangent(new, chord)
+        self.tangent = step.tangent
         if new.u[2] in (0.0, 1.0):
             self.ended = "bound"
         if new.iterations <= 4:
@@ -270,7 +299,17 @@ class _Walker:
             self.progress(len(self.points), new.value)
 
 
-def _branch(problem: BranchProblem, walkers: list[_Walker], began: float) -> Branch:
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A step that may be taken."""
+
+    point: Point
+    tangent: FloatArray
+    crossings: list[Crossing]
+    explained: bool
+
+
+def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Branch:
     """Join the two directions into one record."""
     back = walkers[0]
     points, special = back.points[::-1], back.special[::-1]
@@ -281,13 +320,13 @@ def _branch(problem: BranchProblem, walkers: list[_Walker], began: float) -> Bra
     pairs = [floquet_multipliers(p.trace, p.determinant) for p in points]
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
-    good = all(reason in ("bound", "closed") for reason in ended) and not missed
+    good = all(reason in ("bound", "closed", MEETS) for reason in ended) and not missed
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
     if missed:
-        message += f"; not located near {problem.parameter} = {missed[0]:.10g}: lower min_step"
+        message += f"; not located near {problem.parameters[0]} = {missed[0]:.10g}: lower min_step"
     iterations = sum(w.iterations for w in walkers)
     return Branch(
-        problem.parameter,
+        problem.parameters[0],
         problem.periods,
         np.array([p.value for p in points]),
         np.array([p.state for p in points]),

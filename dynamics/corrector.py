@@ -1,44 +1,51 @@
-"""One point of a branch of periodic orbits: evaluation, Newton corrector and tangent."""
+"""One point of a branch or locus of periodic orbits: evaluation with exact derivatives, Newton corrector, tangent."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError
-from dynamics.flow import MapResult, Tables, period_map, tables, turning_points
-from dynamics.oscillator import GearOscillator
-from dynamics.shooting import EPS, exact_determinant
+from dynamics.flow import DEGREE
+from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
+from dynamics.shooting import EPS
 
-__all__ = ["BranchProblem", "Point"]
+__all__ = ["OrbitProblem", "Point"]
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+ROOM = 64  # extrema expected at most; more are asked for if there are more
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A periodic orbit on a branch.
+    """A periodic orbit, or a state near one, with the derivatives of its map.
 
     Parameters
     ----------
-    u : ndarray, shape (3,)
-        Unknowns: X and V over the scale, the parameter as a fraction of its range.
-    value : float
-        The parameter.
-    state : ndarray, shape (2,)
-        X and V at tau = 0.
-    jacobian : ndarray, shape (2, 2)
-        Derivative of the map over the orbit's period.
+    u : ndarray, shape (2 + m,)
+        Unknowns: X and V over the scale, each parameter as a fraction of its range.
+    values : ndarray, shape (m,)
+        The parameters.
+    state, image : ndarray, shape (2,)
+        X and V at tau = 0 and after the orbit's period.
+    derivative : ndarray, shape (2, 2 + m)
+        Of the image with respect to the unknowns, both over the scale; its first two columns are the Jacobian.
+    second : ndarray, shape (2 + m, 2, 2)
+        Derivative of the Jacobian with respect to the unknowns.
     determinant : float
-        Its exact determinant.
+        Exact determinant of the Jacobian.
+    determinant_slope : ndarray, shape (2 + m,)
+        Its derivative with respect to the unknowns.
     counts : tuple of int
         Exits from X > D and entries into X < -D.
-    slope : ndarray, shape (2,)
-        Derivative of the map with respect to the third unknown.
     extrema : ndarray, shape (k, 3)
         Phase in [0, 1) of the orbit's period, X, X'' at every extremum of X.
+    extrema_slope : ndarray, shape (k, 2 + m)
+        Derivative of X there, over the scale, with respect to the unknowns.
     residual : float
         Of the map, over the scale.
     iterations : int
@@ -46,20 +53,38 @@ class Point:
     """
 
     u: FloatArray
-    value: float
+    values: FloatArray
     state: FloatArray
-    jacobian: FloatArray
+    image: FloatArray
+    derivative: FloatArray
+    second: FloatArray
     determinant: float
+    determinant_slope: FloatArray
     counts: tuple[int, int]
-    slope: FloatArray
     extrema: FloatArray
+    extrema_slope: FloatArray
     residual: float
     iterations: int
 
     @property
+    def value(self) -> float:
+        """The first parameter."""
+        return float(self.values[0])
+
+    @property
+    def jacobian(self) -> FloatArray:
+        """Derivative of the map with respect to the state."""
+        return self.derivative[:, :2]
+
+    @cached_property
     def trace(self) -> float:
         """Trace of the Jacobian."""
-        return float(np.trace(self.jacobian))
+        return float(self.derivative[0, 0] + self.derivative[1, 1])
+
+    @property
+    def trace_slope(self) -> FloatArray:
+        """Its derivative with respect to the unknowns."""
+        return self.second[:, 0, 0] + self.second[:, 1, 1]
 
     @property
     def fold(self) -> float:
@@ -73,125 +98,179 @@ class Point:
 
 
 @dataclass(frozen=True, eq=False)
-class BranchProblem:
-    """Periodic orbits of n periods in dependence on one parameter.
+class OrbitProblem:
+    """Periodic orbits of n periods in dependence on one or two parameters.
 
     Parameters
     ----------
     oscillator : GearOscillator
         The oscillator.
-    parameter : str
+    parameters : tuple of str
         As in `GearOscillator.with_parameter`.
     periods : int
         n.
-    low, high : float
-        Range of the parameter.
+    low, high : ndarray, shape (m,)
+        Range of each parameter.
     scale : float
         Size of the motion, by which the state is measured.
     """
 
     oscillator: GearOscillator
-    parameter: str
+    parameters: tuple[str, ...]
     periods: int
-    low: float
-    high: float
+    low: FloatArray
+    high: FloatArray
     scale: float
 
-    def value(self, u: FloatArray) -> float:
-        """Parameter of the unknowns."""
-        return self.low + float(u[2]) * (self.high - self.low)
+    @cached_property
+    def origin(self) -> FloatArray:
+        """Packed parameters of the oscillator with every parameter at its lower bound."""
+        packed = self.oscillator.packed()
+        for name, low in zip(self.parameters, self.low, strict=True):
+            packed[self.oscillator.place(name)] = low
+        return packed
+
+    @cached_property
+    def ways(self) -> FloatArray:
+        """Change of the packed parameters over the range of each parameter, shape (m, any)."""
+        ways = np.zeros((len(self.parameters), len(self.origin)))
+        for row, name, width in zip(ways, self.parameters, self.high - self.low, strict=True):
+            row[self.oscillator.place(name)] = width
+        return ways
+
+    def packed(self, u: FloatArray) -> FloatArray:
+        """Packed parameters of the unknowns."""
+        return self.origin + u[2:] @ self.ways
 
     def at(self, u: FloatArray) -> GearOscillator:
         """Oscillator of the unknowns."""
-        return self.oscillator.with_parameter(self.parameter, self.value(u))
+        here = self.oscillator
+        for name, value in zip(self.parameters, self.values(u), strict=True):
+            here = here.with_parameter(name, float(value))
+        return here
 
-    def unknowns(self, state: FloatArray, value: float) -> FloatArray:
-        """Unknowns of a state and a parameter value."""
-        return np.array([*(state / self.scale), (value - self.low) / (self.high - self.low)])
+    def values(self, u: FloatArray) -> FloatArray:
+        """Parameters of the unknowns."""
+        return np.asarray(self.low + u[2:] * (self.high - self.low))
 
-    def image(self, u: FloatArray, refinement: int = 1) -> tuple[MapResult, Tables]:
-        """Image of the state under the map."""
-        table = tables(self.at(u), refinement)
-        return period_map(table, u[:2] * self.scale, self.periods), table
+    def unknowns(self, state: FloatArray, values: npt.ArrayLike) -> FloatArray:
+        """Unknowns of a state and the parameter values."""
+        fraction = (np.atleast_1d(np.asarray(values, dtype=np.float64)) - self.low) / (self.high - self.low)
+        return np.concatenate([np.asarray(state) / self.scale, fraction])
 
-    def slope(self, u: FloatArray) -> FloatArray:
-        """Derivative of the map with respect to the third unknown, by a central difference.
+    def evaluate(self, u: FloatArray, refinement: int = 1) -> Point | None:
+        """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
+        from dynamics.kernels.sensitivity import evaluate
 
-        Only the rate at which Newton's method converges depends on it, not where it converges to.
-        """
-        shift = np.array([0.0, 0.0, 1e-6])
-        try:
-            ahead, behind = self.image(u + shift)[0].state, self.image(u - shift)[0].state
-        except DynamicsError:  # the shifted parameter is not allowed, as next to a frequency of zero
-            return np.full(2, np.nan)
-        return (ahead - behind) / (2e-6 * self.scale)
+        store = _Store(len(self.parameters), ROOM * self.periods)
+        cells = self._cells(u, refinement)
+        if cells == 0:
+            return None
+        while True:
+            flag, turned, residual = evaluate(
+                self.origin, self.ways, self._order, cells, DEGREE, u, self.scale, self.periods, *store.arrays
+            )
+            if flag != 0:
+                return None
+            if turned <= len(store.turns):
+                return self._point(u.copy(), store, turned, residual, 0)
+            store = _Store(len(self.parameters), turned)
 
     def correct(
-        self, guess: FloatArray, row: FloatArray, refinement: int = 1, limit: int = 12
+        self, guess: FloatArray, across: FloatArray, refinement: int = 1, limit: int = 12
     ) -> Point | None:
-        """Periodic orbit in the plane row . (u - guess) = 0, or None if Newton's method does not arrive."""
+        """Periodic orbit in the plane across . (u - guess) = 0, or None if Newton's method does not arrive.
+
+        For one parameter.
+        """
+        from dynamics.kernels.sensitivity import correct
+
+        store = _Store(1, ROOM * self.periods)
+        cells = self._cells(guess, refinement)
+        if cells == 0:
+            return None
         u = guess.copy()
-        try:
-            image, table = self.image(u, refinement)
-        except DynamicsError:
+        flag, turned, iterations, residual = correct(
+            self.origin, self.ways, self._order, cells, DEGREE, u, across, self.scale, self.periods, limit,
+            *store.arrays,
+        )  # fmt: skip
+        if flag != 0:
             return None
-        slope = self.slope(u)
-        best = self._residual(image, u)
-        iterations = 0
-        while iterations < limit and np.all(np.isfinite(slope)) and np.isfinite(best):
-            matrix = np.vstack([np.column_stack([image.jacobian - np.eye(2), slope]), row])
-            gap = np.array([*(image.state / self.scale - u[:2]), row @ (u - guess)])
-            if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e15:
-                return None
-            step = np.linalg.solve(matrix, -gap)
-            if np.max(np.abs(step)) > 0.5:
-                return None
-            trial = u + step
-            try:
-                image_there, table_there = self.image(trial, refinement)
-            except DynamicsError:
-                return None
-            size = self._residual(image_there, trial)
-            small = float(np.max(np.abs(step))) < 1e-11
-            if not size < best and (small or iterations > 3):
-                break
-            iterations += 1
-            u, image, table, best = trial, image_there, table_there, size
-            if size == 0.0:
-                break
-            if float(np.max(np.abs(step))) > 1e-6:  # an old slope would slow Newton's method down
-                slope = self.slope(u)
-        if not best <= 64.0 * EPS * max(1.0, float(np.max(np.abs(image.jacobian)))):
-            return None
-        return self._point(u, image, table, slope, best, iterations)
+        if turned > len(store.turns):
+            return self.evaluate(u, refinement)
+        return self._point(u, store, turned, residual, iterations)
+
+    def half_way(self, point: Point) -> FloatArray:
+        """Unknowns X and V after half the orbit's period; n must be even."""
+        from dynamics.kernels.flow import iterate
+        from dynamics.kernels.tables import tabulate
+
+        q, order = self.packed(point.u), self._order
+        coef, edge = tabulate(q[:8], q[8 : 8 + order], q[8 + order :], self._cells(point.u, 1), DEGREE)
+        half = self.periods // 2
+        states, counts, state = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64), point.state.copy()
+        iterate((q[:8], coef, edge), state, half - 1, 0, np.empty((3, 2)), states, counts)
+        return state / self.scale
 
     def tangent(self, point: Point, along: FloatArray) -> FloatArray:
-        """Unit vector along the branch, turned to the side of `along`."""
-        matrix = np.column_stack([point.jacobian - np.eye(2), self.slope(point.u)])
-        direction = np.cross(matrix[0], matrix[1])
-        size = float(np.linalg.norm(direction))
+        """Unit vector along the branch of one parameter, turned to the side of `along`."""
+        (a, b, c), (d, e, f) = point.derivative.tolist()
+        a, e = a - 1.0, e - 1.0
+        way = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
+        size = math.sqrt(float(way @ way))
         if not size > 0.0:
-            return along / np.linalg.norm(along)
-        return np.asarray(direction / size * (1.0 if direction @ along >= 0.0 else -1.0))
+            return np.asarray(along / np.linalg.norm(along))
+        return way / (size if way @ along >= 0.0 else -size)
 
-    def _residual(self, image: MapResult, u: FloatArray) -> float:
-        return float(np.max(np.abs(image.state / self.scale - u[:2])))
+    @cached_property
+    def _order(self) -> int:
+        return self.oscillator.stiffness.order
 
-    def _point(
-        self,
-        u: FloatArray,
-        image: MapResult,
-        table: Tables,
-        slope: FloatArray,
-        residual: float,
-        iterations: int,
-    ) -> Point:
-        here = self.at(u)
-        state = u[:2] * self.scale
-        turns = turning_points(table, state, self.periods)
-        phase = np.mod(turns[:, 0] / (self.periods * here.period), 1.0)
-        counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
+    def _cells(self, u: FloatArray, refinement: int) -> int:
+        packed = self.packed(u)
+        if not (packed[4] > 0.0 and np.all(np.isfinite(packed))):
+            return 0
+        cells = cells_per_period(packed)
+        return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
+
+    def _point(self, u: FloatArray, store: _Store, turned: int, residual: float, iterations: int) -> Point:
+        packed = self.packed(u)
+        derivative = store.lin
+        derivative[:, 2:] /= self.scale
+        second = store.bend
+        second[:2] *= self.scale
+        turns = store.turns[:turned]
+        period = 2.0 * math.pi / packed[4]
+        extrema = turns[:, :3].copy()
+        extrema[:, 0] = np.mod(extrema[:, 0] / (self.periods * period), 1.0)
+        slope = turns[:, 5:].copy()
+        slope[:, 2:] /= self.scale
+        # log det = -4 pi zeta n / omega
+        decay = 2.0 * period * self.periods
+        determinant = math.exp(-decay * packed[1])
+        change = np.zeros(len(u))
+        change[2:] = -decay * determinant * (self.ways[:, 1] - packed[1] / packed[4] * self.ways[:, 4])
+        counts = (int(store.counts[0]), int(store.counts[1]))
         return Point(
-            u, self.value(u), state, image.jacobian, exact_determinant(here, self.periods), counts, slope,
-            np.column_stack([phase, turns[:, 1:3]]), residual, iterations,
+            u, self.values(u), u[:2] * self.scale, store.image, derivative, second, determinant, change, counts,
+            extrema, slope, residual, iterations,
         )  # fmt: skip
+
+
+class _Store:
+    """Arrays that the kernels fill."""
+
+    def __init__(self, parameters: int, room: int) -> None:
+        m = 2 + parameters
+        self.image, self.lin, self.bend = np.empty(2), np.empty((2, m)), np.empty((m, 2, 2))
+        self.counts, self.turns = np.empty(2, dtype=np.int64), np.empty((room, 5 + m))
+
+    @property
+    def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray, IntArray, FloatArray]:
+        """In the order of the kernels."""
+        return self.image, self.lin, self.bend, self.counts, self.turns
+
+
+def rounding(point: Point) -> float:
+    """Residual that rounding leaves."""
+    return 64.0 * EPS * max(1.0, float(np.max(np.abs(point.jacobian))))

@@ -1,14 +1,15 @@
-"""Special points between two neighbours on a branch: found by signs, located on the branch to rounding."""
+"""Special points between two neighbours on a branch: found by signs, located by Newton's method or by bracketing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.corrector import BranchProblem, Point
+from dynamics.conditions import Condition, special_orbit
+from dynamics.corrector import OrbitProblem, Point
 from dynamics.shooting import EPS, floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
@@ -16,140 +17,126 @@ __all__ = ["Crossing", "find_crossings", "locate", "match_extrema"]
 
 FloatArray = npt.NDArray[np.float64]
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
-
-
-@dataclass(frozen=True, eq=False)
-class Crossing:
-    """A change of sign between two neighbours.
-
-    Parameters
-    ----------
-    kind : str
-        "saddle-node", "period-doubling" or "grazing".
-    boundary : int
-        At a grazing 1 or -1, else 0.
-    kindred : int
-        At a grazing the sign of X'' of the extremum, else 0.
-    phases : tuple of float
-        At a grazing the phase of the extremum at the two neighbours.
-    """
-
-    kind: str
-    boundary: int = 0
-    kindred: int = 0
-    phases: tuple[float, float] = (0.0, 0.0)
+Crossing = tuple[Condition, Condition]  # as it is at the one and at the other of two neighbours
 
 
 def match_extrema(a: Point, b: Point) -> list[tuple[int, int]]:
     """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
-    pairs: list[tuple[int, int]] = []
     if len(a.extrema) == 0 or len(b.extrema) == 0:
-        return pairs
+        return []
     gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
     gap = np.minimum(gap, 1.0 - gap)
-    gap[np.sign(a.extrema[:, None, 2]) != np.sign(b.extrema[None, :, 2])] = np.inf
-    for i in range(len(gap)):
-        j = int(np.argmin(gap[i]))
-        if gap[i, j] < NEAR and int(np.argmin(gap[:, j])) == i:
-            pairs.append((i, j))
-    return pairs
+    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
+    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
+    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
 
 
-def find_crossings(problem: BranchProblem, a: Point, b: Point) -> tuple[list[Crossing], bool]:
+def find_crossings(problem: OrbitProblem, a: Point, b: Point) -> tuple[list[Crossing], bool]:
     """Changes of sign between two neighbours, and whether the grazings explain the change of the counts."""
-    found = []
+    found: list[Crossing] = []
     if a.fold * b.fold < 0.0:
-        found.append(Crossing("saddle-node"))
+        found.append((Condition("saddle-node"),) * 2)
     if a.flip * b.flip < 0.0:
-        found.append(Crossing("period-doubling"))
-    change = np.zeros(2, dtype=np.int64)
-    d_a, d_b = (problem.at(p.u).half_backlash for p in (a, b))
-    for i, j in match_extrema(a, b) if min(d_a, d_b) > 0.0 else []:
-        kindred = int(np.sign(a.extrema[i, 2]))
-        for boundary in (1, -1):
-            before = a.extrema[i, 1] - boundary * d_a
-            after = b.extrema[j, 1] - boundary * d_b
+        found.append((Condition("period-doubling"),) * 2)
+    d_a, d_b = (float(problem.packed(p.u)[6]) for p in (a, b))
+    if min(d_a, d_b) == 0.0 and not problem.oscillator.one_sided:
+        return found, True
+    change = [0, 0]
+    sides = (1,) if problem.oscillator.one_sided else (1, -1)
+    rows_a, rows_b = a.extrema.tolist(), b.extrema.tolist()
+    for i, j in match_extrema(a, b):
+        (phase_a, x_a, bend), (phase_b, x_b, _) = rows_a[i], rows_b[j]
+        kindred = 1 if bend > 0.0 else -1
+        for boundary in sides:
+            before, after = x_a - boundary * d_a, x_b - boundary * d_b
             if before * after < 0.0 or (after == 0.0 and before != 0.0):
-                phases = (float(a.extrema[i, 0]), float(b.extrema[j, 0]))
-                found.append(Crossing("grazing", boundary, kindred, phases))
-                change[0 if boundary == 1 else 1] += kindred * int(np.sign(before))
-    seen = np.array(b.counts) - np.array(a.counts)
-    return found, bool(np.all(change == seen) or min(d_a, d_b) == 0.0)
+                found.append(
+                    (
+                        Condition("grazing", boundary, kindred, phase_a),
+                        Condition("grazing", boundary, kindred, phase_b),
+                    )
+                )
+                change[0 if boundary == 1 else 1] += kindred if before > 0.0 else -kindred
+    seen = [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
+    return found, change == seen
 
 
-def locate(problem: BranchProblem, a: Point, b: Point, crossing: Crossing) -> SpecialPoint | None:
-    """Close in on a crossing along the branch between two neighbours; None if the branch cannot be followed there."""
+def locate(problem: OrbitProblem, a: Point, b: Point, crossing: Crossing) -> SpecialPoint | None:
+    """Close in on a crossing between two neighbours; None if the branch cannot be followed there."""
+    at_a, at_b = (c.measure(problem, p) for c, p in zip(crossing, (a, b), strict=True))
+    chord = b.u - a.u
+    fraction = at_a / (at_a - at_b) if at_a != at_b else 0.5
+    point = special_orbit(problem, between(crossing, fraction), a.u + fraction * chord)
+    if point is not None and not -0.02 <= float((point.u - a.u) @ chord / (chord @ chord)) <= 1.02:
+        point = None
+    if point is None:
+        point = _bracket(problem, a, b, crossing)
+    if point is None:
+        return None
+    return record(problem, point, between(crossing, 0.5), min(a.counts, b.counts))
+
+
+def between(crossing: Crossing, fraction: float) -> Condition:
+    """Condition part of the way from one neighbour to the other."""
+    turn = (crossing[1].phase - crossing[0].phase + 0.5) % 1.0 - 0.5
+    return replace(crossing[0], phase=(crossing[0].phase + fraction * turn) % 1.0)
+
+
+def record(
+    problem: OrbitProblem, point: Point, condition: Condition, counts: tuple[int, int]
+) -> SpecialPoint:
+    """Record of a special orbit; `counts` are those of its neighbour on the side without the touch."""
+    finer = special_orbit(problem, condition, point.u, refinement=2, limit=4)
+    error = abs(finer.value - point.value) if finer else np.inf
+    if finer is None:  # next to a grazing: what the change of the measure amounts to
+        there = problem.evaluate(point.u, 2)
+        slope = float(np.linalg.norm(condition.gradient(problem, point)))
+        if there is not None and slope > 0.0:
+            off = abs(condition.measure(problem, there) - condition.measure(problem, point)) / slope
+            error = float(problem.high[0] - problem.low[0]) * off
+    multipliers = floquet_multipliers(point.trace, point.determinant)
+    label = motion_label(problem.periods, point.counts)  # marginal: neither stable nor unstable
+    touch: dict[str, float] = {}
+    if condition.kind == "grazing":
+        here = problem.at(point.u)
+        phase, _, acceleration = point.extrema[condition.nearest(point)]
+        tau = float(phase) * problem.periods * here.period
+        label = motion_label(problem.periods, counts, is_stable(multipliers))
+        touch = {"tau": tau, "acceleration": float(acceleration)}
+        touch["stiffness"] = float(here.stiffness(here.frequency * tau))
+    relative = max(float(error) / max(abs(point.value), 1e-300), EPS)
+    return SpecialPoint(
+        condition.kind, point.value, point.state, multipliers, label, relative, problem.periods,
+        condition.boundary, **touch
+    )  # fmt: skip
+
+
+def _bracket(problem: OrbitProblem, a: Point, b: Point, crossing: Crossing) -> Point | None:
+    """Root search along the chord, each trial corrected on to the branch: slower, but no corner stops it."""
     from scipy.optimize import brentq
 
     chord = b.u - a.u
     row = chord / np.linalg.norm(chord)
     points: dict[float, Point] = {0.0: a, 1.0: b}
 
-    def at(fraction: float, refinement: int = 1) -> Point | None:
-        return problem.correct(a.u + fraction * chord, row, refinement)
-
     def measure(fraction: float) -> float:
-        point = points.get(fraction) or at(fraction)
+        point = points.get(fraction) or problem.correct(a.u + fraction * chord, row)
         if point is None:
             raise _LostError
         points[fraction] = point
-        return _measure(problem, point, crossing, fraction)
+        value = between(crossing, fraction).measure(problem, point)
+        if not np.isfinite(value):
+            raise _LostError
+        return value
 
+    search: Callable[..., float] = brentq
     try:
-        root = float(brentq(measure, 0.0, 1.0, xtol=1e-15, rtol=4.0 * EPS, maxiter=100))
-        value = measure(root)
-        slope = _steepness(measure, root, value)
+        root = float(search(measure, 0.0, 1.0, xtol=1e-15, rtol=4.0 * EPS, maxiter=100))
+        measure(root)
     except (_LostError, ValueError):  # ValueError: the sign did not change after all
         return None
-    point = points[root]
-    finer = at(root, 2)
-    error = abs(finer.value - point.value) if finer else np.inf
-    if finer and slope > 0.0:
-        off = abs(_measure(problem, finer, crossing, root)) / slope
-        speed = abs(b.value - a.value) if crossing.kind != "saddle-node" else abs(b.value - a.value) * off
-        error += off * speed
-    multipliers = floquet_multipliers(point.trace, point.determinant)
-    label = motion_label(problem.periods, point.counts)  # marginal: neither stable nor unstable
-    touch = {}
-    if crossing.kind == "grazing":
-        here = problem.at(point.u)
-        phase, _, acceleration = point.extrema[_nearest(point, crossing, root)]
-        tau = float(phase) * problem.periods * here.period
-        label = motion_label(problem.periods, min(a.counts, b.counts), is_stable(multipliers))
-        touch = {"tau": tau, "acceleration": float(acceleration)}
-        touch["stiffness"] = float(here.stiffness(here.frequency * tau))
-    relative = max(float(error) / max(abs(point.value), 1e-300), EPS)
-    return SpecialPoint(
-        crossing.kind, point.value, point.state, multipliers, label, relative, crossing.boundary, **touch
-    )  # fmt: skip
+    return points[root]
 
 
 class _LostError(Exception):
     """The branch could not be followed to a point between two neighbours."""
-
-
-def _steepness(measure: Callable[[float], float], root: float, value: float) -> float:
-    """Size of the slope of a measure at its root, from a small step to whichever side has room."""
-    step = 1e-4 if root < 0.5 else -1e-4
-    return abs(measure(root + step) - value) / 1e-4
-
-
-def _nearest(point: Point, crossing: Crossing, fraction: float) -> int:
-    """Extremum that continues the one which crosses the boundary."""
-    turn = (crossing.phases[1] - crossing.phases[0] + 0.5) % 1.0 - 0.5
-    expected = crossing.phases[0] + fraction * turn
-    gap = np.abs((point.extrema[:, 0] - expected + 0.5) % 1.0 - 0.5)
-    gap[np.sign(point.extrema[:, 2]) != crossing.kindred] = np.inf
-    return int(np.argmin(gap))
-
-
-def _measure(problem: BranchProblem, point: Point, crossing: Crossing, fraction: float) -> float:
-    """Quantity that is zero at the special point."""
-    if crossing.kind == "saddle-node":
-        return point.fold
-    if crossing.kind == "period-doubling":
-        return point.flip
-    if len(point.extrema) == 0:
-        raise _LostError
-    x = float(point.extrema[_nearest(point, crossing, fraction), 1])
-    return x - crossing.boundary * problem.at(point.u).half_backlash

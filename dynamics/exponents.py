@@ -126,9 +126,9 @@ def _advance(
     table: tuple[FloatArray, FloatArray, FloatArray], at: FloatArray, n: int, frame: FloatArray
 ) -> int:
     """Carry state and frame over n periods."""
-    from dynamics import kernels
+    from dynamics.kernels.flow import iterate
 
     if n == 0:
         return 0
     one, counts = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64)
-    return int(kernels.iterate(table, at, n - 1, 2, frame, one, counts))
+    return int(iterate(table, at, n - 1, 2, frame, one, counts))

@@ -24,7 +24,9 @@ __all__ = [
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-DEGREE = 18  # of the Taylor tables; with half a radian per cell the remainder is below rounding
+DEGREE = (
+    13  # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
+)
 _REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
 
 
@@ -34,25 +36,25 @@ class Tables:
 
     Parameters
     ----------
-    par : ndarray, shape (7,)
-        Parameters in the order of `dynamics.kernels`.
+    packed : ndarray, shape (8 + 2 J,)
+        Parameters as of `GearOscillator.packed`.
     coef, edge : ndarray
         See `dynamics.kernels`.
     """
 
-    par: FloatArray
+    packed: FloatArray
     coef: FloatArray
     edge: FloatArray
 
     @property
     def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What the kernels take."""
-        return self.par, self.coef, self.edge
+        return self.packed[:8], self.coef, self.edge
 
     @property
     def cells(self) -> int:
         """Cells per period."""
-        return int(self.edge.shape[1])
+        return len(self.edge) // 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,23 +142,16 @@ def tables(oscillator: GearOscillator, refinement: int = 1, degree: int = DEGREE
     DynamicsError
         If refinement or degree are out of range.
     """
-    from dynamics import cells as compiled
+    from dynamics.kernels.tables import tabulate
 
     faults = Faults()
     faults.whole("refinement", refinement, 1, 1000, "2 is enough for an error estimate")
-    faults.whole("degree", degree, 6, 60, "18 leaves rounding alone")
+    faults.whole("degree", degree, 6, 60, "12 leaves rounding alone")
     faults.raise_if_any()
-    o = oscillator
-    par = np.array(
-        [
-            o.stiffness.mean, o.damping_ratio, o.mean_force, o.error_amplitude,
-            o.frequency, o.error_phase, o.half_backlash,
-        ]
-    )  # fmt: skip
-    amplitudes, phases = np.array(o.stiffness.amplitudes, float), np.array(o.stiffness.phases, float)
-    cells = math.ceil(o.cells) * refinement
-    coef, edge = compiled.tabulate(par, amplitudes, phases, cells, degree)
-    return Tables(par, coef, edge)
+    packed, order = oscillator.packed(), oscillator.stiffness.order
+    cells = math.ceil(oscillator.cells) * refinement
+    coef, edge = tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree)
+    return Tables(packed, coef, edge)
 
 
 def period_map(
@@ -185,7 +180,7 @@ def period_map(
     DynamicsError
         If the state is not finite or a count out of range.
     """
-    from dynamics import kernels
+    from dynamics.kernels.flow import iterate
 
     at = checked_state(state)
     faults = Faults()
@@ -194,7 +189,7 @@ def period_map(
     faults.raise_if_any()
     t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
     states, counts, jacobian = np.empty((n, 2)), np.zeros((n, 2), dtype=np.int64), np.eye(2)
-    flag = int(kernels.iterate(t.arrays, at, n_skip, 1, jacobian, states, counts))
+    flag = int(iterate(t.arrays, at, n_skip, 1, jacobian, states, counts))
     if flag:
         states[:], jacobian[:] = np.nan, np.nan
     return MapResult(states, jacobian, counts, _REASONS.get(flag, ""))
@@ -284,13 +279,13 @@ def _walk(
     t: Tables, state: FloatArray, periods: int, points: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return samples, extrema and impacts; repeat with more room if the last two did not fit."""
-    from dynamics import kernels
+    from dynamics.kernels.walking import walk
 
     room = 64 * periods
     while True:
         samples = np.empty((periods * points + 1 if points else 0, 2))
         turns, events = np.empty((room, 5)), np.empty((room, 4))
-        flag, turned, happened = kernels.walk(t.arrays, state.copy(), periods, points, samples, turns, events)
+        flag, turned, happened = walk(t.arrays, state.copy(), periods, points, samples, turns, events)
         if flag:
             faults = Faults()
             faults.add(

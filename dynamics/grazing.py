@@ -108,7 +108,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     if side not in (1, -1):
         faults.add("side", side, "1 or -1", "1 is the driving side")
     faults.raise_if_any()
-    linear = dataclasses.replace(oscillator, half_backlash=0.0)
+    linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
     table = tables(linear, refinement)
     image = period_map(table, np.zeros(2))
     matrix = np.eye(2) - image.jacobian
@@ -209,7 +209,7 @@ def contact_grazing(
         error = max(abs(clearance(root, 2) / slope / root) if root else 0.0, EPS)
         found.append(
             SpecialPoint(
-                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, side, orbit.tau,
+                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, 1, side, orbit.tau,
                 orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
             )
         )  # fmt: skip

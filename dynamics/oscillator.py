@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -17,6 +18,15 @@ __all__ = ["PARAMETERS", "GearOscillator"]
 
 FloatArray = npt.NDArray[np.float64]
 PARAMETERS = ("frequency", "error_amplitude", "error_phase", "mean_force", "damping_ratio", "half_backlash")
+_PLACES = {
+    "mean": 0,
+    "damping_ratio": 1,
+    "mean_force": 2,
+    "error_amplitude": 3,
+    "frequency": 4,
+    "error_phase": 5,
+    "half_backlash": 6,
+}
 MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
 
 
@@ -45,6 +55,8 @@ class GearOscillator:
         :math:`D \ge 0`.
     error_phase : float
         :math:`\varphi_e` [rad], relative to :math:`\tau = 0`, like the phases of the stiffness.
+    one_sided : bool
+        No second flank: f(X) = 0 for all X <= D, as for a gear with much backlash or a follower on a cam.
 
     Raises
     ------
@@ -60,6 +72,7 @@ class GearOscillator:
     frequency: float
     half_backlash: float
     error_phase: float = 0.0
+    one_sided: bool = False
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
@@ -90,6 +103,8 @@ class GearOscillator:
             ),
             "error_phase": faults.number("error_phase", self.error_phase),
         }
+        if not isinstance(self.one_sided, bool):
+            faults.add("one_sided", self.one_sided, "True or False", "True leaves the second flank out")
         faults.raise_if_any()
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -106,13 +121,7 @@ class GearOscillator:
     @property
     def cells(self) -> float:
         """Cells that the exact flow divides a period into, before rounding up."""
-        stiffest = abs(self.stiffness.mean) + sum(abs(k) for k in self.stiffness.amplitudes)
-        per_period = max(
-            self.period * float(np.sqrt(stiffest)),
-            2.0 * np.pi * max(self.stiffness.order, 1),
-            2.0 * self.damping_ratio * self.period,
-        )
-        return per_period / 0.5
+        return cells_per_period(self.packed())
 
     def get(self, parameter: str) -> float:
         """Value of a parameter named as in `with_parameter`.
@@ -155,8 +164,48 @@ class GearOscillator:
         series[index] = value
         return dataclasses.replace(self, stiffness=_replaced(self.stiffness, name, tuple(series)))
 
+    def packed(self) -> FloatArray:
+        """All parameters in one vector, as the kernels take them: `par` (8), amplitudes, phases."""
+        k = self.stiffness
+        sides = 1.0 if self.one_sided else 2.0
+        own = (
+            k.mean, self.damping_ratio, self.mean_force, self.error_amplitude, self.frequency, self.error_phase,
+            self.half_backlash, sides,
+        )  # fmt: skip
+        return np.array(own + k.amplitudes + k.phases)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of all parameters, as in `with_parameter`."""
+        series = ("amplitudes", "phases")
+        terms = tuple(f"stiffness.{name}[{j}]" for name in series for j in range(self.stiffness.order))
+        return (*PARAMETERS, "stiffness.mean", *terms)
+
+    def place(self, parameter: str) -> int:
+        """Index of a parameter, named as in `with_parameter`, in the vector of `packed`.
+
+        Raises
+        ------
+        DynamicsError
+            If there is no such parameter.
+        """
+        name, index = _resolve(self, parameter)
+        if name in _PLACES:
+            return _PLACES[name]
+        return 8 + index + (self.stiffness.order if name == "phases" else 0)
+
     def mirrored(self) -> GearOscillator:
-        """Return the oscillator of -X, which has forces and error reversed."""
+        """Return the oscillator of -X, which has forces and error reversed.
+
+        Raises
+        ------
+        DynamicsError
+            If there is play on one side only: -X would have it on the other.
+        """
+        if self.one_sided:
+            faults = Faults()
+            faults.add("one_sided", True, "play on both sides", "only that has a mirror image of its kind")
+            faults.raise_if_any()
         return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
 
     def force(self, tau: npt.ArrayLike) -> FloatArray:
@@ -167,7 +216,17 @@ class GearOscillator:
     def deflection(self, x: npt.ArrayLike) -> FloatArray:
         """Deflection f(X) past the backlash, shape of `x`."""
         at = np.asarray(x, dtype=np.float64)
-        return np.asarray(at - np.clip(at, -self.half_backlash, self.half_backlash))
+        lower = -np.inf if self.one_sided else -self.half_backlash
+        return np.asarray(at - np.clip(at, lower, self.half_backlash))
+
+
+def cells_per_period(packed: FloatArray) -> float:
+    """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
+    order = (len(packed) - 8) // 2
+    stiffest = abs(packed[0]) + float(np.sum(np.abs(packed[8 : 8 + order])))
+    period = 2.0 * math.pi / float(packed[4])
+    drag = 2.0 * float(packed[1]) * period
+    return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * max(order, 1), drag)
 
 
 Record = TypeVar("Record", GearOscillator, FourierStiffness)

@@ -12,12 +12,15 @@ import numpy.typing as npt
 from dynamics.cost import Cost
 from dynamics.errors import Faults
 from dynamics.flow import MapResult, Tables, checked_state, period_map, tables
+from dynamics.multiple_shooting import chain_error, shoot_in_stretches, stretch_starts
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["Orbit", "find_orbit", "floquet_multipliers", "motion_label"]
 
 FloatArray = npt.NDArray[np.float64]
 EPS = float(np.finfo(np.float64).eps)
+LONG = 200  # cells of an orbit that multiple shooting is tried for, too, where one shot fails
+FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +57,10 @@ class Orbit:
     message : str
         What happened, with a remedy if it did not converge.
     history : tuple of float
-        Residual of every iteration.
+        Residual of every iteration; empty after multiple shooting.
+    nodes : ndarray, shape (m, 2)
+        After multiple shooting: X and V at m equal parts of the period, from tau = 0. A motion that starts from
+        `state` alone leaves so unstable an orbit within one period. Else empty.
     """
 
     oscillator: GearOscillator
@@ -71,6 +77,7 @@ class Orbit:
     converged: bool
     message: str
     history: tuple[float, ...]
+    nodes: FloatArray
 
     @property
     def determinant(self) -> float:
@@ -148,8 +155,9 @@ def find_orbit(
 
     Notes
     -----
-    The residual of an orbit with a multiplier of size m cannot be smaller than about m times rounding; beyond
-    1e10 a single shot fails, and says so.
+    One shot over an orbit with a multiplier of size m loses the digits of m. Where the map stretches by more than
+    1e6, or the shot is lost altogether, the states at the starts of many stretches are the unknowns (multiple
+    shooting); `Orbit.nodes` holds them.
     """
     began = time.perf_counter()
     faults = Faults()
@@ -168,6 +176,13 @@ def find_orbit(
     rounding = 64.0 * EPS * scale * max(1.0, float(np.max(np.abs(image.jacobian))))
     residual = history[-1]
     good = bool(residual <= rounding and residual <= 1e-6 * scale)
+    lost = image.message or not float(np.max(np.abs(image.jacobian))) < FAR
+    if lost or (not good and table.cells * n > LONG):
+        orbit = _in_stretches(
+            oscillator, table, x if np.all(np.isfinite(x)) else state, n, limit, began, used
+        )
+        if orbit is not None:
+            return orbit
     if good:
         n, image = least_period(table, x, n, image)
         residual = float(np.max(np.abs(image.state - x)))
@@ -188,23 +203,58 @@ def find_orbit(
     return make_orbit(oscillator, x, n, image, residual, error, cost, good, message, tuple(history))
 
 
+def _in_stretches(
+    oscillator: GearOscillator, table: Tables, guess: FloatArray, n: int, limit: int, began: float, used: int
+) -> Orbit | None:
+    """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits."""
+    chain = shoot_in_stretches(oscillator, table, guess, n, limit)
+    if chain is None:
+        return None
+    error = chain_error(tables(oscillator, refinement=2), chain, stretch_starts(table, n))
+    scale = max(float(np.max(np.abs(chain.nodes))), 1e-300)
+    if not (error < 1e-3 and scale < 1e9 * _natural_size(oscillator, guess)):
+        return None
+    each = len(chain.nodes) // n
+    starts = chain.nodes[::each]
+    least = next(
+        d for d in range(1, n + 1) if n % d == 0 and np.max(np.abs(starts[d % n] - starts[0])) <= 1e-9 * scale
+    )
+    if least < n:
+        return _in_stretches(oscillator, table, chain.nodes[0], least, limit, began, used)
+    image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, np.array([chain.counts]), "")
+    message = f"converged in {chain.iterations} iterations on {len(chain.nodes)} stretches"
+    cost = Cost(time.perf_counter() - began, chain.nodes.size, chain.iterations, used + n * chain.iterations)
+    return make_orbit(
+        oscillator,
+        chain.nodes[0].copy(),
+        n,
+        image,
+        chain.residual,
+        error,
+        cost,
+        True,
+        message,
+        nodes=chain.nodes,
+    )
+
+
 def make_orbit(
     oscillator: GearOscillator, x: FloatArray, n: int, image: MapResult, residual: float, error: float, cost:
-    Cost, converged: bool, message: str, history: tuple[float, ...] = (),
+    Cost, converged: bool, message: str, history: tuple[float, ...] = (), nodes: FloatArray | None = None,
 ) -> Orbit:  # fmt: skip
     """Assemble an orbit from its state and the image of the state."""
     if not converged:
         lost = np.full(2, np.nan)
         return Orbit(
             oscillator, lost, n, lost.copy(), False, "", (0, 0), np.full((2, 2), np.nan), residual, math.nan,
-            cost, False, message, history,
+            cost, False, message, history, np.empty((0, 2)),
         )  # fmt: skip
     multipliers = floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(oscillator, n))
     counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
     stable = is_stable(multipliers)
     return Orbit(
         oscillator, x, n, multipliers, stable, motion_label(n, counts, stable), counts, image.jacobian,
-        residual, error, cost, True, message, history,
+        residual, error, cost, True, message, history, np.empty((0, 2)) if nodes is None else nodes,
     )  # fmt: skip
 
 

@@ -32,6 +32,8 @@ class SpecialPoint:
         unstable; at the other kinds it is marginal.
     error : float
         Estimated error of the parameter value, relative.
+    periods : int
+        Period of the orbit, in excitation periods.
     boundary : int
         At a grazing: 1 for X = D, -1 for X = -D; else 0.
     tau : float
@@ -49,6 +51,7 @@ class SpecialPoint:
     multipliers: npt.NDArray[np.complex128] | FloatArray
     label: str
     error: float
+    periods: int = 1
     boundary: int = 0
     tau: float = math.nan
     acceleration: float = math.nan

@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from dynamics.cost import Cost
 from dynamics.errors import Faults
-from dynamics.flow import Tables, checked_state, tables
+from dynamics.flow import Tables, checked_state, period_map, tables
 from dynamics.oscillator import GearOscillator
-from dynamics.shooting import motion_label
+from dynamics.shooting import find_orbit, motion_label
 
 __all__ = ["APERIODIC", "DIVERGED", "SweepResult", "rest_state", "settling_periods", "sweep"]
 
@@ -22,6 +22,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 APERIODIC = "aperiodic"
 DIVERGED = "diverged"
+CREEP = 0.02  # change per round, over the size of the motion, below which a motion may creep to an orbit
+LEAVING = 2_000  # periods a motion is given to creep away from an unstable orbit
+MOST_PATIENT = 20_000  # periods a creeping motion is followed on
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,22 +163,17 @@ def sweep(
     for done, i in enumerate(order, start=1):
         here = oscillator.with_parameter(parameter, float(grid[i]))
         skip = settling_periods(here) if wait is None else wait
-        table = tables(here)
-        counts = np.zeros((kept, 2), dtype=np.int64)
-        finite = _follow(table, state, skip, states[i], counts)
-        total += skip + kept
-        if finite:
-            periods[i] = repeat_after(states[i], longest)
-            n = int(periods[i])
-            p, q = counts[kept - n :].sum(axis=0)
-            labels[i] = motion_label(n, (int(p), int(q))) if n else APERIODIC
-            impacts[i] = counts.mean(axis=0)
+        motion = _settle(here, state, skip, kept, longest, patient=wait is None)
+        total += motion.used
+        if motion.found:
+            states[i], periods[i], labels[i] = motion.states, motion.n, motion.label
+            impacts[i] = motion.counts.mean(axis=0)
             error = max(error, _map_error(here, states[i, -2], states[i, -1]))
+            state = motion.states[-1].copy()
         else:
             lost.append(float(grid[i]))
             labels[i] = DIVERGED
-            states[i] = np.nan
-            state[:] = restart
+            state = restart.copy()
         if progress is not None:
             progress(done, len(grid))
     message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
@@ -196,12 +194,105 @@ def repeat_after(states: FloatArray, longest: int, tolerance: float = 1e-6) -> i
     return 0
 
 
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """A motion after its transient."""
+
+    states: FloatArray
+    counts: IntArray
+    n: int
+    label: str
+    used: int
+    found: bool
+
+
+def _settle(
+    oscillator: GearOscillator, start: FloatArray, skip: int, kept: int, longest: int, patient: bool
+) -> _Motion:
+    """Follow a motion past its transient; one that creeps is followed on, or its orbit found by Newton's method.
+
+    Next to a bifurcation a multiplier is close to the unit circle, and damping does not tell how long a motion takes.
+    """
+    from dynamics.kernels.searching import calm
+
+    table = tables(oscillator)
+    state, states, counts = start.copy(), np.empty((kept, 2)), np.zeros((kept, 2), dtype=np.int64)
+    room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
+    waited = int(calm(table.arrays, state, skip, room, tallies, 1e-13))
+    used = abs(waited) + kept
+    if waited < 0 or not _follow(table, state, 0, states, counts):
+        return _Motion(states, counts, 0, DIVERGED, used, False)
+    n = repeat_after(states, longest)
+    label = ""
+    if n and waited == skip:
+        n, label = _named(oscillator, states, n)
+    for _ in range(3 if patient else 0):
+        if n:
+            break
+        n, label, more = _creeping(oscillator, table, states, longest)
+        if more == 0:
+            break
+        used += more
+        if not _follow(table, state, more - kept, states, counts):
+            return _Motion(states, counts, 0, DIVERGED, used, False)
+        n = n or repeat_after(states, longest)
+    if n and not label:
+        p, q = counts[kept - n :].sum(axis=0)
+        label = motion_label(n, (int(p), int(q)))
+    return _Motion(states, counts, n, label or APERIODIC, used, True)
+
+
+def _named(oscillator: GearOscillator, states: FloatArray, n: int) -> tuple[int, str]:
+    """Period and label of the orbit that a motion which nearly repeats after n periods is on its way to.
+
+    Close to a period doubling a motion of period n/2 may still alternate.
+    """
+    orbit = find_orbit(oscillator, states[-1], periods=n)
+    scale = max(float(np.max(np.abs(states))), 1e-300)
+    if orbit.converged and orbit.stable and orbit.periods < n:
+        gap = float(np.max(np.abs(orbit.state - states[-1])))
+        if gap < 0.05 * scale:
+            return orbit.periods, orbit.label
+    return n, ""
+
+
+def _creeping(
+    oscillator: GearOscillator, table: Tables, states: FloatArray, longest: int
+) -> tuple[int, str, int]:
+    """Period and label of the stable orbit that a motion creeps to, and periods to follow it on; zeros if none.
+
+    A motion that creeps away from an unstable orbit has no label yet, and is followed on for a while.
+    """
+    scale = max(float(np.max(np.abs(states))), 1e-300)
+    drift = [float(np.max(np.abs(states[-1] - states[-1 - n]))) for n in range(1, longest + 1)]
+    away = 0
+    for n in (int(k) + 1 for k in np.argsort(drift)[:2]):
+        if drift[n - 1] > CREEP * scale:
+            break
+        if drift[n - 1] < 0.1 * CREEP * scale:
+            away = max(LEAVING, len(states))
+        orbit = find_orbit(oscillator, states[-1], periods=n)
+        if not (orbit.converged and orbit.stable):
+            continue
+        gap = float(np.max(np.abs(orbit.state - states[-1])))
+        rate = float(np.max(np.abs(orbit.multipliers)))
+        if gap > 0.1 * scale or not rate > 0.0:
+            continue
+        rounds = math.log(max(gap / (1e-7 * scale), 2.0)) / -math.log(min(rate, 1.0 - 1e-12))
+        more = int(min(orbit.periods * math.ceil(rounds) + len(states), MOST_PATIENT))
+        ahead = period_map(table, states[-1], 1, skip=orbit.periods * 20 - 1).state
+        if not float(np.max(np.abs(ahead - orbit.state))) < gap:
+            continue  # it does not come nearer: passing by
+        return orbit.periods, orbit.label, max(more, len(states))
+    return 0, "", away
+
+
 def _follow(table: Tables, state: FloatArray, skip: int, states: FloatArray, counts: IntArray) -> bool:
     """Fill `states` and `counts`, leave the last state in `state`; False if the motion is lost."""
-    from dynamics import kernels
+    from dynamics.kernels.flow import iterate
 
     unused = np.eye(2)
-    return not kernels.iterate(table.arrays, state, skip, 0, unused, states, counts)
+    return not iterate(table.arrays, state, skip, 0, unused, states, counts)
 
 
 def _map_error(oscillator: GearOscillator, before: FloatArray, after: FloatArray) -> float:

@@ -30,7 +30,7 @@ def check_scene(scene: Scene) -> list[str]:
             pair = gear_pair(scene)
         told.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
-            f"normal backlash {1e6 * pair.backlash:.1f} µm."
+            f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
         )
         told += [f"Warning: {warning.message}" for warning in caught]
     if scene.lubricant is not None:

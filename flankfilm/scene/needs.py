@@ -134,7 +134,7 @@ def _by_finite_elements(
     asked += ["operating.friction"] if operating.get("friction") else []
     for gear in ("pinion", "wheel"):
         keys = _table(pair, gear)
-        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations") if keys.get(key)]
+        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations", "hub") if keys.get(key)]
     if not asked:
         return []
     model, pairs = stiffness.get("model", "fem"), stiffness.get("pairs", "coupled")

@@ -79,6 +79,14 @@ class DeviationsSection(Section):
         return self
 
 
+class HubSection(Section):
+    """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
+
+    radial_stiffness_N_per_m: float | None = Field(default=None, gt=0, le=1e15)
+    torsional_stiffness_Nm_per_rad: float | None = Field(default=None, gt=0, le=1e15)
+    hub_mm: float | None = Field(default=None, gt=0, le=1e6, description="diameter held; the bore's")
+
+
 class GearSection(Section):
     """One gear."""
 
@@ -91,6 +99,7 @@ class GearSection(Section):
     tip_chamfer_mm: float = Field(default=0.0, ge=0, le=100)
     tip_rounding_um: float = Field(default=0.0, ge=0, le=50_000, description="radius of the tip's edges")
     deviations: DeviationsSection | None = None
+    hub: HubSection | None = None
 
     @model_validator(mode="after")
     def _a_pitch_for_each_tooth(self) -> GearSection:

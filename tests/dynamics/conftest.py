@@ -17,11 +17,11 @@ def step_by_step(osc: GearOscillator, state, duration: float):
     """
     d = osc.half_backlash
     x, v = float(state[0]), float(state[1])
-    region = 1 if x > d else -1 if x < -d else 0
+    region = 1 if x > d else -1 if x < -d and not osc.one_sided else 0
     now, y = 0.0, np.array([x, v, 1.0, 0.0, 0.0, 1.0])
     counts = [0, 0]
     for _ in range(10_000):
-        spring = 0.0 if region == 0 and d > 0.0 else 1.0
+        spring = 0.0 if region == 0 and (d > 0.0 or osc.one_sided) else 1.0
 
         def rhs(t, y, spring=spring, region=region):
             k = spring * osc.stiffness(osc.frequency * t)
@@ -39,8 +39,8 @@ def step_by_step(osc: GearOscillator, state, duration: float):
         # leaving only: the stretch begins on a boundary
         upper.direction = -1 if region == 1 else 1
         lower.direction = 1 if region == -1 else -1
-        events = [upper] if region == 1 else [lower] if region == -1 else [upper, lower]
-        if d == 0.0:
+        events = [upper] if region == 1 or osc.one_sided else [lower] if region == -1 else [upper, lower]
+        if d == 0.0 and not osc.one_sided:
             events = None  # f(X) = X: nothing to cross
         done = solve_ivp(
             rhs, (now, duration), y, method="DOP853", rtol=3e-14, atol=1e-15, events=events, max_step=0.05
@@ -83,3 +83,23 @@ def article():
         return GearOscillator(stiffness=FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
 
     return make
+
+
+@pytest.fixture(scope="session", autouse=True)
+def every_orbit_keeps_the_determinant():
+    """Whatever orbit a test finds, det of its Jacobian is exp(-4 pi zeta n/omega), relative to the products in it."""
+    from dynamics import shooting
+
+    assemble = shooting.make_orbit
+
+    def checked(*arguments, **named):
+        orbit = assemble(*arguments, **named)
+        if orbit.converged and len(orbit.nodes) == 0:
+            (a, b), (c, d) = orbit.jacobian
+            size = max(abs(a * d) + abs(b * c), orbit.determinant)
+            assert abs(a * d - b * c - orbit.determinant) <= 1e-12 * size
+        return orbit
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(shooting, "make_orbit", checked)
+        yield

@@ -12,7 +12,9 @@ from dynamics import (
     GearOscillator,
     contact_grazing,
     contact_orbit,
+    continue_branch,
     find_orbit,
+    find_orbits,
     period_map,
     sweep,
 )
@@ -188,3 +190,35 @@ def test_repeat_after():
 def test_small_subharmonic_is_a_longer_period():
     wave = np.array([[1.0, 2.0]]) + 1e-3 * (-1.0) ** np.arange(40)[:, None]
     assert repeat_after(wave, 8) == 2
+
+
+@pytest.mark.parametrize("off", [5e-4, 1e-4, 1e-5])
+def test_slow_motions_next_to_a_period_doubling_are_named_right(article, off):
+    """1-1-0 doubles at 0.8872414998606: with a multiplier of -1 + O(off) it takes up to 1e5 periods to settle."""
+    doubling = 0.8872414998606
+    before = article(frequency=doubling - off)
+    orbit = next(o for o in find_orbits(before, (1,)).orbits if o.label == "1-1-0")
+    assert orbit.multipliers[0] == pytest.approx(-1.0, abs=30 * off)
+    result = sweep(before, values=[doubling - off], initial=orbit.state + np.array([1e-4, 0.0]), keep=32)
+    assert result.labels == ("1-1-0",)
+    result = sweep(before, values=[doubling + off], initial=orbit.state + np.array([1e-4, 0.0]), keep=32)
+    assert result.periods[0] == 2
+
+
+def test_a_settled_motion_is_not_followed_to_the_end(article):
+    """The transient ends where the motion repeats to rounding; the states kept are the same."""
+    long = sweep(article(), values=[0.5], transient=2000, keep=32)
+    short = sweep(article(), values=[0.5], keep=32)
+    assert long.cost.periods < 500
+    np.testing.assert_allclose(long.states, short.states, rtol=0, atol=1e-12)
+
+
+def test_one_sided_play_has_the_same_touch(article):
+    both, one = (contact_grazing(article(one_sided=s), bounds=(0.4, 1.5)).points[0] for s in (False, True))
+    assert both.parameter == one.parameter
+    branch = continue_branch(
+        find_orbit(article(frequency=0.5, one_sided=True), (0.35, 0.0)), "frequency", (0.5, 1.2)
+    )
+    assert branch.converged, branch.message
+    assert branch.special("grazing")[0].parameter == pytest.approx(one.parameter, rel=0, abs=1e-13)
+    assert {p.boundary for p in branch.special("grazing")} == {1}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -28,10 +30,10 @@ def oscillator(kappa=0.18, phi=0.0, **changes) -> GearOscillator:
     return GearOscillator(FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
 
 
-def plain_taylor(osc: GearOscillator, state, periods: int = 1, steps: int = 4000, order: int = 20):
+def plain_taylor(osc: GearOscillator, state, periods: int = 1, steps: int = 4000, order: int = 20, share=1.0):
     """Twin without tables: a Taylor step of the equation as it stands, in plain numpy, bisection for the crossings."""
     d, w = osc.half_backlash, osc.frequency
-    h = osc.period / steps
+    h = share * osc.period / steps
     x, v = map(float, state)
 
     def series(t, y, v, spring):
@@ -158,13 +160,33 @@ def test_slow_excitation_with_many_crossings():
     )
 
 
-def test_hopeless_shot_says_so():
-    """Parametrically unstable over so long a period that the map stretches beyond all digits."""
-    osc = oscillator(kappa=1.5, frequency=0.02, half_backlash=0.0, damping_ratio=0.0)
+@pytest.mark.parametrize(("zeta", "d"), [(0.0, 0.0), (0.05, 0.2)])
+def test_multipliers_beyond_a_single_shot(zeta, d):
+    """Parametrically unstable over a long period: the map stretches by 1e14 to 1e20, and the orbit is found."""
+    osc = oscillator(kappa=1.5, frequency=0.02, half_backlash=d, damping_ratio=zeta)
     orbit = find_orbit(osc, (0.3, 0.0))
-    assert not orbit.converged
-    assert np.all(np.isnan(orbit.state))
-    assert "stretch" in orbit.message or "1e150" in orbit.message
+    assert orbit.converged, orbit.message
+    assert abs(orbit.multipliers[0]) > 1e13
+    # rounding, times how far a stretch stretches (1e3), times their number (124)
+    assert orbit.error < 3e-11
+    assert np.prod(orbit.multipliers) == pytest.approx(orbit.determinant, rel=1e-12)
+    # each stretch, integrated by the twin without tables, ends where the next begins
+    cells = tables(osc).cells
+    firsts = np.round(np.linspace(0, cells, len(orbit.nodes) + 1)).astype(int)
+    for i in range(0, len(orbit.nodes), 17):
+        turn = 2 * np.pi * firsts[i] / cells
+        there = dataclasses.replace(
+            osc,
+            stiffness=FourierStiffness(1.0, (1.5,), (turn,)),
+            error_phase=turn,
+        )
+        share = (firsts[i + 1] - firsts[i]) / cells
+        end = plain_taylor(there, orbit.nodes[i], steps=200, share=share)
+        size = np.max(np.abs(orbit.nodes))
+        np.testing.assert_allclose(end, orbit.nodes[(i + 1) % len(orbit.nodes)], rtol=0, atol=1e-10 * size)
+    if d == 0.0:  # the linear equation: the same multipliers in any motion
+        jacobian = period_map(osc, (0.0, 0.0)).jacobian
+        assert orbit.multipliers[0] == pytest.approx(np.trace(jacobian), rel=1e-9)
 
 
 def test_thousand_periods_of_rest():
@@ -202,3 +224,31 @@ def test_branch_with_next_to_no_backlash():
     assert branch.converged, branch.message
     touches = [p.parameter for p in branch.special("grazing") if p.boundary == 1]
     assert touches[0] == pytest.approx(0.633533993217297, rel=0, abs=1e-12)
+
+
+def test_137_crossings_and_more():
+    """omega = .02: one period of 314 with some hundred crossings, each seen: the same on cells of half the size."""
+    osc = oscillator(frequency=0.02, damping_ratio=0.0005, mean_force=0.01, half_backlash=0.02)
+    start = (0.3, 0.1)
+    motion = trajectory(osc, start, periods=1, points_per_period=10)
+    assert len(motion.events) >= 137
+    coarse, fine = (period_map(tables(osc, r), start) for r in (1, 2))
+    assert np.array_equal(coarse.counts, fine.counts)
+    stretch = np.max(np.abs(coarse.jacobian))
+    np.testing.assert_allclose(coarse.state, fine.state, rtol=0, atol=1e-12 * stretch)
+
+
+def test_chaos_by_its_statistics():
+    """Two chaotic motions part within 60 periods, whatever the precision; what they do on average is the same."""
+    osc = oscillator(frequency=1.04)
+    batches, length = 60, 60
+    means = []
+    for refinement, start in ((1, (0.3, 0.0)), (2, (0.3, 1e-9))):
+        image = period_map(tables(osc, refinement), start, batches * length, skip=200)
+        figures = np.column_stack([image.states, image.states**2, image.counts])
+        means.append(figures.reshape(batches, length, -1).mean(axis=1))
+    apart = period_map(osc, (0.3, 0.0), 260).states[-1] - period_map(osc, (0.3, 1e-9), 260).states[-1]
+    assert np.max(np.abs(apart)) > 1e-3
+    a, b = (m.mean(axis=0) for m in means)
+    spread = np.sqrt(sum(m.var(axis=0, ddof=1) / batches for m in means))
+    assert np.all(np.abs(a - b) <= 5 * spread)  # the exits are one a period throughout

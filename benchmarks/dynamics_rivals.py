@@ -1,0 +1,182 @@
+"""Rivals of the exact flow on the same work: DOP853 compiled with events, scipy's solve_ivp with events, heyoka.
+
+The compiled DOP853 is the scheme of Dormand and Prince with Hairer's error estimate and step control, for the one
+oscillator of the benchmark, without overhead: no allocation in its loop, first-same-as-last, and an impact met by
+Newton's method on the length of the step, from the state at its start.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from scipy.integrate import solve_ivp
+from scipy.integrate._ivp import dop853_coefficients as tableau
+
+STAGES = tableau.N_STAGES
+A, B, C = tableau.A[:STAGES, :STAGES].copy(), tableau.B.copy(), tableau.C[:STAGES].copy()
+E3, E5 = tableau.E3.copy(), tableau.E5.copy()
+
+
+@njit(error_model="numpy", inline="always")
+def acceleration(t, x, v, region, par):
+    """X'' in a region; `par` holds kappa, zeta, F_m, eps, omega, D."""
+    c = math.cos(par[4] * t)
+    f = 0.0 if region == 0 else x - region * par[5]
+    return par[2] + par[3] * par[4] ** 2 * c - 2.0 * par[1] * v - (1.0 + par[0] * c) * f
+
+
+@njit(error_model="numpy")
+def one_step(t, x, v, h, region, par, k, a0):
+    """One step of DOP853 from a known first stage; leaves the stages in `k`."""
+    k[0, 0], k[0, 1] = v, a0
+    for s in range(1, STAGES):
+        dx = dv = 0.0
+        for j in range(s):
+            dx += A[s, j] * k[j, 0]
+            dv += A[s, j] * k[j, 1]
+        xs, vs = x + h * dx, v + h * dv
+        k[s, 0], k[s, 1] = vs, acceleration(t + C[s] * h, xs, vs, region, par)
+    dx = dv = 0.0
+    for j in range(STAGES):
+        dx += B[j] * k[j, 0]
+        dv += B[j] * k[j, 1]
+    x_new, v_new = x + h * dx, v + h * dv
+    k[STAGES, 0], k[STAGES, 1] = v_new, acceleration(t + h, x_new, v_new, region, par)
+    return x_new, v_new
+
+
+@njit(error_model="numpy")
+def outside(x, region, d):
+    """Boundary that a region has been left through, 0 if none."""
+    if region == 1:
+        return 1 if x < d else 0
+    if region == -1:
+        return -1 if x > -d else 0
+    return 1 if x > d else -1 if x < -d else 0
+
+
+@njit(error_model="numpy")
+def compiled_dop853(x, v, periods, rtol, par):
+    """State after whole periods."""
+    d, length = par[5], 2.0 * math.pi / par[4]
+    k = np.empty((STAGES + 1, 2))
+    region = 1 if x > d else -1 if x < -d else 0
+    h = 0.1
+    for _ in range(periods):
+        t = 0.0
+        a0 = acceleration(t, x, v, region, par)
+        while t < length:
+            h = min(h, length - t)
+            x_new, v_new = one_step(t, x, v, h, region, par, k, a0)
+            e5 = e3 = 0.0
+            for i in range(2):
+                scale = 1e-3 * rtol + rtol * max(abs(x if i == 0 else v), abs(x_new if i == 0 else v_new))
+                s5 = s3 = 0.0
+                for j in range(STAGES + 1):
+                    s5 += E5[j] * k[j, i]
+                    s3 += E3[j] * k[j, i]
+                e5 += (s5 / scale) ** 2
+                e3 += (s3 / scale) ** 2
+            norm = abs(h) * e5 / math.sqrt(max(e5 + 0.01 * e3, 1e-300) * 2.0)
+            factor = 0.9 * max(norm, 1e-12) ** (-0.125)
+            if norm > 1.0 and h > 1e-9:
+                h *= max(0.2, factor)
+                continue
+            hit = outside(x_new, region, d)
+            if hit == 0:
+                t, x, v, a0 = t + h, x_new, v_new, k[STAGES, 1]
+                h *= min(10.0, factor)
+                continue
+            low, high = 0.0, h
+            share = (hit * d - x) / (x_new - x)
+            trial = (
+                min(share, 1.0) * h if share > 0.0 else h
+            )  # the boundary just left is not the one that is met
+            for _ in range(50):
+                x_t, v_t = one_step(t, x, v, trial, region, par, k, a0)
+                if outside(x_t, region, d) != 0:
+                    high = trial
+                else:
+                    low = trial
+                move = -(x_t - hit * d) / v_t if v_t != 0.0 else 0.0
+                if abs(move) <= 1e-15 * length:
+                    break
+                trial = trial + move if low < trial + move < high else 0.5 * (low + high)
+            t, x, v = t + trial, hit * d, v_t
+            region = 0 if region != 0 else hit
+            a0 = acceleration(t, x, v, region, par)
+    return x, v
+
+
+def scipy_with_events(x, v, periods, rtol, par):
+    """The same by solve_ivp, stopped at every impact."""
+    kappa, zeta, force, eps, w, d = par
+    now, end, y = 0.0, periods * 2.0 * math.pi / w, [x, v]
+    region = 1 if x > d else -1 if x < -d else 0
+
+    def upper(t, y, region):
+        return y[0] - d
+
+    def lower(t, y, region):
+        return y[0] + d
+
+    upper.terminal = lower.terminal = True
+
+    def rhs(t, y, region):
+        c = math.cos(w * t)
+        f = 0.0 if region == 0 else y[0] - region * d
+        return [y[1], force + eps * w**2 * c - 2 * zeta * y[1] - (1 + kappa * c) * f]
+
+    while now < end:
+        upper.direction = -1 if region == 1 else 1
+        lower.direction = 1 if region == -1 else -1
+        events = [upper] if region == 1 else [lower] if region == -1 else [upper, lower]
+        done = solve_ivp(
+            rhs, (now, end), y, method="DOP853", rtol=rtol, atol=1e-3 * rtol, events=events, args=(region,)
+        )
+        now, y = done.t[-1], done.y[:, -1].copy()
+        if done.status == 1:
+            at_upper = region == 1 or (region == 0 and len(done.t_events[0]) > 0)
+            y[0] = d if at_upper else -d
+            region = 0 if region else (1 if at_upper else -1)
+    return y[0], y[1]
+
+
+def heyoka_with_events(par):
+    """`(x, v, periods, tol) -> (x, v)` by heyoka's Taylor integrator, or None where it is not installed."""
+    try:
+        import heyoka as hy
+    except ImportError:
+        return None
+    kappa, zeta, force, eps, w, d = par
+    x, v = hy.make_vars("x", "v")
+    c = hy.cos(w * hy.time)
+    region = hy.par[0]
+    spring = hy.select(hy.eq(region, 0.0), 0.0, x - region * d) if hasattr(hy, "select") else None
+    if spring is None:
+        return None
+    system = [(x, v), (v, force + eps * w**2 * c - 2 * zeta * v - (1 + kappa * c) * spring)]
+
+    def crossed(side):
+        def note(ta, d_sgn):
+            ta.pars[0] = 0.0 if ta.pars[0] != 0.0 else float(side)
+            return True
+
+        return hy.t_event(x - side * d, callback=note, cooldown=0.0)
+
+    built = {}
+
+    def run(x0, v0, periods, tol):
+        if tol not in built:
+            built[tol] = hy.taylor_adaptive(
+                system, [x0, v0], tol=tol, pars=[0.0], t_events=[crossed(1), crossed(-1)]
+            )
+        ta = built[tol]
+        ta.time, ta.state[:] = 0.0, [x0, v0]
+        ta.pars[0] = 1.0 if x0 > d else -1.0 if x0 < -d else 0.0
+        ta.propagate_until(periods * 2.0 * math.pi / w)
+        return ta.state[0], ta.state[1]
+
+    return run

@@ -1,0 +1,118 @@
+"""What singles a special orbit out of a branch: a function of the orbit that is zero there, with its gradient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.corrector import OrbitProblem, Point, rounding
+
+__all__ = ["Condition", "special_orbit"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition on an orbit.
+
+    Parameters
+    ----------
+    kind : str
+        "saddle-node", "period-doubling" or "grazing".
+    boundary : int
+        At a grazing 1 for X = D, -1 for X = -D, else 0.
+    kindred : int
+        At a grazing the sign of X'' of the extremum, else 0.
+    phase : float
+        At a grazing about where in the orbit's period the extremum lies.
+    """
+
+    kind: str
+    boundary: int = 0
+    kindred: int = 0
+    phase: float = 0.0
+
+    def nearest(self, point: Point) -> int:
+        """Extremum that is meant; -1 if there is none."""
+        if len(point.extrema) == 0:
+            return -1
+        gap = np.abs((point.extrema[:, 0] - self.phase + 0.5) % 1.0 - 0.5)
+        gap[point.extrema[:, 2] * self.kindred <= 0.0] = np.inf
+        at = int(np.argmin(gap))
+        return at if np.isfinite(gap[at]) else -1
+
+    def measure(self, problem: OrbitProblem, point: Point) -> float:
+        """Quantity that is zero at the special orbit; nan if there is no such extremum."""
+        if self.kind == "saddle-node":
+            return point.fold
+        if self.kind == "period-doubling":
+            return point.flip
+        at = self.nearest(point)
+        if at < 0:
+            return float("nan")
+        x = float(point.extrema[at, 1])
+        return (x - self.boundary * float(problem.packed(point.u)[6])) / problem.scale
+
+    def gradient(self, problem: OrbitProblem, point: Point) -> FloatArray:
+        """Its derivative with respect to the unknowns."""
+        if self.kind == "saddle-node":
+            return point.determinant_slope - point.trace_slope
+        if self.kind == "period-doubling":
+            return point.determinant_slope + point.trace_slope
+        slope: FloatArray = point.extrema_slope[self.nearest(point)].copy()
+        slope[2:] -= self.boundary * problem.ways[:, 6] / problem.scale
+        return slope
+
+
+def special_orbit(
+    problem: OrbitProblem,
+    condition: Condition,
+    guess: FloatArray,
+    across: FloatArray | None = None,
+    refinement: int = 1,
+    limit: int = 12,
+) -> Point | None:
+    """Newton's method for an orbit that meets a condition; None if it does not arrive.
+
+    With one parameter the orbit is isolated. With two, it is sought in the plane across . (u - guess) = 0. Every
+    derivative is exact, so that convergence is quadratic away from grazings.
+    """
+    u = guess
+    best, kept = np.inf, None
+    for iteration in range(limit):
+        point = problem.evaluate(u, refinement)
+        if point is None:
+            return None
+        gap = [*(point.image / problem.scale - u[:2]), condition.measure(problem, point)]
+        rows = [*(point.derivative - np.eye(2, len(u))), condition.gradient(problem, point)]
+        if across is not None:
+            gap.append(across @ (u - guess))
+            rows.append(across)
+        off, matrix = np.array(gap), np.array(rows)
+        if not (np.all(np.isfinite(off)) and np.all(np.isfinite(matrix))):
+            return None
+        # the determinant and trace of the measure are as exact as the entries of the Jacobian
+        size = float(np.max(np.abs(off))) / max(1.0, float(np.max(np.abs(point.jacobian))))
+        closed = point.residual <= rounding(point)
+        if size < best or (closed and kept is not None and kept.residual > rounding(kept)):
+            best, kept = size, point
+        elif best < 1e-11 and kept is not None and kept.residual <= rounding(kept):
+            break
+        try:
+            step = np.linalg.solve(matrix, -off)
+        except np.linalg.LinAlgError:
+            return None
+        length = float(np.max(np.abs(step)))
+        if not length < 0.3:
+            return None
+        if closed and (length < 1e-15 or (best < 1e-11 and length < 1e-13)):
+            break
+        u = u + step
+        if iteration > 4 and best > 1e-3:
+            return None
+    if kept is None or not (best < 1e-11 and kept.residual <= rounding(kept)):
+        return None
+    return kept

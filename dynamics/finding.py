@@ -1,0 +1,261 @@
+"""All the periodic orbits of a region: deflated Newton searches, and a count that shows what is missing."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.cost import Cost
+from dynamics.errors import Faults
+from dynamics.flow import Tables, period_map, tables
+from dynamics.oscillator import GearOscillator
+from dynamics.shooting import Orbit, find_orbit
+from dynamics.sweeps import rest_state, settling_periods
+
+__all__ = ["IndexCount", "OrbitSet", "find_orbits"]
+
+FloatArray = npt.NDArray[np.float64]
+Region = tuple[tuple[float, float], tuple[float, float]]
+BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
+RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
+
+
+@dataclass(frozen=True)
+class IndexCount:
+    """Sum of the indices of the fixed points of the n-period map, against what it must be.
+
+    Parameters
+    ----------
+    periods : int
+        n.
+    points : int
+        Fixed points found, those of shorter periods included.
+    found : int
+        Sum of their indices, the sign of (1 - m1)(1 - m2) of each.
+    expected : int or None
+        Index of the map on a large circle; None if it is not known.
+    """
+
+    periods: int
+    points: int
+    found: int
+    expected: int | None
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitSet:
+    """Orbits found.
+
+    Parameters
+    ----------
+    orbits : tuple of Orbit
+        By period, then by X at tau = 0.
+    counts : tuple of IndexCount
+        One for each period asked for. Where found and expected differ orbits are missing, or lie on a bifurcation.
+        Where they agree none need be missing, but pairs of opposite index may.
+    region : tuple
+        Where the searches started.
+    error : float
+        Largest estimated relative error of an orbit.
+    cost : Cost
+        Effort.
+    converged : bool
+        Whether all sums of indices are as expected.
+    message : str
+        What was found.
+    """
+
+    orbits: tuple[Orbit, ...]
+    counts: tuple[IndexCount, ...]
+    region: Region
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+    def __len__(self) -> int:
+        """Number of orbits."""
+        return len(self.orbits)
+
+
+def find_orbits(
+    oscillator: GearOscillator,
+    periods: Sequence[int] = (1, 2, 3, 4),
+    region: Region | None = None,
+    *,
+    starts: int = 10,
+) -> OrbitSet:
+    r"""Find the periodic orbits, stable and unstable, that Newton's method reaches from a region.
+
+    Starts lie on a grid and on long motions. Orbits found are deflated, so that later searches are pushed away from
+    them. The fixed points of the n-period map have indices, the sign of (1 - m1)(1 - m2), whose sum is the index of
+    the map on a large circle: there the backlash does not count, and it is that of the linear equation with D = 0.
+    Where the sum differs the search is repeated with a finer grid, twice.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    periods : sequence of int
+        Periods, in excitation periods.
+    region : ((x0, x1), (v0, v1)), optional
+        Starts. Left out: somewhat more than what long motions cover.
+    starts : int
+        Starts along each side of the region.
+
+    Returns
+    -------
+    OrbitSet
+        Orbits and the counts of their indices.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range.
+    """
+    began = time.perf_counter()
+    faults = Faults()
+    wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
+    side = faults.whole("starts", starts, 1, 1000, "10 is usual")
+    if region is not None:
+        for k, (low, high) in enumerate(region):
+            a, b = (faults.number(f"region[{k}][{i}]", value) for i, value in enumerate((low, high)))
+            if not a < b:
+                faults.add(f"region[{k}]", (low, high), "the lower value first", "give ((x0, x1), (v0, v1))")
+    faults.raise_if_any()
+    search = _Search(oscillator, region)
+    counts = []
+    for n in wanted:
+        for fineness in (1, 2, 4):
+            search.run(n, side * fineness)
+            search.twins(n)
+            count = search.count(n)
+            if count.expected is None or count.found == count.expected:
+                break
+        counts.append(count)
+    orbits = tuple(sorted(search.orbits, key=lambda o: (o.periods, float(o.state[0]))))
+    good = all(c.expected is not None and c.found == c.expected for c in counts)
+    message = f"{len(orbits)} orbits"
+    message += "".join(
+        f"; the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
+        for c in counts
+        if c.expected is not None and c.found != c.expected
+    )
+    if any(c.expected is None for c in counts):
+        message += "; the sum of the indices is not known for this oscillator"
+    cost = Cost(time.perf_counter() - began, 2, 0, search.periods)
+    error = max((o.error for o in orbits), default=0.0)
+    return OrbitSet(orbits, tuple(counts), search.region, error, cost, good, message)
+
+
+class _Search:
+    """Orbits found so far, and where to start."""
+
+    def __init__(self, oscillator: GearOscillator, region: Region | None) -> None:
+        self.oscillator, self.table = oscillator, tables(oscillator)
+        self.orbits: list[Orbit] = []
+        self.points: list[FloatArray] = []  # of each orbit
+        self.periods = 0
+        self.motion = self._motion()
+        size = np.max(np.abs(self.motion), axis=0, initial=1e-9)
+        self.region = region if region is not None else _around(size)
+        self.scale = float(np.max(np.abs(self.region)))
+
+    def run(self, n: int, side: int) -> None:
+        """Search for fixed points of the n-period map."""
+        from dynamics.kernels.searching import hunt
+
+        (x0, x1), (v0, v1) = self.region
+        grid = np.stack(np.meshgrid(np.linspace(x0, x1, side), np.linspace(v0, v1, side)), axis=-1)
+        starts = np.concatenate([self.motion[-RECURRENT:], grid.reshape(-1, 2)])
+        known = [p for orbit, p in zip(self.orbits, self.points, strict=True) if n % orbit.periods == 0]
+        found = np.empty((4096, 2))
+        number = sum(len(p) for p in known)
+        if number:
+            found[:number] = np.concatenate(known)
+        last, used = hunt(self.table.arrays, starts, n, 40, self.scale, found, number)
+        self.periods += int(used)
+        for point in found[number:last]:
+            if not any(np.min(np.max(np.abs(p - point), axis=1)) < 1e-7 * self.scale for p in self.points):
+                self._keep(find_orbit(self.oscillator, point, periods=n))
+
+    def twins(self, n: int) -> None:
+        """Search beside orbits close to a bifurcation for their partners, which deflation pushes away.
+
+        Those are the other orbit of a saddle node and the doubled orbit of a period doubling.
+        """
+        from dynamics.kernels.searching import hunt
+
+        starts = []
+        for orbit in self.orbits:
+            critical = {n: 1.0, n / 2: -1.0}.get(orbit.periods)
+            if critical is None:
+                continue
+            values, vectors = np.linalg.eig(orbit.jacobian)
+            k = int(np.argmin(np.abs(values - critical)))
+            if abs(values[k] - critical) < 0.5:
+                along = np.real(vectors[:, k])
+                starts += [
+                    orbit.state + sign * self.scale * size * along for size in BESIDE for sign in (1, -1)
+                ]
+        if starts:
+            found = np.empty((4096, 2))
+            last, used = hunt(self.table.arrays, np.array(starts), n, 20, self.scale, found, 0)
+            self.periods += int(used)
+            for point in found[:last]:
+                self._keep(find_orbit(self.oscillator, point, periods=n))
+
+    def count(self, n: int) -> IndexCount:
+        """Sum of indices of the fixed points of the n-period map."""
+        total = number = 0
+        for orbit in self.orbits:
+            if n % orbit.periods == 0:
+                product = float(np.real(np.prod(1.0 - np.asarray(orbit.multipliers) ** (n // orbit.periods))))
+                total += orbit.periods * int(np.sign(product))
+                number += orbit.periods
+        return IndexCount(n, number, total, _index_at_infinity(self.oscillator, n))
+
+    def _keep(self, orbit: Orbit) -> None:
+        if not orbit.converged:
+            return
+        points = period_map(self.table, orbit.state, orbit.periods).states
+        if any(np.min(np.max(np.abs(p - orbit.state), axis=1)) < 1e-7 * self.scale for p in self.points):
+            return
+        self.orbits.append(orbit)
+        self.points.append(points)
+
+    def _motion(self) -> FloatArray:
+        """States of motions from three starts, the later ones at the end; what diverges is left out."""
+        rest = rest_state(self.oscillator)
+        push = np.array([0.0, 1.0 + float(np.max(np.abs(rest)))])
+        wait = min(settling_periods(self.oscillator, low=50), 400)
+        parts = []
+        for start in (rest, rest + push, -rest - push):
+            image = period_map(self.table, start, 80, skip=wait)
+            self.periods += wait + 80
+            if not image.message and float(np.max(np.abs(image.states))) < 1e6:
+                parts.append(image.states)
+        return np.stack(parts, axis=1).reshape(-1, 2) if parts else np.array([rest])
+
+
+def _around(size: FloatArray) -> Region:
+    """Box somewhat larger than a motion."""
+    x, v = (float(1.3 * s + 0.1 * np.max(size)) for s in size)
+    return (-x, x), (-v, v)
+
+
+def _index_at_infinity(oscillator: GearOscillator, n: int) -> int | None:
+    """Index of the n-period map on a large circle."""
+    if oscillator.one_sided:
+        return None
+    linear: Tables = tables(dataclasses.replace(oscillator, half_backlash=0.0))
+    jacobian = period_map(linear, np.zeros(2)).jacobian
+    if not np.all(np.isfinite(jacobian)):
+        return None
+    product = np.prod(1.0 - np.linalg.eigvals(jacobian) ** n)
+    return int(np.sign(product.real)) if abs(product) > 1e-6 else None

@@ -1,0 +1,60 @@
+"""How kernels are compiled, and when a compiled kernel on disk is still good."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
+F = TypeVar("F", bound=Callable[..., Any])
+
+MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES = range(8)
+FINE, DIVERGED, CROWDED, LOST = range(
+    4
+)  # all well, not finite, too many events in a cell, Newton's method failed
+ZERO, ONE = cast(int, np.int64(0)), cast(int, np.int64(1))  # a literal would have numba compile callees twice
+MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
+
+
+@cache
+def sources_digest() -> str:
+    """Digest of all kernel sources."""
+    digest = hashlib.sha256()
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.name.encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()
+
+
+class _Store(CompileResultCacheImpl):
+    """Kept code is stamped with all kernel sources: numba itself looks at the caller's file alone."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        self._locator.get_source_stamp = sources_digest
+
+
+class _Kept(FunctionCache):
+    _impl_class = _Store
+
+
+def helper(function: F) -> F:
+    """Compile when first called by a kernel; not kept on disk, because its callers hold it."""
+    return cast(F, njit(error_model="numpy", nogil=True)(function))
+
+
+def kernel(function: F) -> F:
+    """Compile when first called, keep the result on disk until any kernel source changes."""
+    compiled = njit(error_model="numpy", nogil=True)(function)
+    compiled._cache = _Kept(function)
+    return cast(F, compiled)

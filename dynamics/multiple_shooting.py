@@ -1,0 +1,180 @@
+"""Periodic orbits whose map stretches beyond what one shot can aim over: Newton's method on many states at once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.flow import Tables
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["Chain", "chain_error", "shoot_in_stretches", "stretch_starts"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+CELLS_PER_STRETCH = (
+    8  # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
+)
+MOST = 250  # stretches: the equations are solved as a dense matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """States at the ends of stretches of a periodic orbit.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (m, 2)
+        X and V at the starts of the stretches, the first at tau = 0.
+    factors : ndarray, shape (m, 2, 2)
+        Jacobian of every stretch.
+    counts : tuple of int
+        Exits from X > D and entries into X < -D.
+    residual : float
+        Largest gap between a stretch's end and the next node.
+    iterations : int
+        Newton iterations.
+    """
+
+    nodes: FloatArray
+    factors: FloatArray
+    counts: tuple[int, int]
+    residual: float
+    iterations: int
+
+    @property
+    def jacobian(self) -> FloatArray:
+        """Derivative of the map over the whole orbit: the product of the factors."""
+        product = np.eye(2)
+        for factor in self.factors:
+            product = factor @ product
+        return product
+
+
+def shoot_in_stretches(
+    oscillator: GearOscillator, table: Tables, guess: FloatArray, periods: int, limit: int
+) -> Chain | None:
+    """Newton's method with step halving on the states at the starts of all stretches; None if it does not arrive.
+
+    Tried from the motion that starts at the guess, cut off where it leaves the size of what drives it, and from
+    the slow balance x = D + F/K.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    table : Tables
+        Its tables.
+    guess : ndarray, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Period of the orbit, in excitation periods.
+    limit : int
+        Newton iterations.
+    """
+    firsts = stretch_starts(table, periods)
+    tau = firsts[:-1] * (oscillator.period / table.cells)
+    for nodes in (_followed(oscillator, table, guess, firsts), _balanced(oscillator, tau)):
+        chain = _newton(table, nodes, firsts, limit)
+        if chain is not None:
+            return chain
+    return None
+
+
+def stretch_starts(table: Tables, periods: int) -> IntArray:
+    """First cells of the stretches, and the cell after the last; every period begins with a stretch."""
+    each = max(1, min(table.cells // CELLS_PER_STRETCH, MOST // periods))
+    return np.round(np.linspace(0, table.cells * periods, each * periods + 1)).astype(np.int64)
+
+
+def chain_error(finer: Tables, chain: Chain, firsts: IntArray) -> float:
+    """Largest Newton step that tables with half the cell would still take, over the size of the motion."""
+    ends, factors, _ = stretches(finer, chain.nodes, 2 * firsts)
+    step = newton_step(factors, ends - np.roll(chain.nodes, -1, axis=0))
+    return float(np.max(np.abs(step))) / max(float(np.max(np.abs(chain.nodes))), 1e-300)
+
+
+def stretches(
+    table: Tables, nodes: FloatArray, firsts: IntArray
+) -> tuple[FloatArray, FloatArray, tuple[int, int]]:
+    """Ends and Jacobians of all stretches; nan where the motion is lost."""
+    from dynamics.kernels.flow import partial
+
+    ends, factors = nodes.copy(), np.tile(np.eye(2), (len(nodes), 1, 1))
+    counts = np.zeros(2, dtype=np.int64)
+    lengths = np.diff(firsts)
+    for i in range(len(nodes)):
+        flag = partial(table.arrays, int(firsts[i]), int(lengths[i]), ends[i], factors[i], counts)
+        if flag != 0:
+            ends[i] = np.nan
+    return ends, factors, (int(counts[0]), int(counts[1]))
+
+
+def newton_step(factors: FloatArray, gap: FloatArray) -> FloatArray:
+    """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic."""
+    m = len(gap)
+    matrix = np.zeros((2 * m, 2 * m))
+    for i in range(m):
+        j = (i + 1) % m
+        matrix[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] -= factors[i]
+        matrix[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] += np.eye(2)
+    return np.asarray(np.linalg.solve(matrix, gap.ravel()).reshape(m, 2))
+
+
+def _newton(table: Tables, nodes: FloatArray, firsts: IntArray, limit: int) -> Chain | None:
+    scale = max(float(np.max(np.abs(nodes))), float(table.packed[6]), 1e-300)
+    best, kept, step, factor = math.inf, None, np.zeros_like(nodes), 1.0
+    trial = nodes
+    for iteration in range(4 * limit):
+        ends, factors, counts = stretches(table, trial, firsts)
+        gap = ends - np.roll(trial, -1, axis=0)
+        size = float(np.max(np.abs(gap)))
+        if size < best:
+            best, nodes, factor = size, trial, 1.0
+            kept = Chain(nodes, factors, counts, size, iteration)
+            try:
+                step = newton_step(factors, gap)
+            except np.linalg.LinAlgError:
+                return None
+            if not np.all(np.isfinite(step)):
+                return None
+        elif best <= 1e-11 * scale or factor < 1e-4:
+            break
+        else:
+            factor *= 0.5
+        trial = nodes + factor * step
+    if kept is None:
+        return None
+    stretch = max(1.0, float(np.max(np.abs(kept.factors))))
+    scale = max(float(np.max(np.abs(kept.nodes))), 1e-300)
+    return kept if best <= 1e-14 * 64.0 * stretch * scale else None
+
+
+def _followed(oscillator: GearOscillator, table: Tables, guess: FloatArray, firsts: IntArray) -> FloatArray:
+    """Nodes on the motion from the guess; where it grows far beyond what drives it, the slow balance."""
+    from dynamics.kernels.flow import partial
+
+    tau = firsts[:-1] * (oscillator.period / table.cells)
+    nodes = _balanced(oscillator, tau)
+    bound = 20.0 * max(float(np.max(np.abs(guess))), float(np.max(np.abs(nodes))), oscillator.half_backlash)
+    state, counts = guess.copy(), np.zeros(2, dtype=np.int64)
+    for i, length in enumerate(np.diff(firsts)):
+        if not float(np.max(np.abs(state))) < bound:
+            state = nodes[i].copy()
+        nodes[i] = state
+        if partial(table.arrays, int(firsts[i]), int(length), state, np.eye(2), counts) != 0:
+            state = np.full(2, np.inf)
+    return nodes
+
+
+def _balanced(oscillator: GearOscillator, tau: npt.NDArray[np.floating]) -> FloatArray:
+    """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean."""
+    k = oscillator.stiffness(oscillator.frequency * tau)
+    mean = abs(oscillator.stiffness.mean)
+    force = oscillator.force(tau)
+    side = -1.0 if oscillator.mean_force < 0.0 else 1.0
+    x = side * oscillator.half_backlash + force / np.maximum(k, 0.2 * mean if mean > 0.0 else 1.0)
+    return np.stack([x, np.zeros_like(x)], axis=1)

@@ -1,0 +1,99 @@
+"""The period map and its exact derivatives with respect to state and parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import DynamicsError, Fault, Faults
+from dynamics.flow import checked_state, tables
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["MapDerivatives", "map_derivatives"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MapDerivatives:
+    """Image of a state under n periods, with derivatives.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        The parameters, in the order of the columns.
+    state : ndarray, shape (2,)
+        Image of X and V.
+    jacobian : ndarray, shape (2, 2)
+        Its derivative with respect to the state.
+    slope : ndarray, shape (2, m)
+        Its derivative with respect to the parameters; the image is that of the same state, at the changed period
+        if the frequency changes.
+    second : ndarray, shape (2 + m, 2, 2)
+        Derivatives of the Jacobian with respect to X, V and the parameters. Infinite at a grazing.
+    counts : tuple of int
+        Exits from X > D and entries into X < -D.
+    """
+
+    parameters: tuple[str, ...]
+    state: FloatArray
+    jacobian: FloatArray
+    slope: FloatArray
+    second: FloatArray
+    counts: tuple[int, int]
+
+
+def map_derivatives(
+    oscillator: GearOscillator,
+    state: npt.ArrayLike,
+    parameters: tuple[str, ...] | None = None,
+    periods: int = 1,
+) -> MapDerivatives:
+    r"""Follow a state over whole periods with first and second derivatives, all exact.
+
+    Within a region the variational equations are linear with tabulated solutions. At an impact f is continuous, so
+    that first derivatives pass unchanged; f' jumps, so that the derivative of the Jacobian M in a direction jumps by
+    :math:`\Delta K\, (M_{1\cdot})\, \delta X / V` in its second row.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    parameters : tuple of str, optional
+        As in `GearOscillator.with_parameter`. Left out: all of them.
+    periods : int
+        Excitation periods.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range, or the motion grows beyond all bounds.
+    """
+    from dynamics.kernels.sensitivity import probe
+    from dynamics.kernels.tables import differentiate
+
+    faults = Faults()
+    n = faults.whole("periods", periods, 1, 10**7, "give a positive number of periods")
+    faults.raise_if_any()
+    at = checked_state(state)
+    names = oscillator.parameters if parameters is None else tuple(parameters)
+    table, order = tables(oscillator), oscillator.stiffness.order
+    q = table.packed
+    ways = np.zeros((len(names), len(q)))
+    for row, name in zip(ways, names, strict=True):
+        row[oscillator.place(name)] = 1.0
+    slopes = differentiate(q[:8], q[8 : 8 + order], q[8 + order :], ways, table.coef, table.edge)
+    m = 2 + len(names)
+    lin, second = np.empty((2, m)), np.empty((m, 2, 2))
+    counts, turns = np.empty(2, dtype=np.int64), np.empty((0, 5 + m))
+    flag, _ = probe(table.arrays, slopes, ways, at, n, lin, second, counts, turns)
+    if flag != 0:
+        fault = Fault("state", repr(state), "a motion that stays bounded", "check the parameters")
+        raise DynamicsError((fault,))
+    return MapDerivatives(
+        names, at, lin[:, :2], lin[:, 2:], second, (int(counts[0]), int(counts[1]))
+    )  # fmt: skip

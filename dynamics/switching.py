@@ -1,0 +1,68 @@
+"""From a period doubling on to the branch of twice the period."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.corrector import OrbitProblem
+from dynamics.errors import Faults
+from dynamics.flow import period_map, tables
+from dynamics.oscillator import GearOscillator
+from dynamics.shooting import Orbit, find_orbit
+from dynamics.special import SpecialPoint
+
+__all__ = ["doubled_orbit"]
+
+FloatArray = npt.NDArray[np.float64]
+AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-4, 3e-2, 1e-4, 0.1)  # over the size of the motion
+
+
+def doubled_orbit(
+    oscillator: GearOscillator, parameter: str, point: SpecialPoint, bounds: tuple[float, float]
+) -> Orbit | None:
+    """Orbit of twice the period next to a period doubling, or None if none is found.
+
+    The doubled orbit leaves the point along the eigenvector of the multiplier -1. A small distance along it is held,
+    and the parameter is one of the unknowns, so that it does not matter to which side the doubled branch goes.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its value of the parameter is not used.
+    parameter : str
+        As in `GearOscillator.with_parameter`.
+    point : SpecialPoint
+        A period doubling on a branch in this parameter.
+    bounds : tuple of float
+        Range of the parameter.
+
+    Raises
+    ------
+    DynamicsError
+        If the point is not a period doubling.
+    """
+    faults = Faults()
+    if point.kind != "period-doubling":
+        faults.add("point", point.kind, "a period-doubling", "take one from Branch.special")
+    faults.raise_if_any()
+    n = point.periods
+    scale = max(float(np.max(np.abs(point.state))), oscillator.half_backlash, 1e-300)
+    low, high = np.array([bounds[0]]), np.array([bounds[1]])
+    problem = OrbitProblem(oscillator, (parameter,), 2 * n, low, high, scale)
+    here = oscillator.with_parameter(parameter, point.parameter)
+    jacobian = period_map(tables(here), point.state, n).jacobian
+    values, vectors = np.linalg.eig(jacobian)
+    along = np.append(np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]), 0.0)
+    along /= np.linalg.norm(along)
+    origin = problem.unknowns(point.state, point.parameter)
+    for amplitude in AMPLITUDES:
+        found = problem.correct(origin + amplitude * along, along)
+        if found is None or not 0.0 <= found.u[2] <= 1.0 or abs(found.u[2] - origin[2]) > 0.1:
+            continue
+        if float(np.max(np.abs(problem.half_way(found) - found.u[:2]))) < 0.5 * amplitude:
+            continue  # the orbit of half the period
+        orbit = find_orbit(problem.at(found.u), found.state, periods=2 * n)
+        if orbit.converged and orbit.periods == 2 * n:
+            return orbit
+    return None
