@@ -17,7 +17,7 @@ from fem.flexibility import GearFlexibility
 from fem.local_law import HertzApproach
 from fem.ring import Ring, mesh_and_factor
 from fem.support import FIXED, Support, held_profiles
-from fem.tip_contact import TipStrips
+from fem.tip_strips import TipStrips
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -175,7 +175,7 @@ class Compliance:
         total = self.pinion.own(rho1) + self.wheel.own(self.pair.line_of_action - rho1)
         return np.asarray(total / self.pair.face_width + self._common)
 
-    def bulk(self, rho1: Array, rho2: Array | None = None) -> Array:
+    def bulk(self, rho1: Array, rho2: Array | None = None, leaning: Array | None = None) -> Array:
         """Bulk flexibility of pairs in order of their rho1, one tooth apart.
 
         Parameters
@@ -184,6 +184,10 @@ class Compliance:
             Curvature radii on the pinion [m].
         rho2 : (..., n) array, optional
             On the wheel; those of the line of action unless given.
+        leaning : (2, ..., n) array, optional
+            Angles by which forces lean from pinion's and wheel's own normal, away from the tip [rad]: not zero
+            only where that gear's tip corner is in contact. Cross terms alone; the own flexibility of a
+            corner belongs to its law (``fem.tip_contact``).
 
         Returns
         -------
@@ -200,9 +204,22 @@ class Compliance:
             own = self.pinion.own(rho1[..., i]) + self.wheel.own(rho2[..., i])
             matrix[..., i, i] = own / width + common
             for j in range(i + 1, min(n, i + reach + 1)):
-                cross = self.pinion.cross(j - i, rho1[..., i], rho1[..., j])
                 # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
-                cross = cross + self.wheel.cross(j - i, rho2[..., j], rho2[..., i])
+                places = (rho1[..., i], rho1[..., j]), (rho2[..., j], rho2[..., i])
+                first, second = (
+                    gear.cross(j - i, *place)
+                    for gear, place in zip((self.pinion, self.wheel), places, strict=True)
+                )
+                if leaning is not None:
+                    # corners are the places of largest rho
+                    angles = leaning[0, ..., j], leaning[1, ..., i]
+                    first = np.cos(angles[0]) * first - np.sin(angles[0]) * self.pinion.corner(
+                        j - i, rho1[..., i]
+                    )
+                    second = np.cos(angles[1]) * second - np.sin(angles[1]) * self.wheel.corner(
+                        j - i, rho2[..., j]
+                    )
+                cross = first + second
                 matrix[..., i, j] = matrix[..., j, i] = cross / width + common
         return matrix
 

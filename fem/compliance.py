@@ -24,7 +24,7 @@ from fem.flamant import hertz_indentation
 from fem.flexibility import FlankSamples, GearFlexibility, flexibility, sample_places, sampled
 from fem.ring import Ring, mesh_and_factor, ring_of
 from fem.support import Support, held_profiles, on_both
-from fem.tip_contact import tip_strips
+from fem.tip_strips import tip_strips
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile

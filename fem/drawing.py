@@ -171,12 +171,13 @@ def gear_drawing(ring: Ring) -> GearDrawing:
     by_cut[ring.cut, np.arange(len(ring.cut))] = 1.0
     recovery = nodal_stress(mesh, ring.law)
     picture = picture_of(mesh)
-    nodes = picture.nodes[:, 0]
+    cuts = by_cut.shape[1]
 
     def stress_at(some: NDArray[np.int64]) -> Array:
         rows = (3 * some[:, None] + np.arange(3)).ravel()
         return np.asarray(recovery.matrix[rows] @ by_cut)
 
-    unknowns = (2 * nodes[:, None] + np.arange(2)).ravel()
     seam = stress_at(_side_nodes(ring, "right")), stress_at(_side_nodes(ring, "left"))
-    return GearDrawing(ring, recovery, picture, by_cut, by_cut[unknowns], stress_at(nodes), seam)
+    moved = picture.interpolate(by_cut.reshape(-1, 2, cuts)).reshape(-1, cuts)
+    stress = picture.interpolate((recovery.matrix @ by_cut).reshape(-1, 3, cuts)).reshape(-1, cuts)
+    return GearDrawing(ring, recovery, picture, by_cut, moved, stress, seam)

@@ -37,7 +37,13 @@ def edge_points(points: Array, edges: Index, t: Array) -> tuple[Array, Array, Ar
 
 
 def traction_integrals(
-    points: Array, edges: Index, load: Array, inward: Array, law: PlaneElasticity, length: float
+    points: Array,
+    edges: Index,
+    load: Array,
+    inward: Array,
+    law: PlaneElasticity,
+    length: float,
+    lean: float = 0.0,
 ) -> tuple[Array, Array]:
     """Nodal forces of Flamant's tractions, and their work on Flamant's own displacement.
 
@@ -48,10 +54,12 @@ def traction_integrals(
     edges : (k, 3) array
         First node, last node, middle; material on the left.
     load, inward : (loads, 2) arrays
-        Places [m] and directions of unit line loads.
+        Places [m] of unit line loads, and normals of the flank into the material.
     law : PlaneElasticity
     length : float
         Unit of length of the logarithm [m].
+    lean : float
+        Angle of the loads from the normals [rad], anticlockwise.
 
     Returns
     -------
@@ -64,8 +72,8 @@ def traction_integrals(
     of, some, t, weight = _quadrature(points, edges, load)
     place, along, values = edge_points(points, edges[some], t)
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)  # outward, times ds/dt
-    pull = flamant.traction(place, normal, load[of], inward[of]) * weight[:, None]
-    moved = flamant.displacement(place, load[of], inward[of], law, length)
+    pull = flamant.traction(place, normal, load[of], flamant.leaning(inward, lean)[of]) * weight[:, None]
+    moved = flamant.displacement(place, load[of], inward[of], law, length, lean)
     work = np.bincount(of, np.einsum("na,na->n", pull, moved), loads)
     unknown = 2 * edges[some][:, :, None] + np.arange(2)
     lumps = values[:, :, None] * pull[:, None, :]

@@ -1,7 +1,7 @@
 """Line load on the edge of an elastic half-plane: displacement and stress in closed form.
 
-The load is 1 N per metre of face width along the inward normal. With r the distance from the load, theta
-measured from the load's direction and lengths taken in units of ``length``:
+The load is 1 N per metre of face width, along the inward normal unless it leans. With r the distance from the
+load, theta measured from the load's direction and lengths taken in units of ``length``:
 
     u_r     = -2/(pi E*) [ln(r/length) cos(theta) + (1 - nu*)/2 theta sin(theta)]
     u_theta =  2/(pi E*) [ln(r/length) sin(theta) + (1 + nu*)/2 sin(theta) - (1 - nu*)/2 theta cos(theta)]
@@ -9,6 +9,10 @@ measured from the load's direction and lengths taken in units of ``length``:
 
 (Flamant 1892; K. L. Johnson, Contact Mechanics, 1985, section 2.2). It stays a solution of elasticity beyond
 the half-plane, up to the cut theta = +-pi along the outward normal, which must not meet material.
+
+A force that leans from the inward normal by some angle has the same field about its own direction. The bare
+theta (not those in sine and cosine) is then still counted from the inward normal, so that the cut stays where
+it is; that moves the whole body across the force, which the zero of displacement leaves open.
 """
 
 from __future__ import annotations
@@ -18,7 +22,15 @@ from numpy.typing import NDArray
 
 from fem.elasticity import PlaneElasticity
 
-__all__ = ["displacement", "hertz_half_width", "hertz_indentation", "hertz_stress", "stress", "traction"]
+__all__ = [
+    "displacement",
+    "hertz_half_width",
+    "hertz_indentation",
+    "hertz_stress",
+    "leaning",
+    "stress",
+    "traction",
+]
 
 Array = NDArray[np.float64]
 
@@ -36,13 +48,24 @@ def _turned(direction: Array) -> Array:
     return np.stack([-direction[..., 1], direction[..., 0]], axis=-1)
 
 
-def displacement(points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float) -> Array:
+def leaning(inward: Array, lean: float) -> Array:
+    """Directions (..., 2) turned anticlockwise by an angle [rad]."""
+    return np.asarray(inward if lean == 0.0 else np.cos(lean) * inward + np.sin(lean) * _turned(inward))
+
+
+def displacement(
+    points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float, lean: float = 0.0
+) -> Array:
     """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself.
 
-    One load for all points, or a load and its direction (n, 2) for each.
+    One load for all points, or a load and its inward normal (n, 2) for each. The force leans from the normal
+    by the angle ``lean`` [rad], anticlockwise.
     """
     along, across, r = _frame(points, load, inward)
     theta = np.arctan2(across, along)
+    if lean:
+        inward = leaning(inward, lean)
+        along, across, r = _frame(points, load, inward)
     factor = 2 / (np.pi * law.plane_modulus)
     half_minus, half_plus = 0.5 * (1 - law.plane_poisson), 0.5 * (1 + law.plane_poisson)
     log, cos, sin = np.log(r / length), along / r, across / r

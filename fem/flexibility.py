@@ -29,7 +29,15 @@ if TYPE_CHECKING:
     from gears import ToothProfile
     from meshes import SectorMesh
 
-__all__ = ["FlankSamples", "GearFlexibility", "corner_logarithm", "flexibility", "hub_windup", "sampled"]
+__all__ = [
+    "FlankSamples",
+    "GearFlexibility",
+    "corner_logarithm",
+    "flexibility",
+    "hub_windup",
+    "sampled",
+    "wedge_logarithms",
+]
 
 Array = NDArray[np.float64]
 
@@ -58,6 +66,8 @@ class GearFlexibility:
         Chebyshev coefficients of u_r - c ln(d/module) over ``rho_range``.
     cross_series : mapping of int to (k, k) array
         For the k-th tooth on the side of growing rho: coefficients over (load's rho, point's rho).
+    corner_series : mapping of int to (k,) array
+        For the same tooth's corner along its tangent: coefficients over the load's rho.
     hub_windup : float
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
     fit_error : float
@@ -72,6 +82,7 @@ class GearFlexibility:
     logarithm: float
     own_series: Array
     cross_series: Mapping[int, Array]
+    corner_series: Mapping[int, Array]
     hub_windup: float
     fit_error: float
 
@@ -103,6 +114,24 @@ class GearFlexibility:
         """
         return np.asarray(chebyshev.chebval2d(self._unit(load), self._unit(point), self.cross_series[tooth]))
 
+    def corner(self, tooth: int, load: Array) -> Array:
+        """Displacement of another tooth's tip corner along its flank's tangent, towards the tip.
+
+        Parameters
+        ----------
+        tooth : int
+            As for ``cross``.
+        load : array
+            Curvature radius of a normal load on tooth 0 [m]; by Maxwell and Betti also the place where the
+            normal displacement by a tangential load at the corner is asked for.
+
+        Returns
+        -------
+        array
+            [m per N/m]
+        """
+        return np.asarray(chebyshev.chebval(self._unit(load), self.corner_series[tooth]))
+
 
 def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left") -> tuple[float, float]:
     """Interior angle of the tip corner [rad] and the coefficient c of ln d [m per N/m]."""
@@ -123,12 +152,31 @@ def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left"
         other = edge[0] if edge[1] == corner else edge[1]
         slope = -3 * points[corner] + 4 * points[edge[2]] - points[other]
         arms.append(slope / np.linalg.norm(slope))
-    half = 0.5 * float(np.arccos(np.clip(arms[0] @ arms[1], -1.0, 1.0)))
-    lean = 0.5 * np.pi - half
-    wedge = np.cos(lean) ** 2 / (half + 0.5 * np.sin(2 * half)) + np.sin(lean) ** 2 / (
-        half - 0.5 * np.sin(2 * half)
-    )
-    return 2 * half, float((2 / np.pi - wedge) / law.plane_modulus)
+    angle = float(np.arccos(np.clip(arms[0] @ arms[1], -1.0, 1.0)))
+    return angle, wedge_logarithms(angle, law)[0]
+
+
+def wedge_logarithms(angle: float, law: PlaneElasticity) -> tuple[float, float, float]:
+    """Coefficients of ln d for force and displacement along a wedge's flank [m per N/m]: c_nn, c_nt, c_tt.
+
+    A force at the apex moves the wedge by -ln(r)/E* times 1/(beta + sin(2 beta)/2) along the bisector and
+    1/(beta - sin(2 beta)/2) across it, a half-plane by 2/pi in either direction. n is the inward normal, t
+    the tangent towards the apex.
+
+    Parameters
+    ----------
+    angle : float
+        2 beta, of the material [rad].
+    law : PlaneElasticity
+    """
+    half = 0.5 * angle
+    along, across = 1 / (half + 0.5 * np.sin(angle)), 1 / (half - 0.5 * np.sin(angle))
+    normal = along * np.sin(half) ** 2 + across * np.cos(half) ** 2
+    tangential = along * np.cos(half) ** 2 + across * np.sin(half) ** 2
+    mixed = 0.5 * (across - along) * np.sin(angle)
+    parts = 2 / np.pi - normal, -mixed, 2 / np.pi - tangential
+    c_nn, c_nt, c_tt = (float(part / law.plane_modulus) for part in parts)
+    return c_nn, c_nt, c_tt
 
 
 def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: PlaneElasticity) -> float:
@@ -152,11 +200,14 @@ class FlankSamples:
         u_r at each load [m per N/m].
     cross : (reach, n, n) array
         Displacement at the same places of the k-th tooth on the side of growing rho (rows: load).
+    corner : (reach, n) array
+        Displacement of that tooth's last place along the flank's tangent towards the tip.
     """
 
     rho: Array
     own: Array
     cross: Array
+    corner: Array
 
 
 def sample_places(profile: ToothProfile, rho_low: float, count: int) -> Array:
@@ -168,11 +219,13 @@ def sample_places(profile: ToothProfile, rho_low: float, count: int) -> Array:
 
 
 def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> FlankSamples:
-    """Load a flank at curvature radii ``rho`` [m] and take the displacements there and on ``reach`` teeth."""
-    loads = line_loads(ring, flank_points(ring.mesh, rho, flank))
-    forward = 1 if flank == "left" else -1
-    cross = [loads.on_neighbour(forward * tooth).T for tooth in range(1, reach + 1)]
-    return FlankSamples(rho, loads.regular_at_load(), np.array(cross))
+    """Load a flank at growing curvature radii [m] and take the displacements there and on ``reach`` teeth."""
+    at = flank_points(ring.mesh, rho, flank)
+    loads, along_flank = line_loads(ring, at), line_loads(ring, at.part(slice(-1, None)).towards_tip())
+    teeth = [tooth if flank == "left" else -tooth for tooth in range(1, reach + 1)]
+    cross = [loads.on_neighbour(tooth).T for tooth in teeth]
+    corner = [loads.on_neighbour(tooth, along_flank)[0] for tooth in teeth]
+    return FlankSamples(rho, loads.regular_at_load(), np.array(cross), np.array(corner))
 
 
 def flexibility(
@@ -207,6 +260,7 @@ def flexibility(
         logarithm,
         own,
         {tooth + 1: series for tooth, series in enumerate(cross)},
+        {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
         hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
         max(_tail(own), remainder),
     )

@@ -1,15 +1,15 @@
 """Line loads anywhere on a flank: the singular part in closed form, the regular part by finite elements.
 
 In the loaded sector u = u_s + u_r with u_s Flamant's half-plane (``fem.flamant``), tangent to the flank's
-element edge at the load. u_r is regular and solves the elasticity problem with the tractions -sigma_s n on
-the edges and -u_s on the hub; in every other sector the unknown is u itself. On the cuts of the loaded
-sector the unknown is u, so u_r = u - u_s there and sigma_s n of the cut enters the load. No element is
-refined at the load, and one factorisation serves all loads.
+element edge at the load; the force may lean from the flank's normal. u_r is regular and solves the elasticity
+problem with the tractions -sigma_s n on the edges and -u_s on the hub; in every other sector the unknown is u
+itself. On the cuts of the loaded sector the unknown is u, so u_r = u - u_s there and sigma_s n of the cut
+enters the load. No element is refined at the load, and one factorisation serves all loads.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,8 @@ class FlankPoints:
         Position on the element's edge [m], and the involute's unit normal into the material.
     nodes, weights : (n, 3) arrays
         Nodes of the edge and values of their shape functions.
+    lean : float
+        Angle from the normal to the direction in which the points are loaded or observed [rad], anticlockwise.
     """
 
     rho: Array
@@ -45,17 +47,33 @@ class FlankPoints:
     inward: Array
     nodes: Index
     weights: Array
+    lean: float = 0.0
 
     def part(self, some: slice) -> FlankPoints:
         """Take some of the points."""
-        return FlankPoints(
-            self.rho[some], self.points[some], self.inward[some], self.nodes[some], self.weights[some]
+        return replace(
+            self,
+            rho=self.rho[some],
+            points=self.points[some],
+            inward=self.inward[some],
+            nodes=self.nodes[some],
+            weights=self.weights[some],
         )
 
-    def normal_part(self, displacement: Array) -> Array:
-        """Component along the inward normal of nodal displacements (nodes, 2, ...), at every point."""
+    def towards_tip(self) -> FlankPoints:
+        """Return the same points in the direction of the flank's tangent towards the tip."""
+        clockwise = self.inward[0, 1] * self.points[0, 0] > self.inward[0, 0] * self.points[0, 1]
+        return replace(self, lean=-0.5 * np.pi if clockwise else 0.5 * np.pi)
+
+    @property
+    def direction(self) -> Array:
+        """Unit vectors along which the points are loaded or observed (n, 2): inward unless they lean."""
+        return flamant.leaning(self.inward, self.lean)
+
+    def component(self, displacement: Array) -> Array:
+        """Component along ``direction`` of nodal displacements (nodes, 2, ...), at every point."""
         there = np.einsum("nk,nka...->na...", self.weights, displacement[self.nodes])
-        return np.asarray(np.einsum("na,na...->n...", self.inward, there))
+        return np.asarray(np.einsum("na,na...->n...", self.direction, there))
 
 
 def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoints:
@@ -122,37 +140,39 @@ class LineLoads:
             self.held + np.sum(self.cut_force * self.ring.interfaces(self.cut_force, 0), axis=0)
         )
 
-    def on_neighbour(self, tooth: int) -> Array:
-        """Displacement of the loads' places on another tooth, along their loads: (points, loads)."""
-        return np.asarray(self.cut_force.T @ self.ring.interfaces(self.cut_force, tooth))
+    def on_neighbour(self, tooth: int, places: LineLoads | None = None) -> Array:
+        """Displacement of loads' places on another tooth, along these loads: (points, loads).
+
+        The places are those of the loads themselves, unless other loads of the same ring are given.
+        """
+        observed = self if places is None else places
+        return np.asarray(observed.cut_force.T @ self.ring.interfaces(self.cut_force, tooth))
 
     def on_tooth(self, tooth: int, where: FlankPoints) -> Array:
-        """Displacement along the inward normal at points of another tooth's flank: (points, loads).
+        """Displacement along the points' directions on another tooth's flank: (points, loads).
 
         On tooth 0 itself this is the regular part u_r, to which ``singular`` has to be added.
         """
-        return where.normal_part(_nodal(self.ring, self._inner(tooth)))
+        nodes, local = np.unique(where.nodes, return_inverse=True)
+        # no point of a flank is on a cut or on the hub
+        asked = np.searchsorted(self.ring.inner, (2 * nodes[:, None] + np.arange(2)).ravel())
+        moved = self._inner(tooth, asked).reshape(len(nodes), 2, -1)
+        return replace(where, nodes=local.reshape(where.nodes.shape)).component(moved)
 
     def singular(self, where: FlankPoints) -> Array:
-        """u_s along the inward normal at points of tooth 0 (points, loads); zero at the loads themselves."""
-        part = np.zeros((len(where.rho), len(self.at.rho)))
+        """u_s along the directions of points of tooth 0 (points, loads); zero at the loads themselves."""
+        part, law, length = np.zeros((len(where.rho), len(self.at.rho))), self.ring.law, self.ring.mesh.module
         for i, (load, inward) in enumerate(zip(self.at.points, self.at.inward, strict=True)):
             apart = np.any(where.points != load, axis=1)
-            u = flamant.displacement(where.points[apart], load, inward, self.ring.law, self.ring.mesh.module)
-            part[apart, i] = np.einsum("na,na->n", u, where.inward[apart])
+            u = flamant.displacement(where.points[apart], load, inward, law, length, self.at.lean)
+            part[apart, i] = np.einsum("na,na->n", u, where.direction[apart])
         return part
 
-    def _inner(self, tooth: int) -> Array:
+    def _inner(self, tooth: int, some: Index | slice = slice(None)) -> Array:
+        """Inner unknowns of a tooth's sector, all or some: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
-        inner = -self.ring.inner_by_cut @ cuts
-        return np.asarray(inner + self.own_inner if tooth == 0 else inner)
-
-
-def _nodal(ring: Ring, inner: Array) -> Array:
-    """Spread inner unknowns over (nodes, 2, ...); cuts and hub stay zero, no flank touches them."""
-    full = np.zeros((ring.mesh.unknowns, *inner.shape[1:]))
-    full[ring.inner] = inner
-    return full.reshape(-1, 2, *inner.shape[1:])
+        inner = -self.ring.inner_by_cut[some] @ cuts
+        return np.asarray(inner + self.own_inner[some] if tooth == 0 else inner)
 
 
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
@@ -171,7 +191,7 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
             np.tile(at.points, (len(unknowns) // 2, 1)),
             np.tile(at.inward, (len(unknowns) // 2, 1)),
         )
-        moved = flamant.displacement(points, source, inward, ring.law, mesh.module)
+        moved = flamant.displacement(points, source, inward, ring.law, mesh.module, at.lean)
         return moved.reshape(-1, loads, 2).swapaxes(1, 2).reshape(-1, loads)
 
     cut, hub = singular(ring.cut), singular(ring.hub)
@@ -187,4 +207,4 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
 
 def _integrals(ring: Ring, edges: Index, at: FlankPoints) -> tuple[Array, Array]:
     mesh = ring.mesh
-    return traction_integrals(mesh.points, edges, at.points, at.inward, ring.law, mesh.module)
+    return traction_integrals(mesh.points, edges, at.points, at.inward, ring.law, mesh.module, at.lean)

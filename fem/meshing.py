@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fem.setting import Deviations, Setting, setting
 from fem.tip_contact import nearest_gap
-from fem.tip_geometry import chamfer_gap, lever_ratio, unloaded_gap
+from fem.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -44,6 +44,9 @@ class Meshing:
         Lever of the normal about the axes, over the base radii.
     tangent_arm : (2, n, pairs) array
         Way from the foot of each axis on the normal to the contact [m], rho on the path.
+    leaning : (2, n_1, pairs) array
+        Angle from the normal of pinion's and wheel's flank to the force [rad], away from the tip; not zero at the
+        gear's own tip edge alone.
     gap : (pitches, n_1, pairs) array
         Unloaded gaps [m], inf where not touchable.
     teeth : (2, n, pairs) array of int
@@ -64,6 +67,7 @@ class Meshing:
     edge: NDArray[np.bool_]
     lever: Array
     tangent_arm: Array
+    leaning: Array
     gap: Array
     teeth: NDArray[np.int64]
     back_gap: Array
@@ -92,7 +96,7 @@ def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
     # places of pairs that cannot touch are never used, but must be places
     place = np.where(touchable, place, middle)
     rho = np.stack([place, line - place])
-    lever, arm = np.ones_like(rho), rho.copy()
+    lever, arm, leaning = np.ones_like(rho), rho.copy(), np.zeros_like(rho)
     gap = np.where(touchable, 0.0, np.inf)
     chamfered = np.zeros_like(edge)
     removed = given.removed
@@ -104,7 +108,7 @@ def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
             at = _edges(given, corner, place[chosen])
             rho[1 - corner][chosen], rho[corner][chosen] = at.where, given.rounds[corner].rho
             lever[corner][chosen], arm[corner][chosen], arm[1 - corner][chosen] = at.lever, at.arm, at.where
-            gap[chosen] = at.gap
+            leaning[corner][chosen], gap[chosen] = at.leaning, at.gap
             chamfered[chosen] = at.chamfered
     missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
     touchable, edge = touchable & ~missed, edge & ~missed
@@ -125,6 +129,7 @@ def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
         edge=edge,
         lever=np.tile(lever, tiles),
         tangent_arm=np.tile(np.where(touchable, arm, np.nan), tiles),
+        leaning=leaning,
         gap=gaps,
         teeth=every.reshape(2, -1, len(offset)) % numbers,
         back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
@@ -143,11 +148,12 @@ def _reach_gap(given: Setting, reach: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Edges:
-    """Contacts of one gear's tip: where the other flank is touched, lever and arm of the tip, gap."""
+    """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
 
     where: Array
     lever: Array
     arm: Array
+    leaning: Array
     gap: Array
     chamfered: NDArray[np.bool_]
 
@@ -160,13 +166,14 @@ def _edges(given: Setting, corner: int, place: Array) -> _Edges:
     place_of_tip = where[:, 0]
     lever = lever_ratio(pair, place_of_tip, place, corner)
     arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
+    angle = opening(radii, pair.line_of_action, touched, where, np.array([rounding.rho]))[:, 0]
     gap = nearest_gap(pair, corner, place, rounding, given.removed)
     # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
     gap = gap / lever if corner == 0 else gap
     reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
     beyond = chamfer_gap(pair, corner, touched, rounding.start)
     chamfered = np.isfinite(beyond) & (beyond < nearest_gap(pair, corner, place, rounding))
-    return _Edges(place_of_tip, lever, arm, np.where(reaches, gap, np.inf), chamfered)
+    return _Edges(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
 
 
 def unloaded_transmission_error(

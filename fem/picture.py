@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,9 @@ _CHILDREN = np.array(
     ]
 )
 SPLITS = 8
+
+LONGEST_SIDE = 0.35
+"""Longest side of cells at a flank or a tip [modules]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,21 +61,40 @@ def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Pi
         A point, and the wished size of cells at it; the size may grow by half the distance from it. Elements
         are split until they are that small. Without a focus the cells are those of the coarsest mesh in the
         family, with the finer mesh's values at its nodes.
+
+    In both, elements at a flank or a tip are split until programs that draw straight sides show the curve.
     """
     if focus is None:
-        coarsest = mesh
-        while coarsest.coarser is not None:
-            coarsest = coarsest.coarser
-        nodes = np.arange(len(coarsest.points))[:, None]
-        return Picture(nodes, np.ones(nodes.shape), coarsest.triangles)
+        while mesh.coarser is not None:
+            mesh = mesh.coarser
+    curved = _at_curves(mesh)
+    longest = LONGEST_SIDE * mesh.module
+
+    def large(parent: Index, place: Array) -> NDArray[np.bool_]:
+        side = np.max(np.linalg.norm(place - np.roll(place, -1, axis=1), axis=2), axis=1)
+        found = curved[parent] & (side > longest)
+        if focus is not None:
+            away = np.min(np.linalg.norm(place - focus[0], axis=2), axis=1)
+            found = found | (np.sqrt(np.abs(_area(place))) > np.maximum(focus[1], 0.5 * away))
+        return np.asarray(found)
+
+    return _split(mesh, large)
+
+
+def _at_curves(mesh: SectorMesh) -> NDArray[np.bool_]:
+    """Elements with an edge on a flank, a chamfer or the top land."""
+    names = [name for name in mesh.facets if name.startswith(("flank", "chamfer", "top"))]
+    edges = np.concatenate([mesh.facets[name] for name in names])
+    return np.asarray(np.isin(mesh.triangles[:, 3:], edges[:, 2]).any(axis=1))
+
+
+def _split(mesh: SectorMesh, large: Callable[[Index, Array], NDArray[np.bool_]]) -> Picture:
+    """Split elements, and what they were split into, while they are too large."""
     parent = np.arange(len(mesh.triangles))
     corners = np.broadcast_to(np.array([[0.0, 0], [1, 0], [0, 1]]), (len(parent), 3, 2))
     done_parent, done_corners = [], []
     for _ in range(SPLITS):
-        place = _places(mesh, parent, corners)
-        size = np.sqrt(np.abs(_area(place)))
-        away = np.min(np.linalg.norm(place - focus[0], axis=2), axis=1)
-        split = size > np.maximum(focus[1], 0.5 * away)
+        split = large(parent, _places(mesh, parent, corners))
         done_parent.append(parent[~split])
         done_corners.append(corners[~split])
         old = corners[split]

@@ -45,13 +45,13 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, f
     for reach in REACHES:
         where = meshing(given, reach)
         kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
-        table, largest = _edge_table(given, bodies, where, kappa)
+        table, largest = _edge_table(given, bodies, where)
         rho1, rho2 = where.rho
-        matrix = bodies.bulk(rho1, rho2)
+        matrix = bodies.bulk(rho1, rho2, where.leaning)
         _leave_out_corner(bodies, matrix, where)
         # A force along another normal than the line of action has the lever kappa r_b1 about the pinion's
-        # axis. In F' = kappa F the equations keep their form, with gap/kappa, bulk_ij/(kappa_i kappa_j) and
-        # law(F'/kappa)/kappa.
+        # axis. In F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j);
+        # the edges' laws are in F' already.
         matrix /= kappa[..., :, None] * kappa[..., None, :]
         on_path = where.touchable & ~where.edge
         middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
@@ -81,14 +81,13 @@ def _levers(given: Setting, where: Meshing, friction: float) -> Array:
     return np.asarray(lever[0] + friction * np.sign(arm[0] / first - arm[1] / second) * arm[0] / first)
 
 
-def _edge_table(
-    given: Setting, bodies: Compliance, where: Meshing, kappa: Array
-) -> tuple[Table | None, Array]:
-    """Laws of all tip edges in row-major order, and the largest forces that they cover [N]."""
+def _edge_table(given: Setting, bodies: Compliance, where: Meshing) -> tuple[Table | None, Array]:
+    """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N]."""
     if not where.edge.any():
         return None, np.zeros(0)
     places: list[NDArray[np.int64]] = []
     laws: list[tuple[Array, Array]] = []
+    ends: list[Array] = []
     for corner, chosen in where.corners():
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
         law = edge_laws(
@@ -100,14 +99,14 @@ def _edge_table(
             given.rounds[corner],
             given.removed,
         )
-        lever = kappa[chosen][:, None]
         places.append(np.flatnonzero(chosen).astype(np.int64))
-        laws.append((law.force * lever, (law.approach - law.approach[:, :1]) / lever))
+        laws.append((law.force, law.approach - law.approach[:, :1]))
+        ends.append(law.largest)
     points = max(force.shape[1] for force, _ in laws)
     order = np.argsort(np.concatenate(places))
     force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
     approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
-    largest = np.concatenate([force[:, -1] for force, _ in laws])[order]
+    largest = np.concatenate(ends)[order]
     return Table.through(force, approach), largest
 
 
@@ -119,10 +118,15 @@ def _extended(values: Array, points: int) -> Array:
 
 
 def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
-    """Keep only the touched flank's flexibility: the edge's law holds its own tooth already."""
+    """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
+
+    The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
+    """
     width = bodies.pair.face_width
     for corner, chosen in where.corners():
         gear = (bodies.pinion, bodies.wheel)[corner]
         position, column = np.nonzero(chosen)
-        at_end = gear.own(where.rho[corner][position, column]) / width
-        matrix[position, column, column] -= at_end
+        rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
+        angle = where.leaning[corner][position, column]
+        lever = np.cos(angle) - np.sin(angle) * rho / gear.base_radius
+        matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width

@@ -1,8 +1,8 @@
 """Frictionless contact of two bodies on strips: force against approach, point by point, without iteration.
 
-The strips' pressures follow from K p + gap = D on those that touch. For a contact of known extent
-x = K^-1 1 and y = K^-1 gap give p = D x - y, so F = D sum(x) - sum(y): a law is found by letting strips close
-one after another.
+The strips' line loads follow from K p + gap = l D on those that touch, with l_i how far strip i closes per
+approach D; by virtual work the force that moves D is F = l . p. For a contact of known extent x = K^-1 l and
+y = K^-1 gap give p = D x - y, so F = D l . x - l . y: a law is found by letting strips close one after another.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fem.elasticity import PlaneElasticity
 
-__all__ = ["flat_kernel", "from_the_corner", "from_the_nearest"]
+__all__ = ["flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest"]
 
 Array = NDArray[np.float64]
 
@@ -33,47 +33,60 @@ def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: flo
     return kernel
 
 
-def from_the_corner(kernel: Array, gaps: Array, first: Array) -> tuple[Array, Array]:
+def flat_kernels(distance: Array, width: Array, law: PlaneElasticity, length: float) -> tuple[Array, ...]:
+    """As ``flat_kernel``, for the directions normal-normal, normal-tangential and tangential-tangential.
+
+    The tangent points to falling distances. A load along it presses down what lies ahead and lifts what lies
+    behind, by (1 - nu*)/(2 E*) everywhere; along the tangent the edge moves by -2/(pi E*) ln(|x|/length).
+    """
+    normal = flat_kernel(distance, width, law, length)
+    ahead = np.sign(distance[None, :] - distance[:, None])
+    mixed = (1 - law.plane_poisson) / (2 * law.plane_modulus) * ahead
+    return normal, mixed, normal + (1 + law.plane_poisson) / (np.pi * law.plane_modulus)
+
+
+def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> tuple[Array, Array]:
     """Law of contacts that spread from the first strip inwards, strip by strip.
 
-    A contact that covers the first k strips has no pressure on the last of them, D = y_k/x_k.
+    A contact that covers the first k strips has no load on the last of them. With K = L U the leading blocks
+    are L_k U_k, so one elimination of K bordered by levers and gaps serves every k: with w = L^-1 l, y = L^-1 g
+    and v = U^-T l, D_k = y_k/w_k and F_k = D_k sum v_j w_j - sum v_j y_j.
 
     Parameters
     ----------
-    kernel : (strips, strips) array
+    kernel : (contacts, strips, strips) or (strips, strips) array
         Displacement of strip i by a unit line load on strip j, both bodies together [m per N/m].
     gaps : (contacts, strips) array
         [m]
     first : (contacts,) array
-        Gaps at the corner, where the contact begins [m].
+        Approach at which the corner touches, where the contact begins [m].
+    levers : (contacts, strips) array
+        l, about 1.
 
     Returns
     -------
     force, approach : (contacts, strips) arrays
         Growing line loads from 0 [N/m], approach [m].
     """
-    lower, upper = _triangles(kernel)
-    ones = np.ones(len(kernel))
-    # with K = L U the leading blocks are L_k U_k, so one substitution serves every k
-    both = np.linalg.solve(lower, np.column_stack([ones, gaps.T]))
-    by_one, by_gap = both[:, 0], both[:, 1:]
-    sums = np.linalg.solve(upper.T, ones)
-    approach = (by_gap / by_one[:, None]).T
-    force = approach * np.cumsum(sums * by_one) - np.cumsum(sums[:, None] * by_gap, axis=0).T
-    force[:, 0], approach[:, 0] = 0.0, first
-    return force, approach
+    contacts, strips = gaps.shape
+    # contacts along the last axis; no pivoting, since the kernel is almost symmetric and definite
+    whole = np.empty((strips + 1, strips + 2, contacts))
+    whole[:strips, :strips] = np.moveaxis(np.broadcast_to(kernel, (contacts, strips, strips)), 0, -1)
+    whole[-1, :strips] = whole[:strips, -2] = levers.T
+    whole[:strips, -1], whole[-1, -2:] = gaps.T, 0.0
+    sums = np.empty((strips, contacts))
+    for k in range(strips):
+        lower = whole[k + 1 :, k] / whole[k, k]
+        whole[k + 1 :, k + 1 :] -= lower[:, None] * whole[k, k + 1 :]
+        sums[k] = lower[-1]
+    by_lever, by_gap = whole[:strips, -2], whole[:strips, -1]
+    approach = by_gap / by_lever
+    force = approach * np.cumsum(sums * by_lever, axis=0) - np.cumsum(sums * by_gap, axis=0)
+    force[0], approach[0] = 0.0, first
+    return np.ascontiguousarray(force.T), np.ascontiguousarray(approach.T)
 
 
-def _triangles(kernel: Array) -> tuple[Array, Array]:
-    """Factors L (unit diagonal) and U of a kernel, in its own order: no pivoting, it is almost symmetric."""
-    lower, upper = np.eye(len(kernel)), kernel.copy()
-    for k in range(len(kernel) - 1):
-        lower[k + 1 :, k] = upper[k + 1 :, k] / upper[k, k]
-        upper[k + 1 :, k:] -= lower[k + 1 :, k, None] * upper[k, k:]
-    return lower, np.triu(upper)
-
-
-def from_the_nearest(kernel: Array, gaps: Array) -> tuple[Array, Array]:
+def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array]:
     """As ``from_the_corner`` for any gaps: with tip relief or a rounding the corner need not be nearest.
 
     From the nearest strip on, the approach grows until the next strip closes, and so on: each closing is a
@@ -82,26 +95,33 @@ def from_the_nearest(kernel: Array, gaps: Array) -> tuple[Array, Array]:
     """
     contacts, strips = gaps.shape
     rows = np.arange(contacts)
+    kernel = np.broadcast_to(kernel, (contacts, strips, strips))
     inverse = np.zeros((contacts, strips, strips))
     closed = np.zeros((contacts, strips), dtype=bool)
-    force, approach = [np.zeros(contacts)], [gaps.min(axis=1)]
-    following, more = gaps.argmin(axis=1), np.ones(contacts, dtype=bool)
+    touching = gaps / levers
+    force, approach = [np.zeros(contacts)], [touching.min(axis=1)]
+    following, more = touching.argmin(axis=1), np.ones(contacts, dtype=bool)
     for _ in range(strips - 1):
         _close(inverse, kernel, closed, rows[more], following[more])
         closed[rows[more], following[more]] = True
-        x = np.einsum("cij,cj->ci", inverse, closed.astype(float))
+        x = np.einsum("cij,cj->ci", inverse, np.where(closed, levers, 0.0))
         y = np.einsum("cij,cj->ci", inverse, np.where(closed, gaps, 0.0))
         # a strip that moves as fast as the rest never closes
-        nearing = np.where(closed, 0.0, 1.0 - x @ kernel.T)
+        nearing = np.where(closed, 0.0, levers - np.einsum("cij,cj->ci", kernel, x))
         coming = nearing > 1e-9
-        closing = np.where(coming, (gaps - y @ kernel.T) / np.where(coming, nearing, 1.0), np.inf)
+        away = gaps - np.einsum("cij,cj->ci", kernel, y)
+        closing = np.where(coming, away / np.where(coming, nearing, 1.0), np.inf)
         # two strips that close together make one step of the law, not a vertical one
         closing = np.maximum(closing, approach[-1][:, None] + 1e-12)
         following = closing.argmin(axis=1)
         level = closing[rows, following]
         more = np.isfinite(level)  # else the same strips go on bearing
         level = np.where(more, level, 2 * approach[-1] - approach[0] + 1e-9)
-        force.append(np.maximum(level * x.sum(axis=1) - y.sum(axis=1), force[-1] * (1 + 1e-12)))
+        force.append(
+            np.maximum(
+                level * np.sum(levers * x, axis=1) - np.sum(levers * y, axis=1), force[-1] * (1 + 1e-12)
+            )
+        )
         approach.append(level)
     return np.array(force).T, np.array(approach).T
 
@@ -115,10 +135,10 @@ def _close(
 ) -> None:
     """Add one closed strip to the inverse of each row; other rows and columns of the inverse are zero."""
     held = closed[rows]
-    column, row = np.where(held, kernel[:, strip].T, 0.0), np.where(held, kernel[strip], 0.0)
+    column, row = (np.where(held, part, 0.0) for part in (kernel[rows, :, strip], kernel[rows, strip]))
     before = inverse[rows]
     right, left = np.einsum("cij,cj->ci", before, column), np.einsum("ci,cij->cj", row, before)
-    pivot = kernel[strip, strip] - np.einsum("ci,ci->c", row, right)
+    pivot = kernel[rows, strip, strip] - np.einsum("ci,ci->c", row, right)
     each = np.arange(len(rows))
     right[each, strip] = left[each, strip] = -1.0
     inverse[rows] = before + right[:, :, None] * (left / pivot[:, None])[:, None, :]

@@ -7,7 +7,7 @@ the line of action, so every contact, whichever tooth carries the force, yields 
     F (1/k_r + r_b^2/k_t)
 
 on top of the elastic gear with its bore held; no finite element is asked. (At a tip edge outside the path the
-normal leans by some hundredths of a radian; that is left out here.)
+normal leans by some hundredths of a radian; that is left out of what the supports yield.)
 """
 
 from __future__ import annotations

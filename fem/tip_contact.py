@@ -3,8 +3,10 @@
 Before A the wheel's tip corner meets the pinion's flank, after E the pinion's corner the wheel's flank. The
 contact starts at the corner, or where its rounding is nearest, and spreads along the flank. Its pressure is
 solved for on strips of that flank (``fem.strip_contact``): the body with the corner answers with its
-finite-element displacements (half-plane plus regular part, which knows the free edge beyond the corner), the
-other one as a half-plane plus its flexibility ``own``. The unloaded gap is exact (``fem.tip_geometry``).
+finite-element displacements (``fem.tip_strips``), the other one as a half-plane plus its flexibility ``own``.
+The unloaded gap is exact (``fem.tip_geometry``). Without friction the force on a strip stands on the flank
+that is touched, so it leans from the normal of the corner's own flank by the angle at which the flanks open,
+some hundredths of a radian, away from the tip.
 
 A rounding is a change of the gap only: the few micrometres of material that it takes off the corner are left
 in the elastic answer, as Hertz leaves curved bodies half-planes. Strips are then finest about the start of
@@ -22,22 +24,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.elasticity import PlaneElasticity
-from fem.flexibility import corner_logarithm
-from fem.line_load import FlankPoints, flank_points, line_loads
 from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
-from fem.tip_geometry import TipRound, tip_round, unloaded_gap
+from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
+from fem.tip_strips import RATIO, REACH, TipStrips, sharp_layout
 
 if TYPE_CHECKING:
-    from fem.ring import Ring
     from gears import GearPair, ToothProfile
 
-__all__ = ["EdgeLaw", "TipStrips", "edge_laws", "nearest_gap", "tip_strips"]
+__all__ = ["EdgeLaw", "edge_laws", "nearest_gap"]
 
 Array = NDArray[np.float64]
-
-FIRST_EDGE, RATIO, REACH, RESOLVED = 1e-4, 1.25, 0.5, 0.01
-"""End of the strip at the corner, ratio of successive widths, total width, and the distance from the corner
-below which the finite elements are not asked (all in modules of arc length)."""
 
 ARC_STRIP, ARC_FINE, ARC_REACH = 0.02, 0.25, 0.7
 """On a rounding: width of the strips, the length that is covered by them, and the length covered at all (in
@@ -45,36 +41,6 @@ radii of the rounding)."""
 
 Removed = Callable[[Array], Array]
 """Material missing from a flank at curvature radii [m]."""
-
-
-@dataclass(frozen=True, eq=False)
-class TipStrips:
-    """Answer of a tooth's tip to pressure on strips of its flank.
-
-    Attributes
-    ----------
-    distance, width : (n,) arrays
-        Arc length from the corner to the middles of the strips, and their widths [m].
-    rho : (n,) array
-        Curvature radii of the middles [m].
-    kernel : (n, n) array
-        Normal displacement of strip i by a unit line load spread over strip j [m per N/m].
-    law : PlaneElasticity
-        Of the tooth.
-    """
-
-    distance: Array
-    width: Array
-    rho: Array
-    kernel: Array
-    law: PlaneElasticity
-
-
-def sharp_layout(module: float) -> tuple[Array, Array]:
-    """Distances of strip middles from a sharp corner and their widths [m], in geometric progression."""
-    count = int(np.ceil(np.log(REACH / FIRST_EDGE) / np.log(RATIO))) + 1
-    edges = np.concatenate([[0.0], FIRST_EDGE * module * RATIO ** np.arange(count)])
-    return 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
 
 
 def round_layout(module: float, rounding: TipRound) -> tuple[Array, Array]:
@@ -89,42 +55,6 @@ def round_layout(module: float, rounding: TipRound) -> tuple[Array, Array]:
     above = start + onto_flank[start + onto_flank < REACH * module]
     edges = np.concatenate([below[::-1], above])
     return 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
-
-
-def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStrips:
-    """Load the middles of strips near the tip corner, and take the displacements there.
-
-    The strips' widths are in geometric progression. Two strips nearer to the corner than the elements
-    resolve see only the wedge, whose answer is the same at every scale but for c ln(scale): their regular
-    part is that of two resolved strips in the same ratio.
-    """
-    m = profile.module
-    distance, width = sharp_layout(m)
-    count = len(distance)
-    rho = np.sqrt(profile.flank_rho[1] ** 2 - 2 * profile.base_radius * distance)
-    at = flank_points(ring.mesh, rho, flank)
-    solved = int(np.searchsorted(distance, RESOLVED * m))
-    source = at.part(slice(solved, None))
-    loads = line_loads(ring, source)
-    regular = np.zeros((count, count))
-    regular[:, solved:] = loads.on_tooth(0, at) + loads.singular(at) - _flat(at, source, ring.law, m)
-    regular[np.arange(solved, count), np.arange(solved, count)] = loads.regular_at_load()
-    larger, smaller = (
-        np.maximum.outer(np.arange(count), np.arange(count)),
-        np.minimum.outer(np.arange(count), np.arange(count)),
-    )
-    _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
-    shift = np.maximum(solved - larger, 0)
-    regular = regular[smaller + shift, larger + shift] - logarithm * np.log(RATIO) * shift
-    return TipStrips(distance, width, rho, regular + flat_kernel(distance, width, ring.law, m), ring.law)
-
-
-def _flat(at: FlankPoints, source: FlankPoints, law: PlaneElasticity, length: float) -> Array:
-    """Displace a flat edge at points (rows) by unit loads (columns)."""
-    gap = np.linalg.norm(at.points[:, None] - source.points[None, :], axis=2)
-    gap = np.where(gap > 0, gap, length)
-    flat: Array = -2 / (np.pi * law.plane_modulus) * (np.log(gap / length) + 0.5 * (1 + law.plane_poisson))
-    return flat
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,16 +77,6 @@ def _surface(profile: ToothProfile, distance: Array, width: Array, rounding: Tip
     return _Tip(distance, width, np.where(on_arc, rounding.rho, nominal), along, out, nominal)
 
 
-def _rounded_kernel(strips: TipStrips, tip: _Tip, length: float) -> Array:
-    """Answer of the tooth on other strips than those that were solved for."""
-    from scipy.interpolate import RectBivariateSpline
-
-    regular = strips.kernel - flat_kernel(strips.distance, strips.width, strips.law, length)
-    known, asked = np.log(strips.distance), np.log(np.minimum(tip.distance, strips.distance[-1]))
-    smooth = RectBivariateSpline(known, known, regular, s=0)(asked, asked)
-    return np.asarray(smooth + flat_kernel(tip.distance, tip.width, strips.law, length))
-
-
 @dataclass(frozen=True, eq=False)
 class EdgeLaw:
     """Approach against force of tip-edge contacts, one row per contact.
@@ -164,10 +84,13 @@ class EdgeLaw:
     Attributes
     ----------
     force : (n, k) array
-        Growing forces [N], the first one zero.
+        Growing forces on the line of action that turn the pinion as the contact's do [N], the first one zero.
     approach : (n, k) array
-        Approach of the gears [m] without the flank's ``own`` part and without other teeth; at zero force the
-        gap where the tip is nearest.
+        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part, without the turn of
+        the tip's own body on its hub, and without other teeth; at zero force that at which the tip touches.
+    largest : (n,) array
+        Force [N] up to which the law holds: over all strips, or until strips farther in would let it fall.
+        Beyond it goes on straight.
     where : (n,) array
         Curvature radius at which the other gear's flank is touched [m].
     """
@@ -175,6 +98,7 @@ class EdgeLaw:
     force: Array
     approach: Array
     where: Array
+    largest: Array
 
 
 def _nothing(rho: Array) -> Array:
@@ -190,6 +114,11 @@ def _gaps(
     gaps, touched = unloaded_gap(radii, pair.line_of_action, place, tip.rho, tip.along, tip.out)
     gaps = gaps + missing[corner](tip.unrounded_rho)
     return gaps + missing[1 - corner](touched), touched
+
+
+def _levers(pair: GearPair, corner: int, where: Array, rho1: Array) -> Array:
+    """Levers of forces on the touched flank at ``where`` (n, k) about the pinion's axis, over its base radius."""
+    return np.ones_like(where) if corner == 1 else lever_ratio(pair, where, rho1[:, None])
 
 
 def _at_corner(profile: ToothProfile, rounding: TipRound) -> _Tip:
@@ -251,11 +180,34 @@ def edge_laws(
     sharp = rounding.radius == 0.0
     layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
     tip = _surface(profile, *layout, rounding)
-    gaps, _ = _gaps(pair, corner, rho1, tip, missing)
-    own = strips.kernel if sharp else _rounded_kernel(strips, tip, pair.module)
-    kernel = own + flat_kernel(tip.distance, tip.width, other, pair.module)
+    gaps, touched = _gaps(pair, corner, rho1, tip, missing)
+    answer = strips if sharp else strips.on(tip.distance, tip.width)
+    place = rho1 if corner == 1 else pair.line_of_action - rho1
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    angle = opening(radii, pair.line_of_action, place, touched, tip.unrounded_rho)
+    own = answer.lever(angle)
+    turned = answer.hub_windup * own[:, :, None] * own[:, None, :]
+    kernel = answer.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
+    levers = _levers(pair, corner, touched, rho1)
     if sharp and removed is None:
-        force, approach = from_the_corner(kernel, gaps, end[:, 0])
+        first = (end / _levers(pair, corner, where, rho1))[:, 0]
+        force, approach = from_the_corner(kernel, gaps, first, levers)
     else:
-        force, approach = from_the_nearest(kernel, gaps)
-    return EdgeLaw(force * pair.face_width, approach, where[:, 0])
+        force, approach = from_the_nearest(kernel, gaps, levers)
+    force, approach, largest = _growing(force * pair.face_width, approach)
+    return EdgeLaw(force, approach, where[:, 0], largest)
+
+
+def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:
+    """Laws up to where force or approach first fall, straight from there on; and that force."""
+    grow = (np.diff(force) > 0) & (np.diff(approach) > 0)
+    # near the corner, where the first strip is wider than the next, a fall is an artefact of unequal strips
+    grow[:, : force.shape[1] // 2] = True
+    last = np.logical_and.accumulate(grow, axis=1).sum(axis=1)[:, None]
+    beyond = np.maximum(np.arange(force.shape[1]) - last, 0)
+
+    def straight(values: Array) -> Array:
+        end, before = (np.take_along_axis(values, at, axis=1) for at in (last, last - 1))
+        return np.where(beyond > 0, end + beyond * (end - before), values)
+
+    return straight(force), straight(approach), np.take_along_axis(force, last, axis=1)[:, 0]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["TipRound", "chamfer_gap", "corner_angle", "lever_ratio", "tip_round", "unloaded_gap"]
+__all__ = ["TipRound", "chamfer_gap", "corner_angle", "lever_ratio", "opening", "tip_round", "unloaded_gap"]
 
 Array = NDArray[np.float64]
 
@@ -64,6 +64,30 @@ def unloaded_gap(
     where = np.sqrt(np.maximum(x**2 + y**2 - r1**2, 0.0))
     flank = (where - rho1[:, None]) / r1 + np.arctan2(r1, where)
     return r1 * (flank - np.arctan2(y, x)), where
+
+
+def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
+    """Angle between the normals of flank 1 at ``where`` and of flank 2 at ``rho2`` (n, k) [rad].
+
+    Zero on the line of action. Outside the path it is positive at the tip of gear 2: the flanks open away from
+    the corner, and a force that stands on flank 1 leans from the normal of flank 2 away from the tip.
+
+    Parameters
+    ----------
+    base_radii : (float, float)
+        r_b1, r_b2 [m]
+    line : float
+        rho1 + rho2 on the line of action [m].
+    rho1 : (n,) array
+        Positions [m].
+    where : (n, k) array
+        Curvature radii of flank 1 [m].
+    rho2 : (k,) array
+        Curvature radii of flank 2 [m].
+    """
+    r1, r2 = base_radii
+    turned: Array = (where - rho1[:, None]) / r1 - (rho2 - (line - rho1[:, None])) / r2
+    return turned
 
 
 def lever_ratio(pair: GearPair, where: Array, rho1: Array, corner: int = 0) -> Array:

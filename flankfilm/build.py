@@ -10,13 +10,14 @@ from flankfilm.scene.schema import (
     DeviationsSection,
     ElasticSection,
     GearSection,
+    HubSection,
     PairSection,
     RackSection,
     Scene,
 )
 
 if TYPE_CHECKING:
-    from ehl import Lubricant
+    from fem import Support
     from gears import BasicRack, Gear, GearDeviations, GearPair, Material
     from gears import Fault as GearFault
 
@@ -53,22 +54,6 @@ def gear_pair(scene: Scene) -> GearPair:
         raise InputError([_scene_fault(fault) for fault in error.faults]) from error
 
 
-def lubricant(scene: Scene) -> Lubricant:
-    """Build the oil of a scene."""
-    from ehl import Lubricant
-
-    oil = scene.lubricant
-    if oil is None:
-        raise InputError([Fault("[lubricant]", "", "is required by the film", "Add the section [lubricant]")])
-    return Lubricant(
-        viscosity=oil.viscosity_Pa_s,
-        pressure_viscosity=1e-9 * oil.pressure_viscosity_per_GPa,
-        density=oil.density_kg_per_m3,
-        roelands_z=oil.roelands_z,
-        compressible=oil.compressible,
-    )
-
-
 def pinion_speed(scene: Scene) -> float:
     """Pinion speed [rad/s]."""
     operating = scene.operating
@@ -84,6 +69,26 @@ def pinion_torque(scene: Scene) -> float:
             [Fault("operating.pinion_torque_Nm", "", "is required", "Add the section [operating]")]
         )
     return scene.operating.pinion_torque_Nm
+
+
+def supports(scene: Scene) -> tuple[Support, Support] | None:
+    """Rigid hubs of both gears; None where both are held on their bores."""
+    if scene.pair is None or (scene.pair.pinion.hub is None and scene.pair.wheel.hub is None):
+        return None
+    first, second = (_support(section.hub) for section in (scene.pair.pinion, scene.pair.wheel))
+    return first, second
+
+
+def _support(section: HubSection | None) -> Support:
+    from fem import Support
+
+    if section is None:
+        return Support()
+    return Support(
+        radial_stiffness=section.radial_stiffness_N_per_m or math.inf,
+        torsional_stiffness=section.torsional_stiffness_Nm_per_rad or math.inf,
+        hub_radius=None if section.hub_mm is None else 0.5e-3 * section.hub_mm,
+    )
 
 
 def tip_roundings(scene: Scene) -> tuple[float, float]:

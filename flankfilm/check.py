@@ -5,12 +5,13 @@ from __future__ import annotations
 import warnings
 
 from flankfilm.build import gear_pair
+from flankfilm.build_film import lubricant
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
 
 
 def check_scene(scene: Scene) -> list[str]:
-    """Check what only the built geometry can tell, and say what a run would compute.
+    """Check what only the built geometry and the oil's laws can tell, and say what a run would compute.
 
     Returns
     -------
@@ -20,7 +21,7 @@ def check_scene(scene: Scene) -> list[str]:
     Raises
     ------
     InputError
-        With every fault of the geometry.
+        With every fault of the geometry, or of the oil.
     """
     told = [f"{scene.title or 'The scene'} is in order."]
     if scene.pair is not None:
@@ -29,7 +30,15 @@ def check_scene(scene: Scene) -> list[str]:
             pair = gear_pair(scene)
         told.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
-            f"normal backlash {1e6 * pair.backlash:.1f} µm."
+            f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
+        )
+        told += [f"Warning: {warning.message}" for warning in caught]
+    if scene.lubricant is not None:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            oil = lubricant(scene)
+        told.append(
+            f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
         told += [f"Warning: {warning.message}" for warning in caught]
     told.append("A run computes: " + ", ".join(STAGES[name].title for name in goals(scene)) + ".")

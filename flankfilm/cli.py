@@ -87,7 +87,9 @@ def run(
     from flankfilm.run import run_scene
 
     wanted = _read(scene, tolerance)
-    folder = out if out is not None else Path(f"{scene.stem}-results")
+    # a results file is called like all others: its folder tells it apart
+    name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
+    folder = out if out is not None else Path(f"{name}-results")
     with console_progress() as progress:
         results = run_scene(wanted, folder, use_cache=cache, progress=progress)
     for line in summary(results):
@@ -258,6 +260,11 @@ for _function, _name, _help in (
         "export_profile",
         "export-profile",
         "Write the tooth profile of a gear of SCENE as a drawing or as points.",
+    ),
+    (
+        "export_mesh",
+        "export",
+        "Write both gears of SCENE, loaded as they mesh, for CalculiX, Abaqus or gmsh.",
     ),
     ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
     ("completion", "completion", "Print the script that completes commands in bash, zsh or fish."),

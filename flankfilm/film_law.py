@@ -6,7 +6,19 @@ Near a film solved at the force :math:`F_0` the prop follows
 
 which meets value and slope :math:`ds/dF = -1/k` there, stays positive and falls with the force: the form that
 every film formula has. Iterated with new films it needs two or three rounds, where a straight line
-can turn negative at small forces. Between two films along the path, what each says of the force in question
+can turn negative at small forces.
+
+Behind a meniscus that stays in place n is up to hundreds, since a heavier contact widens towards it: the dry
+contact's edge, :math:`b \propto \sqrt{F}`, comes nearer, by the distance :math:`d(F) = X (F/F_0)^{-1/2} - 1` in
+half-widths, X the meniscus' place at :math:`F_0`. Where the edge reaches it the film ends; a lighter contact leaves
+it behind and is flooded, with the prop :math:`S_0 (F/F_0)^{-m}`. In between
+
+.. math:: s(F) = \frac{S_0 \, (F/F_0)^{-m}}{1 + c \, (d_0/d)^q},
+   \qquad c = \frac{S_0}{s_0} - 1, \quad q = 2 (n - m) \frac{1 + c}{c} \frac{X - 1}{X},
+
+with the same value and slope at :math:`F_0`; q comes out near one for line contacts.
+
+Between two films along the path, what each says of the force in question
 is weighted linearly: place changes radius and speed by little from one film to the next.
 """
 
@@ -21,6 +33,42 @@ Array = NDArray[np.float64]
 
 
 _LEAST_RATIO = 0.01
+_LEAST_DISTANCE = 1e-12
+_LARGEST_LOGARITHM = 300.0
+
+
+@dataclass(frozen=True, eq=False)
+class HeldMeniscus:
+    """What bounds films behind a meniscus that stays in place, at the solved forces.
+
+    Attributes
+    ----------
+    place : ndarray, shape (n,)
+        X, distance of the meniscus from the middle of the contact, over the half-width [-]; above one.
+    flooded_prop, flooded_exponent : ndarray, shape (n,)
+        S_0 [m] and m [-] of the flooded contact.
+    """
+
+    place: Array
+    flooded_prop: Array
+    flooded_exponent: Array
+
+    def bound(
+        self, film: NDArray[np.intp], prop: Array, exponent: Array, ratio: Array
+    ) -> tuple[Array, Array]:
+        """Prop [m] and its local exponent at forces over solved ones."""
+        flooded, slow, place = self.flooded_prop[film], self.flooded_exponent[film], self.place[film]
+        lacking = flooded / prop - 1.0
+        bounds = (lacking > 0.0) & (exponent > slow) & (place > 1.0)
+        c, first = np.where(bounds, lacking, 1.0), np.where(bounds, place, 2.0)
+        q = np.where(bounds, 2.0 * (exponent - slow) * (1.0 + c) / c * (first - 1.0) / first, 0.0)
+        edge = first * ratio**-0.5
+        distance = np.maximum(edge - 1.0, _LEAST_DISTANCE)
+        choked = c * np.exp(np.minimum(q * np.log((first - 1.0) / distance), _LARGEST_LOGARITHM))
+        held = np.where(edge > 1.0, flooded * ratio**-slow / (1.0 + choked), 0.0)
+        steep = slow + q * choked / (1.0 + choked) * edge / (2.0 * distance)
+        plain = prop * ratio ** np.where(bounds, 0.0, -exponent)
+        return np.where(bounds, held, plain), np.where(bounds, steep, exponent)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +85,16 @@ class FilmLaw:
         Prop there [m].
     exponent : ndarray, shape (n,)
         n, at least zero [-].
+    held : HeldMeniscus, optional
+        For films behind a meniscus. Where its flooded prop is no larger than the prop, or its exponent no
+        less than n, the plain power law stands.
     """
 
     rho1: Array
     force: Array
     prop: Array
     exponent: Array
+    held: HeldMeniscus | None = None
 
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
         """Prop [m] and its slope [m/N] at given places and forces.
@@ -58,7 +110,11 @@ class FilmLaw:
             Of the same shape [N].
         """
         (first, second), share = self._neighbours(rho1)
-        told = [self._one(film, forces) for film in (first, second)]
+        # a meniscus lies where the force of its place put it: between two films, where the force between theirs would
+        between = (1 - share) * self.force[first] + share * self.force[second]
+        films = (first, second)
+        solved = [self.force[film] if self.held is None else between for film in films]
+        told = [self._one(film, forces, at) for film, at in zip(films, solved, strict=True)]
         prop, slope = ((1 - share) * a + share * b for a, b in zip(*told, strict=True))
         some = np.isfinite(rho1)
         return np.where(some, prop, 0.0), np.where(some, slope, 0.0)
@@ -79,12 +135,15 @@ class FilmLaw:
         share = np.divide(place - self.rho1[first], step, out=np.zeros_like(place), where=step > 0)
         return (first, second), share
 
-    def _one(self, film: NDArray[np.intp], forces: Array) -> tuple[Array, Array]:
-        """Prop and slope by one film each."""
-        solved, exponent = self.force[film], self.exponent[film]
+    def _one(self, film: NDArray[np.intp], forces: Array, solved: Array) -> tuple[Array, Array]:
+        """Prop and slope by one film each, taken as solved at the given forces."""
+        exponent = self.exponent[film]
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
-        prop = self.prop[film] * ratio**-exponent
-        slope = np.where(ratio > _LEAST_RATIO, -exponent * prop / (ratio * solved), 0.0)
+        if self.held is not None:
+            prop, local = self.held.bound(film, self.prop[film], exponent, ratio)
+        else:
+            prop, local = self.prop[film] * ratio**-exponent, exponent
+        slope = np.where(ratio > _LEAST_RATIO, -local * prop / (ratio * solved), 0.0)
         return prop, slope
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flankfilm.build import pinion_speed
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from flankfilm.stages.film import FilmStage
     from flankfilm.stages.motion import FourierStage
     from flankfilm.stages.sweep import SweepStage
+
+Array = NDArray[np.float64]
 
 
 def cycle_quantities(cycle: MeshStiffness, prefix: str) -> dict[str, Quantity]:
@@ -71,7 +74,21 @@ def film_quantities(film: FilmStage) -> dict[str, Quantity]:
         "film_minimum_thickness": Quantity(along, film.minimum, "m", "least film"),
         "film_hertz_pressure": Quantity(along, film.hertz_pressure, "Pa", "peak pressure of the dry contact"),
         **stiffness,
+        **{name: Quantity(along, values, unit, told) for name, values, unit, told in _held(film)},
     }
+
+
+def _held(film: FilmStage) -> list[tuple[str, Array, str, str]]:
+    """Name, values, unit and meaning of what only solved, starved or mixed films have."""
+    share = "share of the load that the asperities carry"
+    every = (
+        ("film_inlet", film.inlet, "1", "where oil fills the gap, in half-widths ahead of the middle"),
+        ("film_oil_layer", film.flow, "m", "layer of oil at ambient pressure that passes the contact"),
+        ("film_starvation", film.starvation, "1", "central film over that of the smooth, flooded contact"),
+        ("film_ratio", film.film_ratio, "1", "Lambda, least distance of the mean planes over sigma"),
+        ("film_asperity_share", film.asperity_share, "1", share),
+    )
+    return [(name, values, unit, told) for name, values, unit, told in every if values is not None]
 
 
 def sweep_quantities(sweep: SweepStage) -> dict[str, Quantity]:
@@ -133,6 +150,7 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
             "minimum_film_um": 1e6 * film.minimum,
             "hertz_pressure_GPa": 1e-9 * film.hertz_pressure,
         } | {f"stiffness_{n.replace('-', '_')}_N_per_m": k for n, k in film.stiffness.items()}
+        tables["film_along_path"] |= {_column(name, unit): values for name, values, unit, _ in _held(film)}
     if (fourier := values.get("fourier")) is not None:
         quantities |= fourier_quantities(fourier)
     if (sweep := values.get("sweep")) is not None:
@@ -147,6 +165,11 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
     for name, columns in tables.items():
         write_csv(folder / "csv" / f"{name}.csv", columns)
     return [folder / "results.nc", *(folder / "csv" / f"{name}.csv" for name in tables)]
+
+
+def _column(name: str, unit: str) -> str:
+    """Name of a CSV column from that of a variable, with its unit."""
+    return name if unit == "1" else f"{name}_{unit}"
 
 
 def _speed(scene: Scene) -> float | None:

@@ -119,6 +119,58 @@ def export_profile(
     return 0
 
 
+def export_mesh(
+    scene: Path,
+    /,
+    *,
+    out: Annotated[Path, Parameter(help="Folder for pinion and wheel.")],
+    format: Annotated[
+        Literal["inp", "msh"], Parameter(help="Input of CalculiX and Abaqus with loads, or mesh of gmsh.")
+    ] = "inp",
+    position: Annotated[
+        float, Parameter(help="Travel after a pair is at A, over the base pitch, 0 to 1.")
+    ] = 0.5,
+    refinements: Annotated[int, Parameter(help="How often every element is split in four, 0 to 4.")] = 1,
+) -> int:
+    """Write both gears of SCENE, meshed whole and loaded as they mesh at one position, for other programs.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML); its sections pair, material and operating count.
+    """
+    from fem.export import export_position
+    from flankfilm.build import pinion_torque
+    from flankfilm.cache import Cache, user_cache
+    from flankfilm.faults import told_by_a_floor
+    from flankfilm.folder import claim
+    from flankfilm.reproduce import scene_in
+    from flankfilm.stages.catalogue import STAGES
+    from flankfilm.stages.engine import Engine
+
+    wanted, _ = scene_in(scene)
+    claim(out)
+    if not 0 <= refinements <= 4:
+        raise InputError([Fault("--refinements", str(refinements), "must be 0 to 4", "1 suits most checks")])
+    try:
+        engine = Engine(wanted, STAGES, Cache(user_cache() / "results"))
+        files = export_position(
+            out,
+            engine["pair"],
+            pinion_torque(wanted),
+            position,
+            format,
+            engine["compliance"],
+            wanted.stiffness.plane,
+            refinements,
+        )
+    except ValueError as error:
+        raise told_by_a_floor(error) or error from error
+    for path in files:
+        print(f"{path} is written.")
+    return 0
+
+
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
     """Print the script that completes commands and options in SHELL.
 

@@ -13,7 +13,8 @@ from pydantic import Field, ValidationError, model_validator
 from flankfilm.faults import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, validated
-from flankfilm.scene.schema import Scene, Section
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.section import Section
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import Follow, Range, Value, base_scene, following, put
 

@@ -90,7 +90,7 @@ def _result_parts(results: Results) -> list[Part | None]:
             mesh_parts.stiffness(pair, values.get("closed forms"), cycles, changes, _model_note(results))
         )
         if film is not None:
-            parts.append(film_parts.film(pair, film, scene.tolerance))
+            parts.append(film_parts.film(pair, film, values["dry cycle"], scene.tolerance))
     if pair is not None and (torques := values.get("torques")) is not None:
         parts.append(load_parts.over_torque(torques, pair.face_width))
     if (whole := values.get("revolution")) is not None:

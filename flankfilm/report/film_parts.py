@@ -2,60 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flankfilm.figures import film as film_figures
 from flankfilm.report.mesh_parts import path_marks
-from flankfilm.report.page import Headline, Part, Table, drawing
+from flankfilm.report.page import Drawing, Headline, Part, Table, drawing
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
+    from flankfilm.mesh_stiffness import MeshStiffness
     from flankfilm.stages.film import FilmStage
     from gears import GearPair
 
 
-def film(pair: GearPair, stage: FilmStage, tolerance: float) -> Part:
+def film(pair: GearPair, stage: FilmStage, dry: MeshStiffness, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
-    position = stage.rho1 - pair.points.A
-    figures = [
-        drawing(
-            film_figures.film_along_path(
-                position, stage.central, stage.minimum, stage.hertz_pressure, path_marks(pair)
-            ),
-            "filmpath",
-            "Film thickness and Hertz pressure along the path of contact; steps where the load share steps.",
-        )
-    ]
-    if stage.profiles:
-        figures.append(
-            drawing(
-                film_figures.film_profiles(stage.profiles),
-                "filmprofile",
-                "Pressure and film thickness through the contact at points of the path; oil enters at the left. The "
-                "error estimate covers the thicknesses; the height of the pressure spike is not held to it.",
-            )
-        )
-    at_pitch = int(np.argmin(np.abs(stage.rho1 - pair.points.C)))
-    tooth = float(stage.cycle.secant.mean())
-    rows = tuple(
-        (name, number(k[at_pitch]), percent(-tooth / (tooth + k[at_pitch])), number(k.min()), number(k.max()))
-        for name, k in stage.stiffness.items()
-    )
-    heads = (
-        "film stiffness by",
-        "at C [N/m]",
-        "in series with the mean stiffness",
-        "least [N/m]",
-        "largest [N/m]",
-    )
-    change = stage.change_secant
     verdict = (
         f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
-        f"{100 * change:+.3f} % and the mean tangent stiffness by {100 * stage.change_tangent:+.3f} %."
+        f"{100 * stage.change_secant:+.3f} % and the mean tangent stiffness by "
+        f"{100 * stage.change_tangent:+.3f} %."
     )
-    if abs(change) < tolerance:
+    if abs(stage.change_secant) < tolerance:
         verdict += (
             f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be "
             "left out."
@@ -64,13 +34,127 @@ def film(pair: GearPair, stage: FilmStage, tolerance: float) -> Part:
         f"Films and load share agree after {stage.rounds} rounds; the last changed a pair's force by "
         f"{stage.mismatch:.1e} of the whole."
     )
+    tables = [_definitions(stage)]
+    if stage.otherwise:
+        tables.insert(0, _otherwise(stage, dry))
     return Part(
         "film",
         "Oil film",
-        (verdict,),
-        tuple(figures),
-        (Table(heads, rows),),
-        (rounds, "Steady, isothermal, fully flooded."),
+        (verdict, *_supply(stage), *_mixed(stage)),
+        tuple(_figures(pair, stage, dry)),
+        tuple(tables),
+        (rounds, "Steady, isothermal, " + {"flooded": "fully flooded."}.get(stage.supply, "starved.")),
+    )
+
+
+def _figures(pair: GearPair, stage: FilmStage, dry: MeshStiffness) -> list[Drawing]:
+    position, marks = stage.rho1 - pair.points.A, path_marks(pair)
+    along = film_figures.film_along_path(position, stage.central, stage.minimum, stage.hertz_pressure, marks)
+    told = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
+    figures = [drawing(along, "filmpath", told)]
+    shares = {
+        "central film over flooded": stage.starvation,
+        "film ratio Lambda": stage.film_ratio,
+        "asperities' share of the load": stage.asperity_share,
+    }
+    known = {name: values for name, values in shares.items() if values is not None}
+    if known:
+        told = "How far the contact is starved and how much its asperities carry, along the path of contact."
+        figures.append(drawing(film_figures.shares_along_path(position, known, marks), "filmshares", told))
+    if stage.profiles:
+        told = (
+            "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
+            "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
+        )
+        figures.append(drawing(film_figures.film_profiles(stage.profiles), "filmprofile", told))
+    if stage.otherwise:
+        told = (
+            "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
+            "layer stayed when the load changes."
+        )
+        held = film_figures.stiffness_changes(starved_cycles(stage), dry)
+        figures.append(drawing(held, "filmheld", told))
+    return figures
+
+
+def starved_cycles(stage: FilmStage) -> tuple[MeshStiffness, ...]:
+    """Mesh with a starved film as it is, flooded, and with the other of meniscus and layer held."""
+    return (replace(stage.cycle, label=_as_it_is(stage)), *stage.otherwise.values())
+
+
+def _definitions(stage: FilmStage) -> Table:
+    """Film stiffness by every definition: at C with what it costs, and its range along the path."""
+    if not stage.at_pitch:
+        known = ("film stiffness by", "least [N/m]", "largest [N/m]")
+        return Table(known, tuple((n, number(k.min()), number(k.max())) for n, k in stage.stiffness.items()))
+    heads = (
+        "film stiffness by",
+        "what it is",
+        "at C [N/m]",
+        "error",
+        "loss of the pair's stiffness at C",
+        "least [N/m]",
+        "largest [N/m]",
+    )
+    rows: list[tuple[str, ...]] = []
+    for row in stage.at_pitch:
+        k = stage.stiffness.get(row.definition)
+        ends = ("-", "-") if k is None else (number(k.min()), number(k.max()))
+        error = percent(row.error)
+        loss = percent(row.loss) if np.isfinite(row.loss) else "-"
+        rows.append((row.definition, row.meaning, number(row.stiffness), error, loss, *ends))
+    note = "Formulas are of flooded contacts." if stage.supply != "flooded" else ""
+    return Table(heads, tuple(rows), note)
+
+
+def _otherwise(stage: FilmStage, dry: MeshStiffness) -> Table:
+    """The mesh without film, flooded, and starved with either held."""
+    cycles = {"no film": dry, _as_it_is(stage): stage.cycle, **stage.otherwise}
+    heads = (
+        "mesh stiffness with",
+        "mean secant",
+        "change",
+        "mean tangent",
+        "change",
+        "first harmonic of the tangent over its mean",
+    )
+    rows = tuple(
+        (
+            name,
+            number(cycle.secant.mean()),
+            f"{100 * (cycle.secant.mean() / dry.secant.mean() - 1):+.3f} %",
+            number(cycle.tangent.mean()),
+            f"{100 * (cycle.tangent.mean() / dry.tangent.mean() - 1):+.3f} %",
+            f"{2 * abs(np.fft.rfft(cycle.tangent)[1]) / cycle.tangent.sum():.4f}",
+        )
+        for name, cycle in cycles.items()
+    )
+    return Table(heads, rows, "Stiffness in N/m at the whole face.")
+
+
+def _as_it_is(stage: FilmStage) -> str:
+    return f"this film, {stage.supply.replace('-', ' ')} held"
+
+
+def _supply(stage: FilmStage) -> tuple[str, ...]:
+    if stage.starvation is None or stage.inlet is None or stage.flow is None:
+        return ()
+    held = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}[stage.supply]
+    return (
+        f"{held} stays as it is when the load changes. Along the path the central film is "
+        f"{stage.starvation.min():.3f} to {stage.starvation.max():.3f} of the flooded one, the gap fills "
+        f"{-stage.inlet.max():.4f} to {-stage.inlet.min():.4f} half-widths ahead of the contact's middle, and "
+        f"a layer of {1e6 * stage.flow.min():.3g} to {1e6 * stage.flow.max():.3g} µm passes.",
+    )
+
+
+def _mixed(stage: FilmStage) -> tuple[str, ...]:
+    if stage.film_ratio is None or stage.asperity_share is None:
+        return ()
+    return (
+        f"Between the rough flanks Lambda is {stage.film_ratio.min():.3g} to {stage.film_ratio.max():.3g}; the "
+        f"asperities carry {percent(stage.asperity_share.min())} to {percent(stage.asperity_share.max())} of "
+        "the load. Film and asperities are springs in parallel, and both in series with the teeth.",
     )
 
 
@@ -78,9 +162,16 @@ def headlines(stage: FilmStage) -> list[Headline]:
     """Numbers for the page's head."""
     thinnest = int(np.argmin(stage.minimum))
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
-    return [
+    told = [
         Headline("least film on the path", f"{1e6 * stage.minimum[thinnest]:.3g} µm", note),
         Headline(
             "what the film changes", f"{100 * stage.change_secant:+.2f} %", "of the mean secant stiffness"
         ),
     ]
+    if stage.starvation is not None:
+        supply = f"supply: {stage.supply}"
+        told.append(Headline("starved film over flooded", f"{stage.starvation.min():.3g}", supply))
+    if stage.film_ratio is not None and stage.asperity_share is not None:
+        share = f"asperities carry up to {percent(stage.asperity_share.max())}"
+        told.append(Headline("least film ratio Lambda", f"{stage.film_ratio.min():.3g}", share))
+    return told

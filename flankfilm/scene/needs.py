@@ -39,6 +39,11 @@ def missing_sections(raw: Mapping[str, Any]) -> list[Fault]:
             need("operating", "a [dynamics] in physical units")
     if "film" in listed or (film and film.get("model", "auto") not in ("none", "auto")):
         need("lubricant", "the film" if "film" in listed else f"film.model = {shorten(film['model'])}")
+    if "film" in raw and film.get("model", "auto") == "auto":
+        if film.get("supply", "flooded") != "flooded":
+            need("lubricant", f"film.supply = {shorten(film['supply'])}")
+        if "roughness" in raw:
+            need("lubricant", "[roughness]")
     if "pair" in needed and listed != {"geometry"}:
         need("material", f"wants = [{_quoted(listed)}]")
         need("operating", f"wants = [{_quoted(listed)}]")
@@ -55,13 +60,15 @@ def _deeper(
 ) -> list[Fault]:
     faults = []
     operating = _table(raw, "operating")
-    lubricated = "film" in listed or ("lubricant" in raw and film and film.get("model", "auto") != "none")
+    chosen = "film" in raw and film.get("model", "auto") != "none"
+    lubricated = "film" in listed or ("lubricant" in raw and chosen)
     if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
         faults.append(
             Fault("operating.pinion_speed_rpm", "", "is required by the film", "Give the pinion's speed")
         )
     if "film" in listed and film.get("model") == "none":
         faults.append(Fault("film.model", "'none'", "excludes the wanted film", 'Take film.model = "ehl"'))
+    faults += _without_film_solver(raw, film)
     faults += _by_finite_elements(raw, listed, stiffness)
     if "torques" in listed and "operating" in raw and not operating.get("torques_Nm"):
         remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
@@ -103,6 +110,24 @@ def _deeper(
     return faults
 
 
+def _without_film_solver(raw: Mapping[str, Any], film: Mapping[str, Any]) -> list[Fault]:
+    """Faults of keys that only the film's solver knows."""
+    faults = []
+    if film.get("model") == "dowson" and "roughness" in raw:
+        remedy = 'Take film.model = "ehl", or drop [roughness]'
+        faults.append(Fault("film.model", "'dowson'", "knows no [roughness]", remedy))
+    if film.get("grid") == "article" and "roughness" in raw:
+        remedy = 'Take grid = "graded", or drop [roughness]'
+        faults.append(Fault("film.grid", "'article'", "is of smooth flanks", remedy))
+    oil = _table(raw, "lubricant")
+    if film.get("model") == "dowson" and (
+        oil.get("viscosity_law") == "constant" or oil.get("pressure_viscosity_per_GPa") == 0
+    ):
+        told = "does not know a viscosity that pressure leaves as it is"
+        faults.append(Fault("film.model", "'dowson'", told, 'Take film.model = "ehl"'))
+    return faults
+
+
 def _by_finite_elements(
     raw: Mapping[str, Any], listed: set[str], stiffness: Mapping[str, Any]
 ) -> list[Fault]:
@@ -112,7 +137,7 @@ def _by_finite_elements(
     asked += ["operating.friction"] if operating.get("friction") else []
     for gear in ("pinion", "wheel"):
         keys = _table(pair, gear)
-        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations") if keys.get(key)]
+        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations", "hub") if keys.get(key)]
     if not asked:
         return []
     model, pairs = stiffness.get("model", "fem"), stiffness.get("pairs", "coupled")

@@ -9,7 +9,10 @@ from __future__ import annotations
 import itertools
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from flankfilm.scene.film_schema import FilmSection, LubricantSection, RoughnessSection
+from flankfilm.scene.section import Section
 
 Want = Literal[
     "geometry",
@@ -27,12 +30,6 @@ Want = Literal[
 ]
 Positive = Annotated[float, Field(gt=0)]
 TwoNumbers = Annotated[tuple[float, float], Field(strict=False)]
-
-
-class Section(BaseModel):
-    """Common rules: unknown keys refused, no silent conversion, no NaN or infinity, frozen."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
 class RackSection(Section):
@@ -83,6 +80,14 @@ class DeviationsSection(Section):
         return self
 
 
+class HubSection(Section):
+    """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
+
+    radial_stiffness_N_per_m: float | None = Field(default=None, gt=0, le=1e15)
+    torsional_stiffness_Nm_per_rad: float | None = Field(default=None, gt=0, le=1e15)
+    hub_mm: float | None = Field(default=None, gt=0, le=1e6, description="diameter held; the bore's")
+
+
 class GearSection(Section):
     """One gear."""
 
@@ -95,6 +100,7 @@ class GearSection(Section):
     tip_chamfer_mm: float = Field(default=0.0, ge=0, le=100)
     tip_rounding_um: float = Field(default=0.0, ge=0, le=50_000, description="radius of the tip's edges")
     deviations: DeviationsSection | None = None
+    hub: HubSection | None = None
 
     @model_validator(mode="after")
     def _a_pitch_for_each_tooth(self) -> GearSection:
@@ -165,16 +171,6 @@ class OperatingSection(Section):
     first_teeth: Annotated[tuple[int, int], Field(strict=False)] = (0, 0)
 
 
-class LubricantSection(Section):
-    """Oil at the temperature of the contact's inlet."""
-
-    viscosity_Pa_s: float = Field(ge=1e-5, le=1e3)
-    pressure_viscosity_per_GPa: float = Field(ge=0, le=100)
-    density_kg_per_m3: float = Field(default=870.0, ge=100, le=5000)
-    roelands_z: float | None = Field(default=None, gt=0, le=2)
-    compressible: bool = True
-
-
 class StiffnessSection(Section):
     """Where the mesh stiffness comes from."""
 
@@ -199,26 +195,6 @@ class StiffnessSection(Section):
                     f"{len(self.amplitudes)} amplitudes but {len(self.phases_deg)} phases_deg; give as many of each"
                 )
         return self
-
-
-class FilmSection(Section):
-    """The oil film."""
-
-    model: Literal["ehl", "dowson", "none", "auto"] = "auto"
-    stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] | None = None
-    supply: Literal["flooded"] = "flooded"
-
-    @model_validator(mode="after")
-    def _formulas_know_two_definitions(self) -> FilmSection:
-        if self.model == "dowson" and self.stiffness not in (None, "dowson-central", "dowson-minimum"):
-            raise ValueError(
-                f'model = "dowson" has stiffness = "dowson-central" or "dowson-minimum", not "{self.stiffness}"'
-            )
-        return self
-
-    def definition(self, model: str) -> str:
-        """Definition of the film stiffness for a film computed by `model`."""
-        return self.stiffness or ("dowson-central" if model == "dowson" else "approach")
 
 
 class ExtraInertia(Section):
@@ -313,6 +289,7 @@ class Scene(Section):
     material: MaterialSection | None = None
     operating: OperatingSection | None = None
     lubricant: LubricantSection | None = None
+    roughness: RoughnessSection | None = None
     stiffness: StiffnessSection = StiffnessSection()
     film: FilmSection = FilmSection(model="none")
     dynamics: DynamicsSection | None = None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from flankfilm.build import lubricant, pinion_speed, pinion_torque
+from flankfilm.build import pinion_speed, pinion_torque
+from flankfilm.build_film import lubricant
 from flankfilm.stages.engine import Engine
 
 
@@ -33,13 +34,19 @@ def film_model(engine: Engine) -> FilmDecision:
     """
     scene = engine.scene
     asked = scene.film.model
+    # a scene without [film] has "none", and may still want the film; one that says "none" may not
+    if "film" in scene.wants and asked in ("auto", "none"):
+        return FilmDecision("ehl", "the film itself is wanted")
     if asked != "auto":
         return FilmDecision(asked, f'the scene asks for film.model = "{asked}"')
-    if "film" in scene.wants:
-        return FilmDecision("ehl", "the film itself is wanted")
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
         return FilmDecision("none", "the scene has no lubricant or no speed")
-    if scene.lubricant.pressure_viscosity_per_GPa == 0.0:
+    if scene.film.starved or scene.roughness is not None:
+        what = f'film.supply = "{scene.film.supply}"' if scene.film.starved else "[roughness]"
+        return FilmDecision("ehl", f"the formula that would estimate its part does not know {what}")
+    if scene.film.grid != "graded":
+        return FilmDecision("ehl", "the scene names a grid")
+    if scene.lubricant.constant_viscosity:
         return FilmDecision(
             "ehl", "the formula that would estimate its part does not know a constant viscosity"
         )

@@ -4,36 +4,37 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.build import lubricant, pinion_speed
 from flankfilm.faults import SolverError
 from flankfilm.film_law import FilmLaw
 from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.stages import film_pitch
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.film_path import (
+    PathFilms,
+    contacts_of,
+    film_inside,
+    films_of,
+    held_the_other_way,
+    law_of,
+)
 from flankfilm.stages.teeth import cycle_at
 from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
-    from ehl import Film, LineContact
+    from ehl import Film, StiffnessRow
 
 Array = NDArray[np.float64]
-
-LEAST_SHARE = 1e-3
-"""Pairs with less than this part of the force get no film: they hardly touch, and what their film
-props them apart by moves the load share by less than their own part."""
 
 FILM_POSITIONS = 40
 """Positions of a base pitch at which films are solved and brought into agreement with the load share."""
 
 MOST_ROUNDS = 12
-
-PROFILE_NODES = 513
-"""Nodes of the films that are drawn: they resolve the pressure spike."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,13 @@ class FilmStage:
     load : ndarray, shape (n,)
         Force per length of face [N/m].
     central, minimum : ndarray, shape (n,)
-        Film thickness [m].
+        Film thickness; between rough flanks the distance of their mean planes [m].
     hertz_pressure : ndarray, shape (n,)
         [Pa]
     stiffness : mapping
         Definition to film stiffness, shape (n,) [N/m at the whole face].
+    at_pitch : tuple of StiffnessRow
+        Every definition at the contact nearest to C, in series with the tangent stiffness of its teeth.
     profiles : mapping
         Label of a point of the path to its whole film, for pictures.
     change_secant, change_tangent : float
@@ -70,6 +73,18 @@ class FilmStage:
         Last change of a pair's force over the whole force.
     model : str
         ``"ehl"`` or ``"dowson"``.
+    supply : str
+        ``"flooded"``, ``"meniscus"`` or ``"oil-layer"``.
+    starvation : ndarray or None, shape (n,)
+        Central film over that of the smooth, flooded contact [-]; None with a flooded inlet.
+    inlet, flow : ndarray or None, shape (n,)
+        Place where the gap fills, in half-widths of the contact, negative, and the layer of oil that passes
+        the contact [m]; None by formula.
+    film_ratio, asperity_share : ndarray or None, shape (n,)
+        Lambda = h_min/sigma and the asperities' share of the load [-]; None between smooth flanks.
+    otherwise : mapping
+        Starved films: label to the mesh with the flooded film, and with the same starved films where what is
+        held at the inlet is the other of meniscus and layer, each at the forces of the films found.
     """
 
     cycle: MeshStiffness
@@ -79,6 +94,7 @@ class FilmStage:
     minimum: Array
     hertz_pressure: Array
     stiffness: Mapping[str, Array]
+    at_pitch: tuple[StiffnessRow, ...]
     profiles: Mapping[str, Film]
     change_secant: float
     change_tangent: float
@@ -88,14 +104,13 @@ class FilmStage:
     rounds: int
     mismatch: float
     model: str
-
-
-@dataclass(frozen=True)
-class _Contacts:
-    """The loaded contacts of a cycle in the order of the path."""
-
-    rho1: Array
-    contacts: tuple[LineContact, ...]
+    supply: str = "flooded"
+    starvation: Array | None = None
+    inlet: Array | None = None
+    flow: Array | None = None
+    film_ratio: Array | None = None
+    asperity_share: Array | None = None
+    otherwise: Mapping[str, MeshStiffness] = field(default_factory=dict)
 
 
 def film(engine: Engine) -> FilmStage:
@@ -109,18 +124,15 @@ def film(engine: Engine) -> FilmStage:
     start = time.perf_counter()
     agreed = _agree(engine, min(FILM_POSITIONS, dry.phase.size), split)
     seconds = time.perf_counter() - start - agreed.in_contact_solver
-    cycle = cycle_at(engine, dry.phase.size, agreed.law)
-    if engine.scene.stiffness.pairs == "coupled":
-        cycle = replace(cycle, secant=_secant(cycle, agreed.law))
-    return _gather(engine, dry, cycle, agreed, seconds)
+    cycle = _with_film(engine, agreed.law, f"{dry.label} with film")
+    return _gather(engine, cycle, agreed, seconds, _otherwise(engine, agreed, split))
 
 
 @dataclass(frozen=True)
 class _Agreement:
     """Films whose loads are those of the load share that they bring about."""
 
-    contacts: _Contacts
-    films: tuple[Film, ...]
+    path: PathFilms
     law: FilmLaw
     positions: int
     rounds: int
@@ -130,10 +142,10 @@ class _Agreement:
 
 def _agree(engine: Engine, positions: int, split: ToleranceSplit) -> _Agreement:
     """Iterate films and load share until both agree."""
-    solve = _solved if engine["film model"].model == "ehl" else _regressed
+    definition = engine.scene.film.definition(engine["film model"].model)
     in_contact_solver, mismatch, rounds = 0.0, np.inf, 0
     cycle = cycle_at(engine, positions)
-    films: tuple[Film, ...] | None = None
+    path: PathFilms | None = None
     while mismatch > split.coupling:
         if rounds == MOST_ROUNDS:
             raise SolverError(
@@ -141,15 +153,22 @@ def _agree(engine: Engine, positions: int, split: ToleranceSplit) -> _Agreement:
                 f"{mismatch:.1e} of the whole); raise the tolerance, or take the film by Dowson's formula"
             )
         rounds += 1
-        contacts = _contacts(engine, cycle)
-        films = solve(contacts, films, split.film)
-        law = _law(engine, contacts, films)
+        path = films_of(engine, *contacts_of(engine, cycle), path, split.film)
+        law = law_of(path, engine["pair"].face_width, definition)
         before, shared = cycle, time.perf_counter()
         cycle = cycle_at(engine, positions, law)
         in_contact_solver += time.perf_counter() - shared
         mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
-    assert films is not None
-    return _Agreement(contacts, films, law, positions, rounds, mismatch, in_contact_solver)
+    assert path is not None
+    return _Agreement(path, law, positions, rounds, mismatch, in_contact_solver)
+
+
+def _with_film(engine: Engine, law: FilmLaw, label: str) -> MeshStiffness:
+    """Give the mesh cycle with a film law, at the positions of the dry one."""
+    cycle = cycle_at(engine, engine["dry cycle"].phase.size, law)
+    if engine.scene.stiffness.pairs == "coupled":
+        cycle = replace(cycle, secant=_secant(cycle, law))
+    return replace(cycle, label=label)
 
 
 def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
@@ -166,112 +185,63 @@ def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
     return np.asarray(cycle.secant * cycle.transmission_error / (cycle.transmission_error + added))
 
 
-def _contacts(engine: Engine, cycle: MeshStiffness) -> _Contacts:
-    """Give the line contacts that the loaded pairs of a cycle make, in the order of the path."""
-    from ehl import LineContact
-
-    pair, oil, speed = engine["pair"], lubricant(engine.scene), pinion_speed(engine.scene)
-    touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
-    position, number = np.nonzero(touching)
-    order = np.argsort(cycle.rho1[position, number], kind="stable")
-    position, number = position[order], number[order]
-    rho1 = cycle.rho1[position, number]
-    path = pair.path_at(rho1)
-    contacts = tuple(
-        LineContact(load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=oil)
-        for w, u, r in zip(
-            (cycle.forces[position, number] / pair.face_width).tolist(),
-            path.entrainment(speed).tolist(),
-            path.radius.tolist(),
-            strict=True,
-        )
-    )
-    return _Contacts(rho1, contacts)
-
-
-def _solved(contacts: _Contacts, before: tuple[Film, ...] | None, tolerance: float) -> tuple[Film, ...]:
-    """Solve all films, each from its neighbour, or from itself of the round before."""
-    from ehl import solve, solve_path
-
-    if before is None or len(before) != len(contacts.contacts):
-        films = solve_path(contacts.contacts, tolerance=tolerance)
-    else:
-        films = tuple(
-            solve(contact, tolerance=tolerance, start=old)
-            for contact, old in zip(contacts.contacts, before, strict=True)
-        )
-    for film, rho1 in zip(films, contacts.rho1.tolist(), strict=True):
-        if not film.converged:
-            raise SolverError(f"no film at rho1 = {1e3 * rho1:.3f} mm: {film.message}")
-    return films
-
-
-def _regressed(contacts: _Contacts, before: object, tolerance: float) -> tuple[Film, ...]:
-    from ehl import dowson
-
-    return tuple(dowson(contact) for contact in contacts.contacts)  # type: ignore[misc]
-
-
-def _law(engine: Engine, contacts: _Contacts, films: tuple[Film, ...]) -> FilmLaw:
-    """Gather the films along the path into a law."""
-    width = engine["pair"].face_width
-    definition = engine.scene.film.definition(engine["film model"].model)
-    solved = np.array([width * film.contact.load for film in films])
-    props = np.array([film.prop for film in films])
-    stiffness = np.array([width * film.stiffness(definition) for film in films])
-    # at light loads of thin, soft contacts a film's slope can vanish or turn within its error: then a constant
-    return FilmLaw(contacts.rho1, solved, props, np.maximum(solved / (stiffness * props), 0.0))
+def _otherwise(engine: Engine, agreed: _Agreement, split: ToleranceSplit) -> dict[str, MeshStiffness]:
+    """Give the mesh with the films that a starved one has to be compared with."""
+    scene = engine.scene
+    if not scene.film.starved:
+        return {}
+    width, definition = engine["pair"].face_width, scene.film.definition("ehl")
+    path = agreed.path
+    flooded = PathFilms(path.rho1, path.flooded)
+    other = held_the_other_way(engine, path, split.film)
+    held = "meniscus" if scene.film.supply == "oil-layer" else "oil layer"
+    laws = {"smooth and flooded": flooded, f"same film, {held} held": other}
+    return {label: _with_film(engine, law_of(p, width, definition), label) for label, p in laws.items()}
 
 
 def _gather(
-    engine: Engine, dry: MeshStiffness, cycle: MeshStiffness, agreed: _Agreement, seconds: float
+    engine: Engine,
+    cycle: MeshStiffness,
+    agreed: _Agreement,
+    seconds: float,
+    otherwise: Mapping[str, MeshStiffness],
 ) -> FilmStage:
-    model = engine["film model"].model
-    definitions = _definitions(model)
-    width = engine["pair"].face_width
-    films, contacts = agreed.films, agreed.contacts
+    model, dry = engine["film model"].model, engine["dry cycle"]
+    width, solved = engine["pair"].face_width, model == "ehl"
+    path, films = agreed.path, agreed.path.films
+    inside = [film_inside(film) for film in films] if solved else []
+    starved, rough = bool(path.flooded), engine.scene.roughness is not None
+    central = np.array([film.central_thickness for film in films])
     return FilmStage(
-        cycle=replace(cycle, label=f"{dry.label} with film"),
-        rho1=contacts.rho1,
+        cycle=cycle,
+        rho1=path.rho1,
         load=np.array([film.contact.load for film in films]),
-        central=np.array([film.central_thickness for film in films]),
+        central=central,
         minimum=np.array([film.minimum_thickness for film in films]),
         hertz_pressure=np.array([film.contact.peak_pressure for film in films]),
-        stiffness={name: np.array([width * film.stiffness(name) for film in films]) for name in definitions},
-        profiles=_profiles(engine, agreed) if model == "ehl" else {},
+        stiffness={
+            name: np.array([width * film.stiffness(name) for film in films])
+            for name in film_pitch.definitions(model)
+        },
+        at_pitch=film_pitch.stiffness_rows(engine, path) if solved else (),
+        profiles=film_pitch.profiles(engine, path, agreed.positions) if solved else {},
         change_secant=float(cycle.secant.mean() / dry.secant.mean() - 1),
         change_tangent=float(cycle.tangent.mean() / dry.tangent.mean() - 1),
-        error=max(film.error for film in films) if model == "ehl" else None,
+        error=max(film.error for film in films) if solved else None,
         seconds=seconds,
-        unknowns=max(film.cost.unknowns for film in films) if model == "ehl" else 0,
+        unknowns=max(film.cost.unknowns for film in inside) if solved else 0,
         rounds=agreed.rounds,
         mismatch=agreed.mismatch,
         model=model,
+        supply=engine.scene.film.supply,
+        starvation=central / [film.central_thickness for film in path.flooded] if starved else None,
+        inlet=np.array([film.inlet / film.contact.half_width for film in inside]) if solved else None,
+        flow=np.array([film.flow for film in inside]) if solved else None,
+        film_ratio=_of_mixed(path, "film_ratio") if rough else None,
+        asperity_share=_of_mixed(path, "asperity_share") if rough else None,
+        otherwise=otherwise,
     )
 
 
-def _definitions(model: str) -> tuple[str, ...]:
-    from ehl import DEFINITIONS
-
-    return DEFINITIONS if model == "ehl" else ("dowson-central", "dowson-minimum")
-
-
-def _profiles(engine: Engine, agreed: _Agreement) -> dict[str, Film]:
-    """Films nearest to A, C and E, and to B and D on their single-pair side, fine enough for pictures.
-
-    The tolerance asks for thicknesses, which a grid too coarse for the pressure spike meets.
-    """
-    from ehl import solve
-
-    points, contacts, films = engine["pair"].points, agreed.contacts, agreed.films
-    step = engine["pair"].base_pitch / agreed.positions
-    wanted = {
-        "near A": points.A,
-        "after B": points.B + step,
-        "C": points.C,
-        "before D": points.D - step,
-        "near E": points.E,
-    }
-    nearest = {name: int(np.argmin(np.abs(contacts.rho1 - rho))) for name, rho in wanted.items()}
-    fine = {name: solve(films[i].contact, nodes=PROFILE_NODES) for name, i in nearest.items()}
-    return {name: replace(film, state=None) for name, film in fine.items() if film.converged}
+def _of_mixed(path: PathFilms, name: str) -> Array:
+    return np.array([getattr(film, name) for film in path.films])

@@ -11,6 +11,7 @@ from flankfilm.stages.teeth import plain_flanks
 
 if TYPE_CHECKING:
     from fem import Fillets, MeshCycle, RootStress
+    from flankfilm.scene import Scene
     from flankfilm.stages.engine import Engine
     from gears.closed_form import Iso6336RootStress
 
@@ -40,11 +41,23 @@ def fillets(engine: Engine) -> Fillets:
 
     scene = engine.scene
     found = fem.fillets(
-        gear_pair(plain_flanks(scene)), tolerance=scene.tolerance, plane=scene.stiffness.plane
+        gear_pair(held_on_hubs(plain_flanks(scene))), tolerance=scene.tolerance, plane=scene.stiffness.plane
     )
     if not found.converged:
         raise SolverError(f"root stress: {found.message}")
     return found
+
+
+def held_on_hubs(scene: Scene) -> Scene:
+    """Give the scene with bores as large as the rigid hubs: what a hub fills carries no stress."""
+    if scene.pair is None:
+        return scene
+    held = {}
+    for name in ("pinion", "wheel"):
+        gear = getattr(scene.pair, name)
+        if gear.hub is not None and gear.hub.hub_mm is not None:
+            held[name] = gear.model_copy(update={"bore_mm": gear.hub.hub_mm})
+    return scene.model_copy(update={"pair": scene.pair.model_copy(update=held)})
 
 
 def root_stress(engine: Engine) -> RootStage:

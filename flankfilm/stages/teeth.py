@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.build import deviations, gear_pair, pinion_torque, tip_roundings
+from flankfilm.build import deviations, gear_pair, pinion_torque, supports, tip_roundings
 from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness, peak_to_peak_error, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
@@ -33,7 +33,10 @@ def bodies(engine: Engine) -> Compliance:
     scene = engine.scene
     split = ToleranceSplit.of(scene.tolerance)
     found = fem.compliance(
-        gear_pair(plain_flanks(scene)), tolerance=split.compliance, plane=scene.stiffness.plane
+        gear_pair(plain_flanks(scene)),
+        tolerance=split.compliance,
+        plane=scene.stiffness.plane,
+        supports=supports(scene),
     )
     if not found.converged:
         raise SolverError(f"tooth compliance: {found.message}")

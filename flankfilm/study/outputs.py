@@ -82,6 +82,51 @@ def _sliding_speed(engine: Engine) -> float:
     return float(np.abs(ends.sliding(pinion_speed(engine.scene))).max())
 
 
+def _at_point(point: str, name: str) -> Callable[[Engine], float]:
+    """A curve along the path at A, B, C, D or E: of the nearest film, since curves step at B and D.
+
+    B and D count as ends of the single-pair zone.
+    """
+
+    def of(engine: Engine) -> float:
+        film, points = engine["film"], engine["pair"].points
+        inside = {"B": 1e-6, "D": -1e-6}.get(point, 0.0)
+        towards = film.rho1 - (getattr(points, point) + inside)
+        nearest = np.abs(towards) if not inside else np.where(towards * inside > 0, np.abs(towards), np.inf)
+        return float(getattr(film, name)[int(np.argmin(nearest))])
+
+    return of
+
+
+def _film_at(point: str, name: str, scale: float) -> Callable[[Engine], float]:
+    of = _at_point(point, name)
+    return lambda engine: scale * of(engine)
+
+
+def _through(value: Callable[[Any], float | None]) -> Callable[[Engine], float]:
+    """Figure of the pressure and film through the contact nearest to C; nan where it has none."""
+
+    def of(engine: Engine) -> float:
+        film = engine["film"].profiles.get("C")
+        found = None if film is None else value(film)
+        return float("nan") if found is None else float(found)
+
+    return of
+
+
+def _spike(film: Any) -> Any:
+    """Spike of a film that was solved for it; None where grids do not resolve it."""
+    return film.spike if film.spike is not None and np.isfinite(film.spike.error) else None
+
+
+def _mixed(name: str, worst: Callable[[Any], Any]) -> Callable[[Any], float]:
+    def of(film: Any) -> float:
+        values = getattr(film, name)
+        return float("nan") if values is None else float(worst(values))
+
+    return of
+
+
 def _at_pitch_point(film: Any, pair: Any) -> float:
     return float(np.interp(pair.points.C, film.rho1, film.central))
 
@@ -162,6 +207,61 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "film_change_percent": _film(
         "%", "what the film changes the mean secant stiffness by", lambda film: 100 * film.change_secant
+    ),
+    **{
+        f"{kind}_at_{point}_{unit}": Output(
+            unit, f"{meaning} at {point}", ("film",), _film_at(point, name, scale)
+        )
+        for kind, name, unit, scale, meaning in (
+            ("least_film", "minimum", "um", 1e6, "least film in the contact"),
+            ("hertz_pressure", "hertz_pressure", "GPa", 1e-9, "Hertz pressure"),
+        )
+        for point in "ABCDE"
+    },
+    "spike_at_C_GPa": Output(
+        "GPa",
+        "pressure spike of the contact at C; nan where it is narrower than grids resolve",
+        ("film",),
+        _through(lambda film: None if _spike(film) is None else 1e-9 * _spike(film).pressure),
+    ),
+    "spike_over_hertz_at_C": Output(
+        "1",
+        "pressure spike of the contact at C over its Hertz pressure",
+        ("film",),
+        _through(
+            lambda film: None if _spike(film) is None else _spike(film).pressure / film.contact.peak_pressure
+        ),
+    ),
+    "spike_position_at_C": Output(
+        "1",
+        "place of the pressure spike at C, in half-widths after the middle",
+        ("film",),
+        _through(
+            lambda film: None if _spike(film) is None else _spike(film).position / film.contact.half_width
+        ),
+    ),
+    "neck_position_at_C": Output(
+        "1",
+        "place of the least film at C, in half-widths after the middle",
+        ("film",),
+        _through(lambda film: film.minimum_position / film.contact.half_width),
+    ),
+    "neck_depth_at_C": Output(
+        "1",
+        "least over central film of the contact at C",
+        ("film",),
+        _through(lambda film: film.minimum_thickness / film.central_thickness),
+    ),
+    "film_ratio": _film(
+        "1", "least film ratio Lambda along the path; nan if smooth", _mixed("film_ratio", np.min)
+    ),
+    "asperity_share": _film(
+        "1", "largest asperity share along the path; nan if smooth", _mixed("asperity_share", np.max)
+    ),
+    "starvation": _film(
+        "1",
+        "least central film over the flooded one along the path; nan if flooded",
+        _mixed("starvation", np.min),
     ),
     "film_error": _film(
         "1",

@@ -17,7 +17,7 @@ from pydantic import Field, ValidationError, model_validator
 from flankfilm.faults import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
-from flankfilm.scene.schema import Section
+from flankfilm.scene.section import Section
 from flankfilm.study.outputs import OUTPUTS
 
 MOST_ROWS = 1_000_000

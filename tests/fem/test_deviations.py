@@ -132,8 +132,9 @@ def test_light_loads_approach_the_unloaded_error(article_pair, article_bodies):
     assert np.all(light.approach > bare)
     # the deflection itself is far below the rounding of the error, and still has digits
     heavier = fem.mesh_cycle(article_pair, 1e-5, 20, article_bodies, **given)
-    # (a tip edge begins on a single strip, with a constant stiffness)
-    assert np.all(heavier.secant_stiffness >= light.secant_stiffness * (1 - 1e-5))
+    # (a tip edge begins on a single strip, with a constant stiffness; the cubic through the first points of its law
+    # bends the other way by 2e-5 of it at this load, in proportion to the force)
+    assert np.all(heavier.secant_stiffness >= light.secant_stiffness * (1 - 3e-5))
     assert np.all(heavier.secant_stiffness < 1.3 * light.secant_stiffness)
 
 

@@ -19,32 +19,53 @@ def around(theta, r=1.0):
     return LOAD + r * (np.multiply.outer(np.cos(theta), INWARD) + np.multiply.outer(np.sin(theta), SIDE))
 
 
+@pytest.mark.parametrize("lean", [0.0, 0.3, -0.5 * np.pi])
 @pytest.mark.parametrize("law", LAWS, ids=["strain", "stress"])
-def test_displacement_and_stress_obey_hookes_law_everywhere_off_the_cut(law):
+def test_displacement_and_stress_obey_hookes_law_everywhere_off_the_cut(law, lean):
     points = around(np.linspace(-3.0, 3.0, 25), 0.7)
     h, slope = 1e-6, np.empty((25, 2, 2))
     for axis in (0, 1):
         step = np.zeros(2)
         step[axis] = h
-        ahead, behind = (flamant.displacement(points + s, LOAD, INWARD, law, 2.0) for s in (step, -step))
+        ahead, behind = (
+            flamant.displacement(points + s, LOAD, INWARD, law, 2.0, lean) for s in (step, -step)
+        )
         slope[:, :, axis] = (ahead - behind) / (2 * h)
     strain = 0.5 * (slope + slope.swapaxes(1, 2))
     lam, mu = law.lame
     sigma = lam * np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(2) + 2 * mu * strain
-    np.testing.assert_allclose(sigma, flamant.stress(points, LOAD, INWARD), rtol=0, atol=1e-7)
+    wanted = flamant.stress(points, LOAD, flamant.leaning(INWARD, lean))
+    np.testing.assert_allclose(sigma, wanted, rtol=0, atol=1e-7)
 
 
-def test_half_circle_carries_the_load_and_the_edge_is_free():
+@pytest.mark.parametrize("lean", [0.5 * np.pi, -0.5 * np.pi])
+@pytest.mark.parametrize("law", LAWS, ids=["strain", "stress"])
+def test_a_tangential_load_presses_the_edge_down_ahead_and_lifts_it_behind(law, lean):
+    """Johnson 1985, section 2.3; with Maxwell and Betti, the edge moves towards a normal load."""
+    along = flamant.leaning(INWARD, lean)
+    places = LOAD + np.array([[0.4], [-0.4]]) * along
+    by_tangent = flamant.displacement(places, LOAD, INWARD, law, 2.0, lean)
+    step = (1 - law.plane_poisson) / (2 * law.plane_modulus)
+    np.testing.assert_allclose(by_tangent @ INWARD, [step, -step], rtol=1e-12)
+    log = -2 / (np.pi * law.plane_modulus) * np.log(0.2)
+    np.testing.assert_allclose(by_tangent @ along, [log, log], rtol=1e-12)
+    by_normal = flamant.displacement(places, LOAD, INWARD, law, 2.0)
+    np.testing.assert_allclose(by_normal @ along, [-step, step], rtol=1e-12)
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.3, -0.5 * np.pi])
+def test_half_circle_carries_the_load_and_the_edge_is_free(lean):
+    along = flamant.leaning(INWARD, lean)
     total = np.zeros(2)
     t, weight = np.polynomial.legendre.leggauss(40)
     for theta, w in zip(0.5 * np.pi * t, 0.5 * np.pi * weight, strict=True):
         point = around(np.array([theta]), 0.01)
         normal = (point - LOAD) / 0.01
-        total += w * 0.01 * flamant.traction(point, normal, LOAD, INWARD)[0]
-    np.testing.assert_allclose(total, -INWARD, atol=1e-12)
+        total += w * 0.01 * flamant.traction(point, normal, LOAD, along)[0]
+    np.testing.assert_allclose(total, -along, atol=1e-12)
     for theta in (0.5 * np.pi, -0.5 * np.pi):
         edge = around(np.array([theta]), np.array([0.3]))
-        np.testing.assert_allclose(flamant.traction(edge, -INWARD[None], LOAD, INWARD), 0.0, atol=1e-12)
+        np.testing.assert_allclose(flamant.traction(edge, -INWARD[None], LOAD, along), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=["strain", "stress"])

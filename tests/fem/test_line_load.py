@@ -10,7 +10,7 @@ import pytest
 from fem import FemError
 from fem.elasticity import PlaneElasticity
 from fem.flamant import hertz_indentation
-from fem.flexibility import corner_logarithm, flexibility, sample_places, sampled
+from fem.flexibility import corner_logarithm, flexibility, sample_places, sampled, wedge_logarithms
 from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
 from gears import Gear, GearPair
@@ -64,6 +64,34 @@ def test_reciprocity_on_the_own_flank(loads):
     np.testing.assert_allclose(own[off], own.T[off], rtol=5e-4)
 
 
+def test_normal_and_tangential_loads_are_reciprocal(ring, loads):
+    normal = loads.at
+    tangent = normal.towards_tip()
+    assert np.all(np.einsum("na,na->n", tangent.direction, tangent.points) > 0)
+    drag = line_loads(ring, tangent)
+    by_tangent = drag.on_tooth(0, normal) + drag.singular(normal)
+    by_normal = loads.on_tooth(0, tangent) + loads.singular(tangent)
+    np.testing.assert_allclose(by_tangent, by_normal.T, rtol=0, atol=2e-4 * by_tangent.max())
+    for tooth in (1, -2):
+        exact = loads.on_neighbour(tooth, drag)
+        np.testing.assert_allclose(exact, drag.on_neighbour(-tooth, loads).T, rtol=1e-9)
+        np.testing.assert_allclose(
+            loads.on_tooth(tooth, tangent), exact, rtol=0, atol=2e-4 * abs(exact).max()
+        )
+
+
+def test_a_load_between_normal_and_tangent_is_their_sum(ring, loads):
+    """u_r as an energy, quadratic in the load's direction, against the mixed term of the field."""
+    tangent = loads.at.towards_tip()
+    drag, oblique = (
+        line_loads(ring, replace(tangent, lean=lean)) for lean in (tangent.lean, 0.3 * tangent.lean)
+    )
+    cos, sin = np.cos(0.3 * np.pi / 2), np.sin(0.3 * np.pi / 2)
+    mixed = np.diagonal(loads.on_tooth(0, tangent))
+    both = cos**2 * loads.regular_at_load() + sin**2 * drag.regular_at_load() + 2 * sin * cos * mixed
+    np.testing.assert_allclose(oblique.regular_at_load(), both, rtol=2e-4)
+
+
 def test_right_and_left_flank_are_mirror_images(loads):
     mesh = mesh_sector(PROFILE, refinements=1, working="right")
     mirrored = line_loads(ring_of(mesh, LAW), flank_points(mesh, RHO, "right"))
@@ -96,7 +124,7 @@ def test_the_displacement_as_an_energy_is_that_of_the_field_at_the_load(loads):
     """The field itself converges more slowly, and the two agree within its error."""
     full = np.zeros((loads.ring.mesh.unknowns, len(RHO)))
     full[loads.ring.inner] = loads._inner(0)
-    field = np.diag(loads.at.normal_part(full.reshape(-1, 2, len(RHO))))
+    field = np.diag(loads.at.component(full.reshape(-1, 2, len(RHO))))
     np.testing.assert_allclose(loads.regular_at_load(), field, rtol=3e-4)
     for tooth in (1, -1, 3):
         field = loads.on_tooth(tooth, loads.at)
@@ -122,15 +150,24 @@ def test_convergence_under_refinement():
     assert np.all(np.log2(steps[:-1] / steps[1:]) > 2.5)
 
 
+def test_a_half_plane_is_a_wedge_without_logarithms():
+    np.testing.assert_allclose(wedge_logarithms(np.pi, LAW), 0.0, atol=1e-25)
+
+
 def test_loads_near_the_corner_grow_as_the_wedge_says(ring):
     angle, c = corner_logarithm(ring.mesh, LAW)
     # corner between flank and top land: a right angle plus the pressure angle at the tip, less half the land
     tip = np.arccos(PROFILE.base_radius / PROFILE.tip_radius)
     assert angle == pytest.approx(0.5 * np.pi + tip, abs=2e-3)
-    away = np.array([0.02, 0.04]) * PROFILE.module  # arc length from the corner
+    assert c == wedge_logarithms(angle, LAW)[0]
+    away = np.array([0.01, 0.02, 0.04]) * PROFILE.module  # arc length from the corner
     rho = np.sqrt(PROFILE.flank_rho[1] ** 2 - 2 * PROFILE.base_radius * away)
-    near = line_loads(ring, flank_points(ring.mesh, rho)).regular_at_load()
-    assert near[1] - near[0] == pytest.approx(c * np.log(2), rel=0.05)
+    normal = flank_points(ring.mesh, rho)
+    push, drag = line_loads(ring, normal), line_loads(ring, normal.towards_tip())
+    found = push.regular_at_load(), np.diagonal(drag.on_tooth(0, normal)), drag.regular_at_load()
+    # what the tooth's turn adds is linear in the distance: 2 (u(2d) - u(d)) - (u(4d) - u(2d)) is free of it
+    grown = [2 * (u[1] - u[0]) - (u[2] - u[1]) for u in found]
+    np.testing.assert_allclose(grown, np.log(2) * np.array(wedge_logarithms(angle, LAW)), rtol=0.02)
 
 
 @pytest.mark.parametrize(

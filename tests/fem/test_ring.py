@@ -141,7 +141,7 @@ def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
         pressure = 2 / (np.pi * a) * np.sqrt(np.maximum(1 - (off / a) ** 2, 0.0))
         size[edge] += (weight * pressure * np.linalg.norm(along, axis=1)) @ shape
     moved = solve(np.outer(size / size.sum(), at.inward[0]))
-    resolved = float(at.normal_part(moved[gear.nodes[0]])[0])
+    resolved = float(at.component(moved[gear.nodes[0]])[0])
     sector = mesh_sector(profile, refinements=1)
     loads = line_loads(ring_of(sector, LAW), flank_points(sector, np.array([rho])))
     mine = float(loads.regular_at_load()[0] + hertz_indentation(a, LAW, profile.module))

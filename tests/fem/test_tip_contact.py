@@ -8,12 +8,16 @@ import pytest
 import fem
 from fem.compliance import mesh_and_factor
 from fem.elasticity import PlaneElasticity
+from fem.line_load import flank_points
 from fem.local_law import Table
-from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
-from fem.tip_contact import edge_laws, tip_strips
-from fem.tip_geometry import lever_ratio, unloaded_gap
+from fem.ring import ring_of
+from fem.strip_contact import flat_kernel, flat_kernels, from_the_corner, from_the_nearest
+from fem.tip_contact import edge_laws
+from fem.tip_geometry import lever_ratio, opening, unloaded_gap
+from fem.tip_strips import tip_strips
 from gears.placement import mirrored, turned
-from meshes import Sizes
+from meshes import Sizes, mesh_sector
+from tests.fem.test_ring import whole_annulus
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)
 
@@ -86,6 +90,27 @@ def wheel_tip(article_pair):
     return rings[1], tip_strips(rings[1], article_pair.teeth_profiles[1])
 
 
+def test_opening_is_the_angle_between_the_normals_of_the_placed_flanks(article_pair):
+    line, rho1 = article_pair.line_of_action, np.array([article_pair.points.A - 0.7e-3])
+    rho2 = article_pair.teeth_profiles[1].flank_rho[1] - np.array([0.0, 2e-4])
+    gap, where = unloaded_gap(article_pair.base_radii, line, rho1, rho2)
+    angle = opening(article_pair.base_radii, line, rho1, where, rho2)[0]
+    for k in (0, 1):
+        tangents = []
+        for gear, rho in ((0, where[0, k]), (1, rho2[k])):
+            ahead, here = placed_flank(article_pair, gear, np.array([rho + 1e-8, rho]), float(rho1[0]))
+            tangents.append((ahead - here) / np.linalg.norm(ahead - here))
+        # tangents run to the tips, against one another
+        assert angle[k] == pytest.approx(np.arccos(-tangents[0] @ tangents[1]), rel=1e-5)
+    assert angle[1] > angle[0] > 0
+    # the leaning force misses the axis of its own gear by the lever that the other formula gives
+    ratio = rho2[0] / article_pair.base_radii[1]
+    lever = lever_ratio(article_pair, where[:, 0], rho1, 1)[0]
+    assert np.cos(angle[0]) - ratio * np.sin(angle[0]) == pytest.approx(
+        lever, abs=gap[0, 0] / article_pair.base_radii[1]
+    )
+
+
 def test_kernel_is_symmetric_and_definite(wheel_tip):
     _, strips = wheel_tip
     mean = flat_kernel(strips.distance, strips.width, LAW, 2e-3)
@@ -93,6 +118,56 @@ def test_kernel_is_symmetric_and_definite(wheel_tip):
     np.testing.assert_allclose(regular, regular.T, rtol=1e-3)
     both = strips.kernel + mean
     assert np.all(np.linalg.eigvalsh(0.5 * (both + both.T)) > 0)
+
+
+def test_leaning_kernel_is_symmetric_and_without_leaning_the_normal_one(wheel_tip):
+    _, strips = wheel_tip
+    np.testing.assert_array_equal(strips.leaning(np.zeros((2, len(strips.rho)))), [strips.kernel] * 2)
+    angle = 0.03 + np.linspace(0.0, 0.2, len(strips.rho))[None]
+    leaning = strips.leaning(angle)[0]
+    flat = flat_kernel(strips.distance, strips.width, LAW, 2e-3) * np.cos(angle - angle.T)
+    np.testing.assert_allclose(leaning - flat, (leaning - flat).T, rtol=0, atol=2e-3 * leaning.max())
+    assert np.all(np.linalg.eigvalsh(leaning + leaning.T) > 0)
+    # leaning away from the tip the force bends the tooth less
+    assert np.all(np.diag(leaning) < np.diag(strips.kernel))
+    tangent = strips.leaning(np.full((1, len(strips.rho)), -0.5 * np.pi))[0]
+    np.testing.assert_allclose(tangent, strips.tangential, rtol=1e-9)
+
+
+def test_regular_parts_are_smooth_where_strips_pass_one_another_and_the_elements_end(wheel_tip):
+    _, strips = wheel_tip
+    flat = flat_kernels(strips.distance, strips.width, LAW, 2e-3)
+    for whole, half_plane in zip((strips.kernel, strips.mixed, strips.tangential), flat, strict=True):
+        regular = (whole - half_plane)[3:31, 3:31] * LAW.plane_modulus  # up to .1 modules
+        for axis in (0, 1):
+            assert np.abs(np.diff(regular, n=2, axis=axis)).max() < 0.03  # of 8 to 15
+
+
+def test_leaning_kernel_against_plain_finite_elements(article_pair):
+    """A strip pulled obliquely on the whole annulus with fine elements at the tip, no singularity taken out."""
+    profile = article_pair.teeth_profiles[1]
+    fine = mesh_sector(profile, Sizes(flank=0.03), refinements=1)
+    gear, solve = whole_annulus(profile, mesh_sector(profile, refinements=1), {0: fine})
+    edges, arcs = gear.nodes[0][fine.facets["flank_left"]], fine.parameters["flank_left"]
+    end = profile.flank_rho[1] ** 2 / (2 * profile.base_radius)
+    distance = end - arcs.mean(axis=1)
+    order = np.argsort(distance)
+    some = order[[np.searchsorted(distance[order], d) for d in (0.05e-3, 0.15e-3, 0.35e-3)]]
+    strips = tip_strips(ring_of(mesh_sector(profile, refinements=2), LAW), profile)
+    mine = strips.on(distance[some], np.ptp(arcs[some], axis=1))
+    angle = np.array([0.1, 0.25, 0.4])
+    kernel = mine.leaning(angle[None])[0]
+    at = flank_points(fine, np.sqrt(2 * profile.base_radius * arcs[some].mean(axis=1)))
+    along = np.cos(angle)[:, None] * at.inward - np.sin(angle)[:, None] * at.towards_tip().direction
+    moved = np.empty((3, 3))
+    for j, edge in enumerate(edges[some]):
+        force = np.zeros_like(gear.points)
+        force[edge] = np.array([1 / 6, 1 / 6, 2 / 3])[:, None] * along[j]
+        moved[:, j] = np.einsum("na,na->n", solve(force)[edges[some, 2]], along)
+    apart = ~np.eye(3, dtype=bool)
+    np.testing.assert_allclose(kernel[apart], moved[apart], rtol=1e-3)
+    # the directions do matter to that check
+    assert np.abs(strips.on(mine.distance, mine.width).kernel[apart] / moved[apart] - 1).min() > 0.1
 
 
 def test_kernel_far_from_the_corner_is_own_of_the_flank(article_pair, article_bodies, wheel_tip):
@@ -120,7 +195,8 @@ def test_at_A_the_law_meets_hertz(article_pair, article_bodies):
     force = np.array([2e3, 5e3, 1e4])
     edge = np.interp(force, law.force[0], law.approach[0])
     A = np.full(3, article_pair.points.A)
-    wheel = article_bodies.wheel.own(article_pair.line_of_action - A) / article_pair.face_width
+    wheel = article_bodies.wheel.own(article_pair.line_of_action - A) - article_bodies.wheel.hub_windup
+    wheel = wheel / article_pair.face_width
     hertz = article_bodies.hertz(A).approach(force) + wheel * force
     np.testing.assert_allclose(edge, hertz, rtol=0.03)
 
@@ -128,7 +204,7 @@ def test_at_A_the_law_meets_hertz(article_pair, article_bodies):
 def test_finer_strips_change_little(article_pair, article_bodies, monkeypatch):
     import sys
 
-    tip = sys.modules["fem.tip_contact"]
+    tip = sys.modules["fem.tip_strips"]
     rings, _ = mesh_and_factor(article_pair, "strain", Sizes(), 1)
     place = np.array([article_pair.points.C - article_pair.base_pitch])
     approach = []
@@ -145,8 +221,8 @@ def test_closing_strip_by_strip_gives_the_same_law_without_relief(article_pair, 
     kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
     places = article_pair.points.A - np.array([1e-4, 5e-4, 1.2e-3])
     gaps, _ = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, places, strips.rho)
-    force, approach = from_the_nearest(kernel, gaps)
-    other = from_the_corner(kernel, gaps, gaps[:, 0])
+    force, approach = from_the_nearest(kernel, gaps, np.ones_like(gaps))
+    other = from_the_corner(kernel, gaps, gaps[:, 0], np.ones_like(gaps))
     assert np.all(np.diff(force, axis=1) > 0)
     for row in range(3):
         same = np.interp(force[row, 3:-3], other[0][row], other[1][row])
@@ -158,7 +234,7 @@ def test_relieved_tips_touch_inside_the_corner(article_pair, article_bodies):
     strips = article_bodies.tips[1]
     kernel = strips.kernel + flat_kernel(strips.distance, strips.width, LAW, 2e-3)
     gaps = 1e-6 + 0.03 * np.abs(strips.distance - 0.1e-3)[None]
-    force, approach = from_the_nearest(kernel, gaps)
+    force, approach = from_the_nearest(kernel, gaps, np.ones_like(gaps))
     level = approach[0, 12]
     closed = np.zeros(len(strips.rho), dtype=bool)
     # the strips that are closed at that level, found anew by a plain active-set search
@@ -220,15 +296,23 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         edge = cycle.edge[row, on]
         first, second = (cycle.flank_rho[gear, row, on] for gear in (0, 1))
         force = cycle.forces[row, on]
-        bulk = article_bodies.bulk(first, second)
-        bulk[edge, edge] -= corner  # the law of the edge has its own tooth in it
-        way = bulk @ force
         here = article_pair.points.A + (cycle.position[row] + cycle.pair_offset[on]) * article_pair.base_pitch
         law = edge_laws(article_pair, article_bodies.tips[0], 0, here[edge], LAW)
-        way[edge] += Table.through(law.force, law.approach).value_and_slope(force[edge])[0]
-        way[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
         kappa = np.ones(len(on))
         kappa[edge] = lever_ratio(article_pair, law.where, here[edge])
+        line, end = article_pair.line_of_action, pinion.rho_end
+        angle = opening(article_pair.base_radii[::-1], line, line - here[edge], law.where[:, None], end)[:, 0]
+        leaning = np.zeros((2, len(on)))
+        leaning[0, edge] = angle
+        bulk = article_bodies.bulk(first, second, leaning)
+        # the law of the edge has its own tooth in it, but not the turn on the hub
+        lever = np.cos(angle) - np.sin(angle) * pinion.rho_range[1] / pinion.base_radius
+        bulk[edge, edge] -= corner - pinion.hub_windup / article_pair.face_width * lever**2
+        way = bulk @ force
+        # the law is in the force that turns the pinion as much, and in the pinion's turn
+        turned = kappa[edge] * force[edge]
+        way[edge] += kappa[edge] * Table.through(law.force, law.approach).value_and_slope(turned)[0]
+        way[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
         np.testing.assert_allclose(way, kappa * cycle.approach[row], rtol=1e-6)
         assert np.all(kappa[edge] < 0.999)
         assert kappa @ force == pytest.approx(cycle.force, rel=1e-10)

@@ -66,7 +66,7 @@ def test_root_stress_stands_beside_the_standard(results):
         nominal = float(results[f"iso6336_3_sigma_F0_{gear}"])
         assert 0.7 < tension / nominal < 1.1
         lean = results[f"root_tension_tangent_deg_{gear}"].values[
-            int(results[f"root_tension_Pa_{gear}"].argmax())
+            int(np.argmax(results[f"root_tension_Pa_{gear}"].values))
         ]
         assert 25 < lean < 50
 

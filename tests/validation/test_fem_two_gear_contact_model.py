@@ -1,9 +1,10 @@
 """The article's pair as two whole gears in contact in CalculiX.
 
 Reference: an independent two-gear model (CPE6 elements, surface-to-surface penalty contact of 1e8 N/mm^3, elements
-of 0.03 mm at the contact). With contact held to the path of contact it has no tip edges; with the neighbours
-free to touch, its tip corners are as blunt as its elements, so its edge contact is a little stiffer than our
-sharp corner: 0.75 % at the pitch point, where the edge presses over 3 um, 0.3 % near A and E.
+of 0.03 mm at the contact). With contact held to the path of contact it has no tip edges. With the neighbours free
+to touch, its pressure at a tip edge cannot be narrower than an element, and CalculiX's contact presses on the
+corner's node: 0.2 % too stiff at the pitch point, where the edge presses over 3 um, and a tenth too much on the
+edge there. The same contact on elements of 3 um gives what test_fem_two_gears has.
 """
 
 from __future__ import annotations
@@ -46,9 +47,9 @@ def test_neighbours_free_to_touch(pair, cycles):
     free = cycles[True]
     C = (pair.points.C - pair.points.A) / pair.base_pitch
     k = free.secant_stiffness / 4e7
-    assert at(free, C, k) == pytest.approx(15.67, rel=0.01)
+    assert at(free, C, k) == pytest.approx(15.67, rel=0.004)
     assert at(free, 0.25, k) == pytest.approx(21.167, rel=0.0015)
-    assert at(free, 0.75, k) == pytest.approx(19.3, rel=0.006)
+    assert at(free, 0.75, k) == pytest.approx(19.3, rel=0.004)
     assert at(free, 0.95, k) == pytest.approx(19.3, rel=0.006)
     assert k.mean() == pytest.approx(20.2, rel=0.005)
 
@@ -58,7 +59,7 @@ def test_forces_on_the_tip_edges(pair, cycles):
     C = (pair.points.C - pair.points.A) / pair.base_pitch
     per_mm = np.where(free.edge, free.forces, 0.0) / 40.0
     # 33 of 443 N/mm on the neighbour behind: a small force, and the most sensitive to the corner's sharpness
-    assert at(free, C, per_mm.max(axis=1)) == pytest.approx(33.0, rel=0.2)
-    assert at(free, 0.75, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.03)
+    assert at(free, C, per_mm.max(axis=1)) == pytest.approx(33.0, rel=0.12)
+    assert at(free, 0.75, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.015)
     # at .95 the reference's 150 N/mm is rounded from a table that gives both places together
-    assert at(free, 0.95, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.05)
+    assert at(free, 0.95, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.025)

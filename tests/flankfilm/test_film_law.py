@@ -1,0 +1,78 @@
+"""The law of a film that a meniscus holds: value, slope, and the flooded film as its bound."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ehl import LineContact, Lubricant, Meniscus, solve
+from flankfilm.film_law import FilmLaw, HeldMeniscus
+
+
+def law(
+    prop: float, exponent: float, place: float = 1.1, flooded: float = 7e-7, slow: float = 0.12
+) -> FilmLaw:
+    one = np.ones(1)
+    held = HeldMeniscus(place * one, flooded * one, slow * one)
+    return FilmLaw(1e-3 * one, 1000 * one, prop * one, exponent * one, held)
+
+
+def at(found: FilmLaw, force: float) -> tuple[float, float]:
+    prop, slope = found(np.array([[1e-3]]), np.array([[force]]))
+    return float(prop[0, 0]), float(slope[0, 0])
+
+
+@pytest.mark.parametrize("prop", [1e-8, 1e-7, 6.9e-7])
+@pytest.mark.parametrize(("exponent", "place"), [(0.3, 2.0), (4.0, 1.1), (15.0, 1.03), (600.0, 1.001)])
+def test_value_and_slope_are_met_and_the_slope_is_the_derivative(prop: float, exponent: float, place: float):
+    found = law(prop, exponent, place)
+    value, slope = at(found, 1000.0)
+    assert value == pytest.approx(prop, rel=1e-9)
+    assert slope == pytest.approx(-exponent * prop / 1000.0, rel=1e-9)
+    edge = 1000.0 * place**2  # where the dry contact reaches the meniscus
+    for force in (30.0, 300.0, 990.0, 1000.0 + 0.5 * (edge - 1000.0)):
+        step = 1e-4 * (edge - force)
+        apart = (at(found, force + step)[0] - at(found, force - step)[0]) / (2 * step)
+        assert at(found, force)[1] == pytest.approx(apart, rel=1e-4)
+
+
+def test_the_film_ends_where_the_contact_reaches_the_meniscus():
+    found = law(1e-7, 4.0, place=1.1)
+    forces = np.linspace(1000.0, 1215.0, 200)
+    props = np.array([at(found, force)[0] for force in forces])
+    assert np.all(np.diff(props) <= 0.0)
+    assert at(found, 1209.999)[0] < 1e-11
+    assert at(found, 1211.0) == (0.0, 0.0)
+
+
+def test_a_light_contact_leaves_the_meniscus_behind():
+    found = law(1e-7, 4.0)
+    for force in (20.0, 100.0, 300.0):
+        flooded = 7e-7 * (force / 1000.0) ** -0.12
+        assert 0.5 * flooded < at(found, force)[0] <= flooded
+    assert at(found, 0.0)[1] == 0.0
+    assert np.isfinite(at(found, 1e6)).all()
+
+
+def test_without_lack_of_oil_the_power_law_stands():
+    for found in (law(7e-7, 0.2), law(8e-7, 0.2), law(3e-7, 0.05)):
+        exponent = float(found.exponent[0])
+        assert at(found, 500.0)[0] == pytest.approx(float(found.prop[0]) * 0.5**-exponent, rel=1e-12)
+
+
+def test_the_law_follows_films_behind_a_meniscus_that_stays():
+    """Against films solved at other loads; at a third of the load a power law gives thirty times too much."""
+    oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9)
+
+    def contact(load: float) -> LineContact:
+        return LineContact(load=load, entrainment=2.58, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=oil)
+
+    middle = 2.5e5
+    held = Meniscus(-1.1 * contact(middle).half_width)
+    film, flooded = solve(contact(middle), supply=held), solve(contact(middle))
+    n, m = (-f.prop_slope * middle / f.prop for f in (film, flooded))
+    bounded = law(film.prop, n, 1.1, flooded.prop, m)
+    for factor, allowed in ((0.97, 0.002), (1.03, 0.002), (0.9, 0.01), (0.5, 0.1), (0.3, 0.15)):
+        true = solve(contact(factor * middle), supply=held).prop
+        error = abs(at(bounded, 1000.0 * factor)[0] / true - 1)
+        assert error < allowed
