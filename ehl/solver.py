@@ -58,7 +58,7 @@ def solve(
         (inlet, outlet) in half-widths of the dry contact; there the pressure is zero. Not given, the domain
         follows the film and is long enough for a fully flooded inlet within the tolerance.
     start : Film, optional
-        A film of a similar contact to start from. Its grid is kept while the film parameter h R/b^2 stays
+        A film of a similar contact to start from. Its grading is kept while the film parameter h R/b^2 stays
         within a factor 1.5, so that small changes of load show no change of grid.
     grid : str
         ``"graded"`` towards inlet and pressure spike, ``"uniform"``, or ``"article"``: 130 equal nodes on
@@ -132,15 +132,16 @@ def _if_open(start: Film | None) -> Film | None:
 
 
 def _solve(run: Run, options: Options, start: Film | None) -> Film:
-    """Solve a first pair of grids, then refine."""
+    """Solve a first pair of grids, then refine.
+
+    A start gives films on the first pair alone: on finer ones a film of another load is often too far off.
+    """
     old = start.state if start is not None else None
     if old is not None and old.plan.serves(run.plan):
         run.plan = old.plan
     n = 2 * _FIRST_NODES - 1
     if options.nodes is not None:
         n = int(options.nodes)
-    elif old is not None and old.plan is run.plan:
-        n = old.fine.grid.nodes.size
     half = (n + 1) // 2
     if old is None:
         coarse, fine = run.pair(half, n)

@@ -28,10 +28,6 @@ LEAST_SHARE = 1e-3
 props them apart by moves the load share by less than their own part."""
 
 
-_COARSE = 129
-"""Most unknowns of a film that another one starts from."""
-
-
 @dataclass(frozen=True)
 class PathFilms:
     """Films in the order of the path.
@@ -123,7 +119,7 @@ def _solved(
     found: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
         near = before[i] if before else found[-1] if found else None
-        start = None if near is None else _coarse(film_inside(near))
+        start = None if near is None else film_inside(near)
         film: Film | MixedFilm
         if rough is None:
             film = solve(contact, tolerance, start=start, supply=supply, grid=engine.scene.film.grid)
@@ -133,15 +129,6 @@ def _solved(
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
         found.append(film)
     return tuple(found)
-
-
-def _coarse(film: Film) -> Film | None:
-    """Give a film to start from if its grid is coarse.
-
-    A start keeps its grid, and where Newton's method fails on a fine one each way out costs seconds; from
-    nothing the solver begins with a coarse one, which gives in.
-    """
-    return film if film.cost.unknowns <= _COARSE else None
 
 
 def film_inside(film: Solved) -> Film:

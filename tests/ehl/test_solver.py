@@ -212,3 +212,19 @@ def test_public_names():
     assert set(ehl.__all__) <= set(dir(ehl))
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = ehl.no_such_name
+
+
+def test_fine_films_along_a_path_need_no_fine_start():
+    """High pressure-viscosity wants 257 nodes and more; from a film of half the load none may be lost."""
+    oil = Lubricant(viscosity=0.075, pressure_viscosity=32.6e-9, density=910.0)
+    contacts = [
+        LineContact(load=w, entrainment=2.58, radius=6.5e-3, reduced_modulus=2.2e11, lubricant=oil)
+        for w in (2.2e5, 2.3e5, 4.4e5, 4.4e5, 2.2e5)
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EhlWarning)
+        films = solve_path(contacts, tolerance=0.005)
+        alone = [solve(contact, tolerance=0.005) for contact in contacts]
+    assert all(film.converged for film in films)
+    for film, own in zip(films, alone, strict=True):
+        assert film.central_thickness == pytest.approx(own.central_thickness, rel=0.005)
