@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from itertools import count
 from typing import Any
@@ -72,6 +73,7 @@ def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     if began:
         # interruptible=False: gmsh otherwise sets a signal handler, which only the main thread may do
         gmsh.initialize(readConfigFiles=False, interruptible=False)
+        _keep_broken_pipes_harmless()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
@@ -89,6 +91,18 @@ def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     finally:
         if began:
             gmsh.finalize()
+
+
+def _keep_broken_pipes_harmless() -> None:
+    """Undo what gmsh does to SIGPIPE when it is first initialised: a write to a closed pipe would end the process.
+
+    Python ignores the signal and raises BrokenPipeError instead. Handlers can be set in the main thread alone; a
+    program that meshes in another one first keeps gmsh's choice.
+    """
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        handler = signal.getsignal(signal.SIGPIPE)
+        if handler is not None:
+            signal.signal(signal.SIGPIPE, handler)
 
 
 def _load_gmsh() -> Any:

@@ -164,3 +164,22 @@ def test_importing_the_packages_loads_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_closed_pipe_is_an_error_after_meshing_too():
+    """gmsh sets SIGPIPE back to its default, which would end the process without a word."""
+    code = (
+        "import os\n"
+        "from gears import Gear, GearPair\n"
+        "from meshes import mesh_sector\n"
+        "pair = GearPair(pinion=Gear(teeth=30), wheel=Gear(teeth=30), module=1e-3, face_width=0.01)\n"
+        "mesh_sector(pair.teeth_profiles[0])\n"
+        "reader, writer = os.pipe()\n"
+        "os.close(reader)\n"
+        "try:\n"
+        "    os.write(writer, b'x')\n"
+        "except BrokenPipeError:\n"
+        "    print('told')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "told\n"), done.stderr
