@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
 import math
 from pathlib import Path
 
@@ -84,7 +83,6 @@ def test_a_drawing_reads_back_as_the_contour(tmp_path, teeth):
         assert float(circles[0][40]) == pytest.approx(1e3 * PROFILE.bore_radius, rel=1e-11)
 
 
-@pytest.mark.skipif(importlib.util.find_spec("ezdxf") is None, reason="ezdxf is not installed")
 def test_another_reader_takes_the_drawing(tmp_path):
     import ezdxf
 

@@ -90,7 +90,6 @@ def test_a_front_holds_what_nothing_betters():
 
 
 def test_several_objectives_trade_off(tmp_path):
-    pytest.importorskip("pymoo")
     wanted = 'minimise = ["specific_sliding"]\nmaximise = ["contact_ratio"]\nevaluations = 120'
     task = read_task(task_file(tmp_path, wanted))
     found = optimise(task, tmp_path / "out", workers=1)

@@ -256,7 +256,6 @@ class TestCommand:
 
     @pytest.mark.filterwarnings("ignore")  # of the cluster's own start and end
     def test_a_cluster_gives_the_same_rows_to_the_last_digit(self, tmp_path):
-        pytest.importorskip("dask.distributed")
         plan = read_plan(study_file(tmp_path, SHIFTS))
         here = run_study(plan, tmp_path / "here", workers=1)
         there = run_study(plan, tmp_path / "there", workers=1, kind="dask")
