@@ -1,6 +1,6 @@
-"""Curved second-order meshes of gears with named boundaries, and files of results for ParaView.
+"""Curved second-order meshes of gears with named boundaries, and files of them for other programs.
 
-gmsh and meshio are imported only when something is meshed or written.
+gmsh is imported only when something is meshed.
 """
 
 from meshes.annulus import GearMesh, gear_mesh
