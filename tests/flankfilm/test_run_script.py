@@ -196,14 +196,10 @@ def test_first_set_up_installs_the_pins(sandbox: Sandbox) -> None:
 def test_second_call_only_looks(sandbox: Sandbox) -> None:
     sandbox.run("setup")
     sandbox.forget_calls()
-    seconds = []
     for _ in range(3):
-        began = time.perf_counter()
         assert sandbox.run("test", "one").returncode == 0
-        seconds.append(time.perf_counter() - began)
     assert not sandbox.calls("pip")
     assert len(sandbox.calls()) == 6  # each time: is the Python still the same, and pytest
-    assert min(seconds) < 1.0  # 0.05 s on a quiet machine
 
 
 @pytest.mark.parametrize("name", ["constraints.txt", "pyproject.toml"])

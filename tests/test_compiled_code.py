@@ -1,0 +1,75 @@
+"""Compiled code against the same code interpreted: the compiler may not change a figure beyond rounding.
+
+The interpreted pass is also the one in which the lines of the kernels can be counted as run or not run.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+MOTION = """
+import dataclasses, json
+import numpy as np
+import dynamics
+
+both = dynamics.GearOscillator(
+    stiffness=dynamics.FourierStiffness(1.0, (0.18, 0.05), (0.0, 0.4)),
+    damping_ratio=0.05, mean_force=0.1, error_amplitude=0.2, frequency=0.62, half_backlash=0.2,
+)
+found = {}
+for name, pair in (("both sides", both), ("one side", dataclasses.replace(both, one_sided=True))):
+    for x, v in ((0.3, 0.0), (0.0, 0.9), (-0.7, -0.4)):
+        image = dynamics.period_map(pair, (x, v), 2)
+        found[f"map, {name}, {x}"] = [*image.states.ravel(), *image.jacobian.ravel(), *image.counts.ravel()]
+    rates = dynamics.map_derivatives(pair, (0.3, 0.0))
+    found[f"first derivatives, {name}"] = rates.slope
+    found[f"second derivatives, {name}"] = rates.second
+    found[f"turns, {name}"] = dynamics.turning_points(pair, (0.3, 0.1))
+    orbit = dynamics.find_orbit(pair, (0.3, 0.0), 1)
+    found[f"orbit, {name}"] = [*orbit.state, *np.abs(orbit.multipliers)]
+branch = dynamics.continue_branch(dynamics.find_orbit(both, (0.3, 0.0)), "frequency", (0.6, 0.66))
+found["special points"] = [point.parameter for point in branch.points]
+found["basins"] = dynamics.basins(both, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=40).labels
+found["sweep"] = dynamics.sweep(both, "frequency", [0.6], transient=20, keep=8, max_period=4).states
+found["exponents"] = dynamics.lyapunov_exponents(both, periods=20, transient=20).exponents
+found["orbits"] = sorted(orbit.state[0] for orbit in dynamics.find_orbits(both, (1,), starts=4).orbits)
+print(json.dumps({name: np.ravel(values).astype(float).tolist() for name, values in found.items()}))
+"""
+FILM = """
+import json
+from ehl import LineContact, Lubricant, solve
+
+oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+film = solve(LineContact(load=2.2e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=oil))
+kept = {"film": [film.minimum_thickness, film.central_thickness, film.flow], "pressure": film.pressure.tolist()}
+print(json.dumps(kept))
+"""
+
+
+def run(code: str, *, interpreted: bool) -> dict[str, Any]:
+    switch = {"NUMBA_DISABLE_JIT": "1"} if interpreted else {}
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        env={**os.environ, **switch},
+        timeout=250,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(("code", "near"), [(MOTION, 1e-9), (FILM, 1e-9)], ids=["motion", "film"])
+def test_compiled_code_computes_what_is_written(code: str, near: float):
+    compiled, interpreted = run(code, interpreted=False), run(code, interpreted=True)
+    assert compiled.keys() == interpreted.keys()
+    for name, values in compiled.items():
+        assert interpreted[name] == pytest.approx(
+            values, rel=near, abs=near * max(map(abs, values), default=0.0)
+        ), name
