@@ -1,4 +1,4 @@
-"""The command line: run, verify, study, optimise, check and new."""
+"""The command line: run, verify, study, optimise, bench, check and new."""
 
 from __future__ import annotations
 
@@ -209,6 +209,46 @@ def optimise(
     files = write_optimum(found, out)
     for line in (*summary(found), ", ".join(str(path) for path in (out / "rows.csv", *files))):
         print(line)
+    return 0
+
+
+@app.command
+def bench(
+    *,
+    out: Annotated[Path, Parameter(help="Folder for the figures, tables and the report.")] = Path(
+        "bench-results"
+    ),
+    only: Annotated[
+        list[str] | None,
+        Parameter(
+            consume_multiple=True,
+            negative="",
+            help="Solvers: gears, mesh, compliance, contact, root-stress, film, motion.",
+        ),
+    ] = None,
+    quick: Annotated[bool, Parameter(negative="", help="Few and coarse levels, in half a minute.")] = False,
+    repeat: Annotated[int | None, Parameter(help="Timed runs of each level.")] = None,
+    against: Annotated[
+        str | None,
+        Parameter(
+            help="Interpreter of an environment with other programs: ross-rotordynamics, scipy, heyoka."
+        ),
+    ] = None,
+) -> int:
+    """Measure error against cost of every solver on this machine."""
+    _prepare()
+    from rich.console import Console
+
+    from flankfilm.bench.page import write_page
+    from flankfilm.bench.run import bench as measured
+    from flankfilm.bench.tables import terminal, write_tables
+    from flankfilm.progress import console_progress
+
+    with console_progress() as progress:
+        found = measured(out, only or (), quick=quick, repeat=repeat, against=against, progress=progress)
+    files = [*write_tables(found, out), *write_page(found, out)]
+    Console(width=None if sys.stdout.isatty() else 180).print(terminal(found))
+    print(f"{len(files)} files in {out} after {found.seconds:.0f} s; {files[-1].name} shows them all")
     return 0
 
 

@@ -1,0 +1,147 @@
+"""What is measured: a solver's work at several resolutions or tolerances, and its finest solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Answer", "Case", "Level", "PeerWork", "Series", "Value", "level", "true_error"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Value:
+    """One quantity that a solver computed.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,)
+        SI.
+    estimate : float or None
+        The solver's own estimate of their relative error; None where it gives none.
+    over_largest : bool
+        Errors are differences over the largest of all values (states, which pass through zero) instead of
+        each over its own.
+    """
+
+    values: Array
+    estimate: float | None = None
+    over_largest: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What one run gave.
+
+    Attributes
+    ----------
+    size : float
+        Resolution in the case's own measure: unknowns, nodes, positions.
+    values : mapping
+        Quantity to value.
+    failure : str
+        Why the solver itself does not believe the figures; empty where it does.
+    """
+
+    size: float
+    values: Mapping[str, Value]
+    failure: str = ""
+
+
+@dataclass(frozen=True)
+class Level:
+    """One resolution or tolerance.
+
+    Attributes
+    ----------
+    name : str
+        As a reader knows it: "0.1 %", "129 nodes".
+    work : callable
+        What is timed.
+    answer : callable
+        Takes what `work` returned; is not timed.
+    """
+
+    name: str
+    work: Callable[[], Any]
+    answer: Callable[[Any], Answer]
+
+
+@dataclass(frozen=True)
+class Series:
+    """Levels that belong together, from the coarsest to the finest."""
+
+    name: str
+    levels: tuple[Level, ...]
+
+
+@dataclass(frozen=True)
+class PeerWork:
+    """The same work for another program.
+
+    Attributes
+    ----------
+    script : str
+        File in ``peer_scripts``, without suffix.
+    given : mapping
+        What the script reads, as JSON.
+    quantity : str
+        Quantity of the case that its values are compared with.
+    """
+
+    script: str
+    given: Mapping[str, Any]
+    quantity: str
+
+
+@dataclass(frozen=True)
+class Case:
+    """Work of one solver.
+
+    Attributes
+    ----------
+    key : str
+        Names files; unique.
+    title : str
+        Names the work.
+    work : str
+        What is timed and what the errors are of, in a sentence or two.
+    size_name : str
+        What `Answer.size` counts.
+    series : tuple of Series
+        What is measured.
+    finest : Level
+        Run once; true errors are differences from it.
+    orders : mapping
+        Quantity to the order p of theory, error proportional to size^-p; absent where theory gives none.
+    peers : tuple of PeerWork
+        The same work by others.
+    """
+
+    key: str
+    title: str
+    work: str
+    size_name: str
+    series: tuple[Series, ...]
+    finest: Level
+    orders: Mapping[str, float] = field(default_factory=dict)
+    peers: tuple[PeerWork, ...] = ()
+
+
+def level(name: str, work: Callable[..., Any], answer: Callable[[Any], Answer], *args: Any) -> Level:
+    """Make a level whose work is a call with arguments."""
+    return Level(name, lambda: work(*args), answer)
+
+
+def true_error(found: Value, finest: Value) -> float:
+    """Return the largest relative difference from the finest values; NaN where they cannot be compared."""
+    if found.values.shape != finest.values.shape or found.values.size == 0:
+        return float("nan")
+    off = np.abs(found.values - finest.values)
+    scale = np.abs(finest.values)
+    return float(np.max(off / (np.max(scale) if finest.over_largest else scale)))

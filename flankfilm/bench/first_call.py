@@ -1,0 +1,100 @@
+"""First calls in a fresh process: imports and compilation, with kernels kept on disk and with none.
+
+Run as ``python -m flankfilm.bench.first_call SOLVER``; prints the seconds of both calls as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from math import nan
+from time import perf_counter
+
+__all__ = ["FirstCall", "first_call"]
+
+LONGEST = 300.0
+
+
+@dataclass(frozen=True)
+class FirstCall:
+    """Wall time of a solver's coarsest work of every case, in a process of its own.
+
+    Attributes
+    ----------
+    solver : str
+        Its name.
+    kept : float
+        First call [s], imports included, with compiled kernels on disk as any but the very first run has them.
+    nothing_kept : float
+        First call [s] when all kernels are compiled; NaN where that was not measured or nothing is compiled.
+    again : float
+        Second call [s].
+    failure : str
+        Why there are no figures; empty where there are.
+    """
+
+    solver: str
+    kept: float
+    nothing_kept: float
+    again: float
+    failure: str = ""
+
+
+def first_call(solver: str, compiles: bool) -> FirstCall:
+    """Measure the first calls of a solver.
+
+    Parameters
+    ----------
+    solver : str
+        Its name in the catalogue.
+    compiles : bool
+        Whether to measure a call with nothing kept as well; takes as long as the kernels compile.
+    """
+    kept = _in_fresh_process(solver, dict(os.environ))
+    if isinstance(kept, str):
+        return FirstCall(solver, nan, nan, nan, kept)
+    if not compiles:
+        return FirstCall(solver, kept[0], nan, kept[1])
+    with tempfile.TemporaryDirectory(prefix="flankfilm-") as empty:
+        bare = _in_fresh_process(solver, {**os.environ, "NUMBA_CACHE_DIR": empty})
+    if isinstance(bare, str):
+        return FirstCall(solver, kept[0], nan, kept[1], bare)
+    return FirstCall(solver, kept[0], bare[0], kept[1])
+
+
+def _in_fresh_process(solver: str, environment: dict[str, str]) -> tuple[float, float] | str:
+    command = [sys.executable, "-W", "ignore", "-m", "flankfilm.bench.first_call", solver]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=environment, timeout=LONGEST, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return f"took longer than {LONGEST:g} s"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+    first, again = json.loads(done.stdout.splitlines()[-1])
+    return float(first), float(again)
+
+
+def _main(solver: str) -> None:
+    """Print the seconds of both calls."""
+    began = perf_counter()
+    from flankfilm.bench.catalogue import SOLVERS
+
+    cases = SOLVERS[solver](True)
+    works = [series.levels[0].work for case in cases for series in case.series]
+    seconds = []
+    for _ in range(2):
+        for work in works:
+            work()
+        seconds.append(perf_counter() - began)
+        began = perf_counter()
+    print(json.dumps(seconds))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

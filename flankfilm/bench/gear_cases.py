@@ -1,0 +1,142 @@
+"""Cases of the closed forms and of the meshes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flankfilm.bench.case import Answer, Case, Series, Value, level
+
+if TYPE_CHECKING:
+    from gears import GearPair
+    from meshes import SectorMesh
+
+__all__ = ["FORMS", "TORQUE", "closed_forms", "example_pair", "independent_pairs", "meshes"]
+
+Array = NDArray[np.float64]
+
+TORQUE = 600.0
+FORMS = {
+    "ishikawa": "Ishikawa",
+    "potential_energy": "potential energy",
+    "weber_banaschek": "Weber-Banaschek",
+}
+
+
+def example_pair() -> GearPair:
+    """Pair 36/40, module 2 mm, face 40 mm, bores of half the root radii: the one of the examples."""
+    from gears import Gear, GearPair
+
+    return GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
+
+
+def independent_pairs(pair: GearPair, form: str, positions: int) -> Array:
+    """Mesh stiffness at midpoints of equal intervals of one base pitch, pairs added [N/m], (positions,)."""
+    from gears import closed_form
+
+    at = (np.arange(positions) + 0.5) / positions * pair.base_pitch
+    places = pair.points.A + at[:, None] + np.arange(np.ceil(pair.contact_ratio)) * pair.base_pitch
+    inside = places <= pair.points.E
+    path = pair.path_at(np.minimum(places, pair.points.E).ravel())
+    force = {"force": pair.normal_force(TORQUE)} if form == "weber_banaschek" else {}
+    single = np.asarray(getattr(closed_form, form)(pair, path, **force)).reshape(inside.shape)
+    summed: Array = np.where(inside, single, 0.0).sum(axis=1)
+    return summed
+
+
+def closed_forms(quick: bool) -> tuple[Case, ...]:
+    """Mean of each closed form's mesh stiffness by the number of positions."""
+    from flankfilm.mesh_stiffness import sampling_error
+
+    pair = example_pair()
+    counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384, 768)
+    many = 1536 if quick else 6144
+
+    def answer(stiffness: dict[str, Array]) -> Answer:
+        return Answer(
+            len(next(iter(stiffness.values()))),
+            {
+                f"mean, {FORMS[form]}": Value(np.array([curve.mean()]), sampling_error(curve))
+                for form, curve in stiffness.items()
+            },
+        )
+
+    def curves(forms: tuple[str, ...], positions: int) -> dict[str, Array]:
+        return {form: independent_pairs(pair, form, positions) for form in forms}
+
+    series = tuple(
+        Series(title, tuple(level(f"{n} positions", curves, answer, (form,), n) for n in counts))
+        for form, title in FORMS.items()
+    )
+    return (
+        Case(
+            "closed_forms",
+            "Closed forms",
+            "Pair 36/40: mesh stiffness of independent pairs at midpoints of equal intervals of one base pitch. "
+            "Errors of the mean from sampling alone, where a pair comes in and leaves; what the form itself leaves "
+            "out is not in them (see the finite elements below, and flankfilm verify).",
+            "positions",
+            series,
+            level(f"{many} positions", curves, answer, tuple(FORMS), many),
+            {f"mean, {title}": 1.0 for title in FORMS.values()},
+        ),
+    )
+
+
+def enclosed_area(mesh: SectorMesh) -> float:
+    r"""Area inside the boundary's quadratic edges, :math:`\oint (x\,dy - y\,dx)/2` [m^2].
+
+    Simpson's rule is exact: the integrand is a cubic of the edge's parameter.
+    """
+    edges = np.concatenate(list(mesh.facets.values()))
+    first, last, middle = (mesh.points[edges[:, i]] for i in range(3))
+
+    def cross(a: Array, b: Array) -> Array:
+        product: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        return product
+
+    # derivative of the quadratic through the three nodes at its ends and its middle
+    at_first = cross(first, 4.0 * middle - 3.0 * first - last)
+    at_last = cross(last, 3.0 * last + first - 4.0 * middle)
+    return float(np.sum(at_first + 4.0 * cross(middle, last - first) + at_last) / 12.0)
+
+
+def meshes(quick: bool) -> tuple[Case, ...]:
+    """How exactly meshes of one tooth keep its outline, by refinement."""
+    from meshes import Sizes, mesh_sector
+
+    profile = example_pair().teeth_profiles[0]
+    quantity = "area of the sector"
+
+    def answer(mesh: SectorMesh) -> Answer:
+        return Answer(mesh.unknowns, {quantity: Value(np.array([enclosed_area(mesh)]))})
+
+    def scaled(factor: float) -> SectorMesh:
+        return mesh_sector(profile, Sizes().scaled(factor))
+
+    factors = (2.0, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
+    refinements = (0, 1) if quick else (0, 1, 2)
+    finest = max(refinements) + 2
+    return (
+        Case(
+            "mesh",
+            "Mesh of one tooth",
+            "Pinion of the pair 36/40, one sector: gmsh fills the outline, mid-side nodes go onto the exact curves. "
+            "Errors of the area inside the curved edges; a mesh has no estimate of its own.",
+            "unknowns of the sector",
+            (
+                Series("edge lengths", tuple(level(f"edges x {f:g}", scaled, answer, f) for f in factors)),
+                Series(
+                    "refined",
+                    tuple(
+                        level(f"refined {n} times", mesh_sector, answer, profile, None, n)
+                        for n in refinements
+                    ),
+                ),
+            ),
+            level(f"refined {finest} times", mesh_sector, answer, profile, None, finest),
+            {quantity: 2.0},
+        ),
+    )

@@ -1,0 +1,172 @@
+"""The report of a measurement: one page with every figure and table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING
+
+from flankfilm.bench.measuring import CaseResult
+from flankfilm.bench.peers import PeerRow
+from flankfilm.bench.run import Bench
+from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries, summary_cells
+from flankfilm.dataset import write_text
+from flankfilm.figures import bench as figures
+from flankfilm.figures.style import save
+from flankfilm.report.page import Headline, Part, Table, drawing, render
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["write_page"]
+
+LEAD = (
+    "Processor time and relative error of every solver on this machine: true errors against the finest solution, "
+    "beside the solvers' own estimates."
+)
+
+
+def write_page(found: Bench, folder: Path) -> list[Path]:
+    """Write every figure as SVG, and ``report.html``; return the files."""
+    paths = []
+    drawn = {"overview": figures.overview(found.cases), "estimates": figures.estimates(found.cases)}
+    of_case = {case.key: figures.error_against_cost(case, _of(case, found.peers)) for case in found.cases}
+    for name, figure in (drawn | of_case).items():
+        paths.append(folder / f"{name}.svg")
+        save(figure, paths[-1])
+    parts = [
+        Part(
+            "overview",
+            "All solvers",
+            (
+                "The works differ; what can be compared is how fast errors fall. A tenth of the error costs the factor "
+                "in the table, from a straight line through the levels that none of the others beats. Estimate over "
+                "true error: above 1 the estimate was on the safe side; only levels whose true error is at least three "
+                "times the estimate of the finest solution count.",
+            ),
+            (
+                drawing(drawn["overview"], "overview", "True error over processor time, by solver."),
+                drawing(
+                    drawn["estimates"],
+                    "estimates",
+                    "Estimated over true errors: above the line, the safe side.",
+                ),
+            ),
+            (Table(HEADS, tuple(summary_cells(one) for one in summaries(found.cases))),),
+        ),
+        *(_case(case, of_case[case.key], _of(case, found.peers)) for case in found.cases),
+        _first_calls(found),
+        *([_peers(found.peers)] if found.peers else []),
+        _machine(found),
+    ]
+    paths.append(folder / "report.html")
+    write_text(paths[-1], render("Error against cost", LEAD, _headlines(found), parts))
+    return paths
+
+
+def _of(case: CaseResult, peers: Sequence[PeerRow]) -> list[PeerRow]:
+    return [peer for peer in peers if peer.case == case.key]
+
+
+def _headlines(found: Bench) -> list[Headline]:
+    ratios = [ratio for case in found.cases for ratio in known_ratios(case, case.rows)]
+    rows = [row for case in found.cases for row in case.rows]
+    failures = sum(bool(row.failure) for row in rows)
+    told = [
+        Headline("measured", f"{len(found.cases)} works", f"{len(rows)} rows in {found.seconds:.0f} s"),
+        Headline("machine", found.machine.processor, f"{found.machine.cores} cores"),
+    ]
+    if ratios:
+        safe = sum(ratio >= 1.0 for ratio in ratios)
+        note = f"median {median(ratios):.2g}, least {min(ratios):.2g}"
+        told.append(Headline("estimates at or above the error", f"{safe} of {len(ratios)}", note))
+    if failures:
+        told.append(Headline("levels without figures", str(failures), "reasons in the tables"))
+    return told
+
+
+def _case(case: CaseResult, figure: Figure, peers: Sequence[PeerRow]) -> Part:
+    finest = ", ".join(
+        f"{quantity}: {number(e) if math.isfinite(e) else 'unknown'}"
+        for quantity, e in case.finest_estimates.items()
+    )
+    against = f"True errors against {case.finest}; its own estimated error: {finest}."
+    heads = ("series", "level", case.size_name, "time", "median", "wall", "runs", "of", "true", "estimate")
+    cells = tuple(
+        (
+            row.series,
+            row.level,
+            f"{row.size:.5g}" if math.isfinite(row.size) else "",
+            clock(row.cpu),
+            clock(row.median),
+            clock(row.wall),
+            str(row.repeats),
+            row.failure or row.quantity,
+            number(row.error),
+            number(row.estimate),
+        )
+        for row in case.rows
+    )
+    caption = "Filled: true error. Open: the solver's own estimate."
+    if peers:
+        caption += " Black: other programs."
+    return Part(
+        case.key,
+        case.title,
+        (case.work, against),
+        (drawing(figure, case.key, caption),),
+        (Table(heads, cells),),
+    )
+
+
+def _first_calls(found: Bench) -> Part:
+    text = (
+        "Wall time of the coarsest work of all cases of a solver in a process of its own, imports included. The first "
+        "call of all compiles the kernels and keeps them on disk; no time above holds any of this."
+    )
+    if found.quick:
+        text += " A quick run does not compile from nothing."
+    cells = tuple(
+        (
+            call.solver,
+            clock(call.again),
+            clock(call.kept),
+            clock(call.kept - call.again),
+            clock(call.nothing_kept),
+            clock(call.nothing_kept - call.kept),
+            call.failure,
+        )
+        for call in found.first_calls
+    )
+    heads = ("solver", "again", "first call", "imports", "nothing kept", "compilation", "remark")
+    return Part("first-calls", "First calls and compilation", (text,), tables=(Table(heads, cells),))
+
+
+def _peers(peers: Sequence[PeerRow]) -> Part:
+    text = (
+        "The same work by other programs in an environment of their own; their processor time without imports and "
+        "first calls."
+    )
+    cells = tuple(
+        (
+            f"{peer.peer} {peer.version}".strip(),
+            peer.level,
+            peer.case,
+            clock(peer.cpu),
+            clock(peer.first),
+            number(peer.error),
+            peer.failure or peer.note,
+        )
+        for peer in peers
+    )
+    heads = ("program", "setting", "work", "time", "first call", "true error", "remark")
+    return Part("peers", "Other programs", (text,), tables=(Table(heads, cells),))
+
+
+def _machine(found: Bench) -> Part:
+    ended = f"{found.load_after:.1f} processes" if math.isfinite(found.load_after) else "unknown"
+    cells = (*found.machine.described(), ("load when it ended", ended))
+    text = f"Least of {found.repeat} or more runs of each level; {'quick' if found.quick else 'complete'}."
+    return Part("machine", "Machine and versions", (text,), tables=(Table(("", ""), cells),))

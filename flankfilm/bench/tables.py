@@ -1,0 +1,201 @@
+"""A measurement as tables: for the terminal, as CSV, and as one JSON file that can be read back."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from flankfilm.bench.first_call import FirstCall
+from flankfilm.bench.machine import Machine
+from flankfilm.bench.measuring import CaseResult, Row, gain
+from flankfilm.bench.peers import PeerRow
+from flankfilm.bench.run import Bench
+from flankfilm.dataset import write_csv, write_text
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+__all__ = [
+    "Summary",
+    "clock",
+    "number",
+    "read_bench",
+    "summaries",
+    "summary_cells",
+    "terminal",
+    "write_tables",
+]
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One quantity along one series.
+
+    Attributes
+    ----------
+    solver, title, series, quantity : str
+        What it is of.
+    errors, seconds : (float, float)
+        True error and processor time of the coarsest and of the finest level.
+    gain : float
+        Factor of processor time for a tenth of the error; NaN where too few levels tell.
+    ratios : (float, float)
+        Least and greatest estimated over true error; NaN where there is no estimate.
+    failures : int
+        Levels without figures.
+    """
+
+    solver: str
+    title: str
+    series: str
+    quantity: str
+    errors: tuple[float, float]
+    seconds: tuple[float, float]
+    gain: float
+    ratios: tuple[float, float]
+    failures: int
+
+
+def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
+    """Sum up every quantity along every series.
+
+    Ratios are of levels whose true error the finest solution can tell: where it is at least three times what
+    that one is itself estimated to be off by.
+    """
+    for case in cases:
+        for series in dict.fromkeys(row.series for row in case.rows):
+            rows = [row for row in case.rows if row.series == series]
+            failures = sum(not row.quantity for row in rows)
+            for quantity in dict.fromkeys(row.quantity for row in rows if row.quantity):
+                one = tuple(row for row in rows if row.quantity == quantity)
+                ratios = list(known_ratios(case, one))
+                yield Summary(
+                    case.solver,
+                    case.title,
+                    series,
+                    quantity,
+                    (one[0].error, one[-1].error),
+                    (one[0].cpu, one[-1].cpu),
+                    gain(one),
+                    (min(ratios, default=math.nan), max(ratios, default=math.nan)),
+                    failures,
+                )
+
+
+def known_ratios(case: CaseResult, rows: Sequence[Row]) -> Iterator[float]:
+    """Estimated over true errors, where the finest solution can tell the latter."""
+    for row in rows:
+        floor = case.finest_estimates.get(row.quantity, math.nan)
+        floor = 3.0 * floor if math.isfinite(floor) else 0.0
+        if row.error > floor and math.isfinite(row.estimate):
+            yield row.estimate / row.error
+
+
+HEADS = ("work", "by", "error of", "true error", "time", "a tenth costs", "estimate / true")
+
+
+def summary_cells(one: Summary) -> tuple[str, ...]:
+    """Text of a summary under `HEADS`."""
+    alone = one.errors[0] == one.errors[1] and one.seconds[0] == one.seconds[1]
+    low, high = one.ratios
+    ratios = "" if math.isnan(low) else f"{low:.2g} to {high:.2g}" if low != high else f"{low:.2g}"
+    return (
+        one.title,
+        one.series,
+        one.quantity,
+        number(one.errors[0]) if alone else f"{number(one.errors[0])} to {number(one.errors[1])}",
+        clock(one.seconds[0]) if alone else f"{clock(one.seconds[0])} to {clock(one.seconds[1])}",
+        "" if math.isnan(one.gain) else f"x {one.gain:.2g}",
+        ratios,
+    )
+
+
+def number(value: float) -> str:
+    """Error in two digits; a dash where there is none."""
+    return f"{value:.1e}" if math.isfinite(value) else "-"
+
+
+def clock(seconds: float) -> str:
+    """Time in the unit that suits it."""
+    if not math.isfinite(seconds):
+        return "-"
+    for factor, unit in ((1e6, "us"), (1e3, "ms")):
+        if factor * seconds < 1000.0:
+            return f"{factor * seconds:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def terminal(found: Bench) -> Table:
+    """Tabulate the summaries for the terminal."""
+    from rich import box
+    from rich.table import Table
+
+    title = f"processor time on {found.machine.processor}, least of {found.repeat} or more"
+    shown = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for place, head in enumerate(HEADS):
+        shown.add_column(head, justify="left" if place < 3 else "right", no_wrap=place >= 3)
+    for one in summaries(found.cases):
+        shown.add_row(*summary_cells(one))
+    return shown
+
+
+def write_tables(found: Bench, folder: Path) -> list[Path]:
+    """Write ``bench.json`` with everything, and CSV files of rows, first calls and peers."""
+    rows = [row for case in found.cases for row in case.rows]
+    tables: dict[str, tuple[type, Sequence[Any]]] = {
+        "error_against_cost": (Row, rows),
+        "first_calls": (FirstCall, found.first_calls),
+    }
+    if found.peers:
+        tables["peers"] = (PeerRow, found.peers)
+    paths = [folder / "bench.json"]
+    write_text(paths[0], json.dumps(_without_nan(asdict(found)), indent=1, allow_nan=False) + "\n")
+    for name, (kind, records) in tables.items():
+        paths.append(folder / f"{name}.csv")
+        columns = {_with_unit(f.name): [getattr(r, f.name) for r in records] for f in fields(kind)}
+        write_csv(paths[-1], columns)
+    return paths
+
+
+def _with_unit(name: str) -> str:
+    timed = ("cpu", "wall", "median", "first", "kept", "nothing_kept", "again")
+    return f"{name}_s" if name in timed else name
+
+
+def read_bench(path: Path) -> Bench:
+    """Read a ``bench.json`` back."""
+    told = json.loads(path.read_text(encoding="utf-8"))
+    cases = [{**case, "rows": tuple(_record(Row, row) for row in case["rows"])} for case in told.pop("cases")]
+    for case in cases:
+        case["finest_estimates"] = {q: _float(e) for q, e in case["finest_estimates"].items()}
+    return Bench(
+        machine=_record(Machine, told.pop("machine")),
+        cases=tuple(CaseResult(**case) for case in cases),
+        first_calls=tuple(_record(FirstCall, call) for call in told.pop("first_calls")),
+        peers=tuple(_record(PeerRow, peer) for peer in told.pop("peers")),
+        load_after=_float(told.pop("load_after")),
+        **told,
+    )
+
+
+def _record(kind: type[T], told: dict[str, Any]) -> T:
+    return kind(**{name: _float(value) if value is None else value for name, value in told.items()})
+
+
+def _float(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _without_nan(value: Any) -> Any:
+    """The same with None for NaN, which JSON does not have."""
+    if isinstance(value, dict):
+        return {key: _without_nan(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,198 @@
+"""Error against cost: true errors and estimates of every case, and of all solvers together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flankfilm.figures.style import COLOURS, figure, styled
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from flankfilm.bench.measuring import CaseResult, Row
+    from flankfilm.bench.peers import PeerRow
+
+__all__ = ["error_against_cost", "estimates", "overview"]
+
+LEAST = 1e-16
+"""Errors below the rounding of one number are drawn here."""
+
+MARKS = "osD^vP*"
+PEER_MARKS = "xX1+"
+
+
+def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figure:
+    """Draw a case: a row of panels for each quantity, over processor time and over resolution.
+
+    Filled marks are true errors, open ones the solver's own estimates. The grey dotted line is what the finest
+    solution itself is estimated to be off by: true errors near it or below are not known better.
+    """
+    groups = _groups(case.rows)
+    with styled():
+        drawn = figure(7.4, 0.9 + 2.6 * len(groups))
+        panels = drawn.subplots(len(groups), 2, squeeze=False, sharey="row")
+        for (over_time, over_size), quantities in zip(panels, groups, strict=True):
+            rows = [r for r in case.rows if r.quantity in quantities and not r.failure]
+            for place, name in enumerate(dict.fromkeys(r.series for r in case.rows if r.quantity)):
+                one = [r for r in rows if r.series == name]
+                _series(over_time, [r.cpu for r in one], one, place, name)
+                _series(over_size, [r.size for r in one], one, place)
+            _peers(over_time, [p for p in peers if p.quantity in quantities and not p.failure])
+            _slope(over_size, rows, case.orders)
+            known = [e for q, e in case.finest_estimates.items() if q in quantities and e > 0]
+            for axes in (over_time, over_size):
+                if known:
+                    axes.axhline(max(known), color="#888888", linewidth=1.0, linestyle=":")
+                axes.set(xscale="log", yscale="log")
+            what = quantities[0] if len(quantities) == 1 else "each mean"
+            over_time.set(xlabel="processor time [s]", ylabel=f"relative error\n{what}")
+            over_size.set(xlabel=case.size_name)
+            _widen(over_time)
+            _widen(over_size)
+        _legend(drawn, panels[:, 0], bool(case.orders))
+    return drawn
+
+
+def _groups(rows: Sequence[Row]) -> list[tuple[str, ...]]:
+    """Quantities that share a row of panels: all where each series has one of its own, else each alone."""
+    of_series: dict[str, set[str]] = {}
+    for row in rows:
+        if row.quantity:
+            of_series.setdefault(row.series, set()).add(row.quantity)
+    quantities = tuple(dict.fromkeys(r.quantity for r in rows if r.quantity))
+    alone = all(len(q) == 1 for q in of_series.values()) and len(quantities) == len(of_series)
+    return [quantities] if alone and quantities else [(q,) for q in quantities] or [("",)]
+
+
+def _series(axes: Axes, at: Sequence[float], rows: Sequence[Row], place: int, label: str = "") -> None:
+    colour, mark = COLOURS[place % len(COLOURS)], MARKS[place % len(MARKS)]
+    error = [max(r.error, LEAST) for r in rows]
+    axes.plot(at, error, "-", marker=mark, color=colour, markersize=5, label=label or None)
+    guess = [max(r.estimate, LEAST) if r.estimate > 0 else math.nan for r in rows]
+    if np.isfinite(guess).any():
+        axes.plot(at, guess, "--", marker=mark, color=colour, markersize=5, markerfacecolor="white")
+
+
+def _peers(axes: Axes, peers: Sequence[PeerRow]) -> None:
+    for place, name in enumerate(dict.fromkeys(p.peer for p in peers)):
+        one = [p for p in peers if p.peer == name]
+        at, error = [p.cpu for p in one], [max(p.error, LEAST) for p in one]
+        mark = PEER_MARKS[place % len(PEER_MARKS)]
+        label = f"{name} {one[0].version}"
+        axes.plot(at, error, "-.", marker=mark, color="black", linewidth=1.0, markersize=6, label=label)
+
+
+def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
+    """Draw theory's order below the true errors, over the sizes of the first series that has one."""
+    rated = [r for r in rows if r.quantity in orders and math.isfinite(r.size) and r.error > 0]
+    one = [r for r in rated if r.series == rated[0].series]
+    if len(one) < 2:
+        return
+    order = orders[one[0].quantity]
+    size = np.array([min(r.size for r in one), max(r.size for r in one)])
+    low = min(r.error * r.size**order for r in one)
+    axes.plot(size, 0.4 * low * size**-order, color="#888888", linewidth=1.0)
+    axes.annotate(
+        f"order {order:g}",
+        (size[0], 0.4 * low * size[0] ** -order),
+        xytext=(2, -3),
+        textcoords="offset points",
+        va="top",
+        color="#555555",
+        fontsize=8,
+    )
+
+
+def _widen(axes: Axes) -> None:
+    """Give an axis that spans less than a decade room, so that its ticks carry numbers."""
+    low, high = axes.get_xlim()
+    if high < 12.0 * low:
+        middle = math.sqrt(low * high)
+        axes.set_xlim(middle / math.sqrt(12.0), middle * math.sqrt(12.0))
+
+
+def _legend(drawn: Figure, panels: Iterable[Axes], sloped: bool) -> None:
+    from matplotlib.lines import Line2D
+
+    entries: dict[str, Artist] = {}
+    for over_time in panels:
+        entries |= {
+            label: handle for handle, label in zip(*over_time.get_legend_handles_labels(), strict=True)
+        }
+    entries["true error"] = Line2D([], [], color="#444444", marker="o", markersize=5)
+    entries["own estimate"] = Line2D(
+        [], [], color="#444444", linestyle="--", marker="o", markersize=5, markerfacecolor="white"
+    )
+    entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
+    if sloped:
+        entries["theory's order"] = Line2D([], [], color="#888888", linewidth=1.0)
+    drawn.legend(list(entries.values()), list(entries), loc="outside upper left", ncols=3, handlelength=2.6)
+
+
+def estimates(cases: Sequence[CaseResult]) -> Figure:
+    """Draw estimated over true errors of all cases; above the diagonal an estimate is on the safe side."""
+    with styled():
+        drawn = figure(6.2, 5.0)
+        axes = drawn.subplots()
+        values = []
+        for place, solver in enumerate(dict.fromkeys(c.solver for c in cases)):
+            rows = [r for c in cases if c.solver == solver for r in c.rows if r.estimate > 0]
+            error, guess = ([max(getattr(r, name), LEAST) for r in rows] for name in ("error", "estimate"))
+            values += error + guess
+            axes.plot(
+                error,
+                guess,
+                MARKS[place % len(MARKS)],
+                color=COLOURS[place % len(COLOURS)],
+                markersize=5,
+                label=solver if rows else None,
+            )
+        span = [0.5 * min(values, default=1e-6), 2.0 * max(values, default=1.0)]
+        for factor, line in ((1.0, "-"), (10.0, ":")):
+            axes.plot(span, [factor * s for s in span], line, color="#888888", linewidth=1.0)
+        axes.annotate("estimate = error", (span[1], span[1]), xytext=(-4, -12), **_NOTE)
+        axes.annotate("ten times", (span[1] / 10, span[1]), xytext=(-30, -4), **_NOTE)
+        axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
+        axes.set(xlabel="true relative error", ylabel="estimated relative error")
+        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    return drawn
+
+
+_NOTE: dict[str, Any] = {
+    "textcoords": "offset points",
+    "ha": "right",
+    "va": "top",
+    "fontsize": 8,
+    "color": "#555555",
+}
+
+
+def overview(cases: Sequence[CaseResult]) -> Figure:
+    """Draw true error over processor time, one line for the first series and quantity of each case."""
+    with styled():
+        drawn = figure(7.4, 5.2)
+        axes = drawn.subplots()
+        solvers = list(dict.fromkeys(c.solver for c in cases))
+        for solver in solvers:
+            place = solvers.index(solver)
+            for number, case in enumerate(c for c in cases if c.solver == solver):
+                rows = [r for r in case.rows if not r.failure]
+                rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
+                axes.plot(
+                    [r.cpu for r in rows],
+                    [max(r.error, LEAST) for r in rows],
+                    "-",
+                    marker=MARKS[place % len(MARKS)],
+                    color=COLOURS[place % len(COLOURS)],
+                    markersize=4,
+                    label=solver if number == 0 else None,
+                )
+        axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error")
+        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    return drawn
