@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
 from flankfilm.bench.measuring import CaseResult
 from flankfilm.bench.peers import PeerRow
@@ -14,11 +13,8 @@ from flankfilm.bench.run import Bench
 from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries, summary_cells
 from flankfilm.dataset import write_text
 from flankfilm.figures import bench as figures
-from flankfilm.figures.style import save
-from flankfilm.report.page import Headline, Part, Table, drawing, render
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from flankfilm.figures.style import to_svg
+from flankfilm.report.page import Drawing, Headline, Part, Table, render
 
 __all__ = ["write_page"]
 
@@ -33,9 +29,10 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
     paths = []
     drawn = {"overview": figures.overview(found.cases), "estimates": figures.estimates(found.cases)}
     of_case = {case.key: figures.error_against_cost(case, _of(case, found.peers)) for case in found.cases}
-    for name, figure in (drawn | of_case).items():
+    svg = {name: to_svg(figure, name) for name, figure in (drawn | of_case).items()}
+    for name, text in svg.items():
         paths.append(folder / f"{name}.svg")
-        save(figure, paths[-1])
+        write_text(paths[-1], text)
     parts = [
         Part(
             "overview",
@@ -47,16 +44,15 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
                 "times the estimate of the finest solution count.",
             ),
             (
-                drawing(drawn["overview"], "overview", "True error over processor time, by solver."),
-                drawing(
-                    drawn["estimates"],
-                    "estimates",
+                Drawing(svg["overview"], "True error over processor time, by solver."),
+                Drawing(
+                    svg["estimates"],
                     "Estimated over true errors: above the line, the safe side.",
                 ),
             ),
             (Table(HEADS, tuple(summary_cells(one) for one in summaries(found.cases))),),
         ),
-        *(_case(case, of_case[case.key], _of(case, found.peers)) for case in found.cases),
+        *(_case(case, svg[case.key], _of(case, found.peers)) for case in found.cases),
         _first_calls(found),
         *([_peers(found.peers)] if found.peers else []),
         _machine(found),
@@ -87,7 +83,7 @@ def _headlines(found: Bench) -> list[Headline]:
     return told
 
 
-def _case(case: CaseResult, figure: Figure, peers: Sequence[PeerRow]) -> Part:
+def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:
     finest = ", ".join(
         f"{quantity}: {number(e) if math.isfinite(e) else 'unknown'}"
         for quantity, e in case.finest_estimates.items()
@@ -116,7 +112,7 @@ def _case(case: CaseResult, figure: Figure, peers: Sequence[PeerRow]) -> Part:
         case.key,
         case.title,
         (case.work, against),
-        (drawing(figure, case.key, caption),),
+        (Drawing(svg, caption),),
         (Table(heads, cells),),
     )
 

@@ -32,6 +32,9 @@ __all__ = [
 
 T = TypeVar("T")
 
+ROUNDING = 1e-14
+"""True errors below this are rounding, which no estimate is about."""
+
 
 @dataclass(frozen=True)
 class Summary:
@@ -92,7 +95,7 @@ def known_ratios(case: CaseResult, rows: Sequence[Row]) -> Iterator[float]:
     """Estimated over true errors, where the finest solution can tell the latter."""
     for row in rows:
         floor = case.finest_estimates.get(row.quantity, math.nan)
-        floor = 3.0 * floor if math.isfinite(floor) else 0.0
+        floor = max(3.0 * floor, ROUNDING) if math.isfinite(floor) else ROUNDING
         if row.error > floor and math.isfinite(row.estimate):
             yield row.estimate / row.error
 
@@ -125,7 +128,7 @@ def clock(seconds: float) -> str:
     """Time in the unit that suits it."""
     if not math.isfinite(seconds):
         return "-"
-    for factor, unit in ((1e6, "us"), (1e3, "ms")):
+    for factor, unit in ((1e6, "µs"), (1e3, "ms")):
         if factor * seconds < 1000.0:
             return f"{factor * seconds:.3g} {unit}"
     return f"{seconds:.3g} s"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -53,8 +53,8 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
             what = quantities[0] if len(quantities) == 1 else "each mean"
             over_time.set(xlabel="processor time [s]", ylabel=f"relative error\n{what}")
             over_size.set(xlabel=case.size_name)
-            _widen(over_time)
-            _widen(over_size)
+            _ticks(over_time)
+            _ticks(over_size)
         _legend(drawn, panels[:, 0], bool(case.orders))
     return drawn
 
@@ -96,11 +96,12 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
         return
     order = orders[one[0].quantity]
     size = np.array([min(r.size for r in one), max(r.size for r in one)])
-    low = min(r.error * r.size**order for r in one)
-    axes.plot(size, 0.4 * low * size**-order, color="#888888", linewidth=1.0)
+    coarsest = min(one, key=lambda r: r.size)
+    line = 0.4 * coarsest.error * (size / coarsest.size) ** -order
+    axes.plot(size, line, color="#888888", linewidth=1.0)
     axes.annotate(
         f"order {order:g}",
-        (size[0], 0.4 * low * size[0] ** -order),
+        (size[0], line[0]),
         xytext=(2, -3),
         textcoords="offset points",
         va="top",
@@ -109,12 +110,21 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
     )
 
 
-def _widen(axes: Axes) -> None:
-    """Give an axis that spans less than a decade room, so that its ticks carry numbers."""
+def _ticks(axes: Axes) -> None:
+    """Give an axis of less than two decades room, and ticks at 1, 2 and 5 that carry plain numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
     low, high = axes.get_xlim()
+    if high > 100.0 * low:
+        return
     if high < 12.0 * low:
-        middle = math.sqrt(low * high)
-        axes.set_xlim(middle / math.sqrt(12.0), middle * math.sqrt(12.0))
+        middle, half = math.sqrt(low * high), math.sqrt(12.0)
+        axes.set_xlim(middle / half, middle * half)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(
+        FuncFormatter(lambda value, place: f"{value:.3g}" if value < 1000 else f"{value:.0f}")
+    )
 
 
 def _legend(drawn: Figure, panels: Iterable[Axes], sloped: bool) -> None:
@@ -132,7 +142,10 @@ def _legend(drawn: Figure, panels: Iterable[Axes], sloped: bool) -> None:
     entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
     if sloped:
         entries["theory's order"] = Line2D([], [], color="#888888", linewidth=1.0)
-    drawn.legend(list(entries.values()), list(entries), loc="outside upper left", ncols=3, handlelength=2.6)
+    columns = 2 if max(map(len, entries)) > 28 else 3
+    drawn.legend(
+        list(entries.values()), list(entries), loc="outside upper left", ncols=columns, handlelength=2.6
+    )
 
 
 def estimates(cases: Sequence[CaseResult]) -> Figure:
@@ -154,23 +167,12 @@ def estimates(cases: Sequence[CaseResult]) -> Figure:
                 label=solver if rows else None,
             )
         span = [0.5 * min(values, default=1e-6), 2.0 * max(values, default=1.0)]
-        for factor, line in ((1.0, "-"), (10.0, ":")):
-            axes.plot(span, [factor * s for s in span], line, color="#888888", linewidth=1.0)
-        axes.annotate("estimate = error", (span[1], span[1]), xytext=(-4, -12), **_NOTE)
-        axes.annotate("ten times", (span[1] / 10, span[1]), xytext=(-30, -4), **_NOTE)
+        for factor, line, name in ((1.0, "-", "estimate = error"), (10.0, ":", "ten times the error")):
+            axes.plot(span, [factor * v for v in span], line, color="#888888", linewidth=1.0, label=name)
         axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
         axes.set(xlabel="true relative error", ylabel="estimated relative error")
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
     return drawn
-
-
-_NOTE: dict[str, Any] = {
-    "textcoords": "offset points",
-    "ha": "right",
-    "va": "top",
-    "fontsize": 8,
-    "color": "#555555",
-}
 
 
 def overview(cases: Sequence[CaseResult]) -> Figure:
