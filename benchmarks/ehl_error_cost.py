@@ -1,8 +1,7 @@
-"""Error against cost of the line-contact solver, compilation apart.
+"""Cost of the line-contact solver by the film that it starts from, compilation apart.
 
 Run with ``OPENBLAS_NUM_THREADS=1 python benchmarks/ehl_error_cost.py`` (at these sizes threads cost more than they
-give); takes about 15 s. Errors are against the
-same contact on 1025 nodes, estimates are the solver's own.
+give). Error against cost by nodes and by tolerance: ``flankfilm bench --only film``.
 """
 
 from __future__ import annotations
@@ -17,12 +16,6 @@ from ehl import DEFINITIONS, EhlWarning, Film, LineContact, Lubricant, solve, so
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
-CASES = {
-    "M2 L1": LineContact.from_moes(2.0, 1.0),
-    "M20 L10": LineContact.from_moes(20.0, 10.0),
-    "M100 L10": LineContact.from_moes(100.0, 10.0),
-    "gear pitch point": PITCH,
-}
 
 
 def timed(task, repeats: int = 9) -> tuple[float, Film]:
@@ -32,24 +25,6 @@ def timed(task, repeats: int = 9) -> tuple[float, Film]:
         result = task()
         times.append(time.perf_counter() - start)
     return 1e3 * min(times), result  # the least: other work on the machine only adds
-
-
-def by_nodes() -> None:
-    print("cold, by number of nodes (the time includes the coarse grid of the estimate and the stiffnesses)")
-    print(
-        f"{'contact':18}{'nodes':>6}{'ms':>8}{'steps':>6}  {'h_cen':>8} {'h_min':>8} {'estimate':>9}  {'k_appr':>8}"
-    )
-    for name, contact in CASES.items():
-        best = solve(contact, nodes=1025)
-        for nodes in (33, 65, 129, 257, 513):
-            ms, film = timed(lambda c=contact, n=nodes: solve(c, nodes=n), repeats=9 if nodes < 300 else 3)
-            central = abs(film.central_thickness / best.central_thickness - 1)
-            minimum = abs(film.minimum_thickness / best.minimum_thickness - 1)
-            stiffness = abs(film.stiffness() / best.stiffness() - 1)
-            print(
-                f"{name:18}{nodes:6}{ms:8.1f}{film.cost.iterations:6}  {central:8.1e} {minimum:8.1e}"
-                f" {film.error:9.1e}  {stiffness:8.1e}"
-            )
 
 
 def by_start() -> None:
@@ -95,7 +70,6 @@ def main() -> None:
     start = time.perf_counter()
     solve(PITCH)
     print(f"first solution, with the kernels loaded or compiled: {time.perf_counter() - start:.2f} s\n")
-    by_nodes()
     by_start()
     stiffnesses()
 

@@ -1,6 +1,6 @@
 """First calls in a fresh process: imports and compilation, with kernels kept on disk and with none.
 
-Run as ``python -m flankfilm.bench.first_call SOLVER``; prints the seconds of both calls as JSON.
+Run as ``python -m flankfilm.bench.first_call SOLVER``; prints the processor time of both calls as JSON.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from math import nan
-from time import perf_counter
+from time import process_time
 
 __all__ = ["FirstCall", "first_call"]
 
@@ -21,14 +21,14 @@ LONGEST = 300.0
 
 @dataclass(frozen=True)
 class FirstCall:
-    """Wall time of a solver's coarsest work of every case, in a process of its own.
+    """Processor time of a solver's coarsest work of every case, in a process of its own.
 
     Attributes
     ----------
     solver : str
         Its name.
     kept : float
-        First call [s], imports included, with compiled kernels on disk as any but the very first run has them.
+        First call [s], start of Python and imports included, with compiled kernels on disk as any but the very first run has them.
     nothing_kept : float
         First call [s] when all kernels are compiled; NaN where that was not measured or nothing is compiled.
     again : float
@@ -81,18 +81,17 @@ def _in_fresh_process(solver: str, environment: dict[str, str]) -> tuple[float, 
 
 
 def _main(solver: str) -> None:
-    """Print the seconds of both calls."""
-    began = perf_counter()
+    """Print the processor time of both calls, the first from the start of the process."""
     from flankfilm.bench.catalogue import SOLVERS
 
     cases = SOLVERS[solver](True)
     works = [series.levels[0].work for case in cases for series in case.series]
-    seconds = []
+    seconds, began = [], 0.0
     for _ in range(2):
         for work in works:
             work()
-        seconds.append(perf_counter() - began)
-        began = perf_counter()
+        seconds.append(process_time() - began)
+        began = process_time()
     print(json.dumps(seconds))
 
 

@@ -50,7 +50,7 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
                     "Estimated over true errors: above the line, the safe side.",
                 ),
             ),
-            (Table(HEADS, tuple(summary_cells(one) for one in summaries(found.cases))),),
+            (_summary(found),),
         ),
         *(_case(case, svg[case.key], _of(case, found.peers)) for case in found.cases),
         _first_calls(found),
@@ -60,6 +60,20 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
     paths.append(folder / "report.html")
     write_text(paths[-1], render("Error against cost", LEAD, _headlines(found), parts))
     return paths
+
+
+def _whole(text: str) -> str:
+    """Text of one number and unit that is not broken between lines."""
+    return text.replace("-", "\u2011").replace(" ", "\u00a0")
+
+
+def _summary(found: Bench) -> Table:
+    rows = []
+    for one in summaries(found.cases):
+        *words, error, time, gain, ratio = summary_cells(one)
+        spans = (" to ".join(_whole(end) for end in text.split(" to ")) for text in (error, time))
+        rows.append((*words, *spans, _whole(gain), _whole(ratio)))
+    return Table(HEADS, tuple(rows))
 
 
 def _of(case: CaseResult, peers: Sequence[PeerRow]) -> list[PeerRow]:
@@ -95,13 +109,13 @@ def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:
             row.series,
             row.level,
             f"{row.size:.5g}" if math.isfinite(row.size) else "",
-            clock(row.cpu),
-            clock(row.median),
-            clock(row.wall),
+            _whole(clock(row.cpu)),
+            _whole(clock(row.median)),
+            _whole(clock(row.wall)),
             str(row.repeats),
             row.failure or row.quantity,
-            number(row.error),
-            number(row.estimate),
+            _whole(number(row.error)),
+            _whole(number(row.estimate)),
         )
         for row in case.rows
     )
@@ -119,7 +133,7 @@ def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:
 
 def _first_calls(found: Bench) -> Part:
     text = (
-        "Wall time of the coarsest work of all cases of a solver in a process of its own, imports included. The first "
+        "Processor time of the coarsest work of all cases of a solver in a process of its own, imports included. The first "
         "call of all compiles the kernels and keeps them on disk; no time above holds any of this."
     )
     if found.quick:
@@ -127,11 +141,11 @@ def _first_calls(found: Bench) -> Part:
     cells = tuple(
         (
             call.solver,
-            clock(call.again),
-            clock(call.kept),
-            clock(call.kept - call.again),
-            clock(call.nothing_kept),
-            clock(call.nothing_kept - call.kept),
+            _whole(clock(call.again)),
+            _whole(clock(call.kept)),
+            _whole(clock(call.kept - call.again)),
+            _whole(clock(call.nothing_kept)),
+            _whole(clock(call.nothing_kept - call.kept)),
             call.failure,
         )
         for call in found.first_calls
@@ -150,9 +164,9 @@ def _peers(peers: Sequence[PeerRow]) -> Part:
             f"{peer.peer} {peer.version}".strip(),
             peer.level,
             peer.case,
-            clock(peer.cpu),
-            clock(peer.first),
-            number(peer.error),
+            _whole(clock(peer.cpu)),
+            _whole(clock(peer.first)),
+            _whole(number(peer.error)),
             peer.failure or peer.note,
         )
         for peer in peers

@@ -55,7 +55,7 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
             over_size.set(xlabel=case.size_name)
             _ticks(over_time)
             _ticks(over_size)
-        _legend(drawn, panels[:, 0], bool(case.orders))
+        _legend(drawn, panels[:, 0], [case.orders[q] for group in groups for q in group if q in case.orders])
     return drawn
 
 
@@ -99,15 +99,6 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
     coarsest = min(one, key=lambda r: r.size)
     line = 0.4 * coarsest.error * (size / coarsest.size) ** -order
     axes.plot(size, line, color="#888888", linewidth=1.0)
-    axes.annotate(
-        f"order {order:g}",
-        (size[0], line[0]),
-        xytext=(2, -3),
-        textcoords="offset points",
-        va="top",
-        color="#555555",
-        fontsize=8,
-    )
 
 
 def _ticks(axes: Axes) -> None:
@@ -127,7 +118,7 @@ def _ticks(axes: Axes) -> None:
     )
 
 
-def _legend(drawn: Figure, panels: Iterable[Axes], sloped: bool) -> None:
+def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> None:
     from matplotlib.lines import Line2D
 
     entries: dict[str, Artist] = {}
@@ -140,8 +131,9 @@ def _legend(drawn: Figure, panels: Iterable[Axes], sloped: bool) -> None:
         [], [], color="#444444", linestyle="--", marker="o", markersize=5, markerfacecolor="white"
     )
     entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
-    if sloped:
-        entries["theory's order"] = Line2D([], [], color="#888888", linewidth=1.0)
+    if orders:
+        told = ", ".join(f"{order:g}" for order in dict.fromkeys(orders))
+        entries[f"theory, order {told}"] = Line2D([], [], color="#888888", linewidth=1.0)
     columns = 2 if max(map(len, entries)) > 28 else 3
     drawn.legend(
         list(entries.values()), list(entries), loc="outside upper left", ncols=columns, handlelength=2.6

@@ -1,0 +1,34 @@
+"""Draws the pictures of docs/validation/error_against_cost.md: python docs/bench_pictures.py FOLDER.
+
+FOLDER holds the ``bench.json`` of ``flankfilm bench --out FOLDER``.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from flankfilm.bench.tables import read_bench
+from flankfilm.figures import bench
+from flankfilm.figures.style import styled
+
+IMAGES = Path(__file__).parent / "images"
+CASES = ("compliance", "contact_free", "root_stress", "film_tolerance", "motion_flow")
+
+
+def main(folder: Path) -> None:
+    """Write docs/images/bench_*.png."""
+    found = read_bench(folder / "bench.json")
+    drawn = {"overview": bench.overview(found.cases), "estimates": bench.estimates(found.cases)}
+    for case in found.cases:
+        if case.key in CASES:
+            peers = [peer for peer in found.peers if peer.case == case.key]
+            drawn[case.key] = bench.error_against_cost(case, peers)
+    IMAGES.mkdir(exist_ok=True)
+    with styled():
+        for name, figure in drawn.items():
+            figure.savefig(IMAGES / f"bench_{name}.png", dpi=100)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
