@@ -28,7 +28,8 @@ class FirstCall:
     solver : str
         Its name.
     kept : float
-        First call [s], start of Python and imports included, with compiled kernels on disk as any but the very first run has them.
+        First call [s], start of Python, imports and preparation of the cases included, with compiled kernels on
+        disk as any but the very first run has them.
     nothing_kept : float
         First call [s] when all kernels are compiled; NaN where that was not measured or nothing is compiled.
     again : float

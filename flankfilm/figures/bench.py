@@ -132,7 +132,7 @@ def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> N
     )
     entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
     if orders:
-        told = ", ".join(f"{order:g}" for order in dict.fromkeys(orders))
+        told = " and ".join(f"{order:g}" for order in dict.fromkeys(orders))
         entries[f"theory, order {told}"] = Line2D([], [], color="#888888", linewidth=1.0)
     columns = 2 if max(map(len, entries)) > 28 else 3
     drawn.legend(
