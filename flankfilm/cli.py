@@ -241,13 +241,15 @@ def bench(
 
     from flankfilm.bench.page import write_page
     from flankfilm.bench.run import bench as measured
-    from flankfilm.bench.tables import terminal, write_tables
+    from flankfilm.bench.tables import remarks, terminal, write_tables
     from flankfilm.progress import console_progress
 
     with console_progress() as progress:
         found = measured(out, only or (), quick=quick, repeat=repeat, against=against, progress=progress)
     files = [*write_tables(found, out), *write_page(found, out)]
     Console(width=None if sys.stdout.isatty() else 180).print(terminal(found))
+    for line in remarks(found):
+        print(line)
     print(f"{len(files)} files in {out} after {found.seconds:.0f} s; {files[-1].name} shows them all")
     return 0
 

@@ -28,6 +28,9 @@ MOST_REPEATS = 100
 COMPILED = ("film", "motion")
 """Solvers with compiled kernels."""
 
+PEERED = ("compliance", "motion")
+"""Solvers whose work other programs can do."""
+
 
 @dataclass(frozen=True)
 class Bench:
@@ -139,6 +142,9 @@ def _checked(folder: Path, only: Sequence[str], repeat: int | None, against: str
     if against is not None and python is None:
         allowed = "must be an interpreter that can be run"
         faults.append(Fault("--against", against, allowed, "Such as ENVIRONMENT/bin/python"))
+    if against is not None and only and not set(only) & set(PEERED):
+        allowed = f"other programs know the work of {' and '.join(PEERED)} alone"
+        faults.append(Fault("--against", against, allowed, "Leave it out, or name one of these with --only"))
     if not faults or folder.exists():
         # a folder is made only if all else is right
         try:

@@ -24,6 +24,7 @@ __all__ = [
     "clock",
     "number",
     "read_bench",
+    "remarks",
     "summaries",
     "summary_cells",
     "terminal",
@@ -146,6 +147,17 @@ def terminal(found: Bench) -> Table:
     for one in summaries(found.cases):
         shown.add_row(*summary_cells(one))
     return shown
+
+
+def remarks(found: Bench) -> list[str]:
+    """Lines for the terminal on everything that has no figures, each once."""
+    lines = [f"{peer.peer}: {peer.failure}" for peer in found.peers if peer.failure]
+    lines += [f"first call of {call.solver}: {call.failure}" for call in found.first_calls if call.failure]
+    for case in found.cases:
+        lines += [
+            f"{case.title}, {row.series}, {row.level}: {row.failure}" for row in case.rows if row.failure
+        ]
+    return list(dict.fromkeys(lines))
 
 
 def write_tables(found: Bench, folder: Path) -> list[Path]:

@@ -8,6 +8,7 @@ import math
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from flankfilm.bench.machine import this_machine
 from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
-from flankfilm.bench.tables import read_bench, summaries, write_tables
+from flankfilm.bench.tables import read_bench, remarks, summaries, write_tables
 from flankfilm.faults import InputError
 from flankfilm.figures.bench import error_against_cost
 
@@ -195,8 +196,9 @@ def interpreter(folder: Path, body: str) -> Path:
 )
 def test_peers_that_are_missing_or_fail_are_told_by_name(tmp_path, body: str, reason: str):
     case = second_order(peers=(PeerWork("ross_stiffness", {"n": 5}, "integral"),))
-    (told,) = ask(interpreter(tmp_path, body), case, 1, longest=0.5)
-    assert (told.peer, told.failure) == ("ross_stiffness", reason)
+    told = ask(interpreter(tmp_path, body), case, 1, longest=0.5)
+    assert [(row.peer, row.failure) for row in told] == [("ross_stiffness", reason)]
+    assert remarks(replace(bench_of(case), peers=tuple(told))) == [f"ross_stiffness: {reason}"]
 
 
 def test_a_peer_gets_the_work_and_its_values_are_compared(tmp_path):
@@ -217,13 +219,18 @@ def test_the_script_for_scipy_agrees_with_the_exact_flow():
 
 def test_all_faults_are_told_at_once_and_nothing_is_made(tmp_path):
     with pytest.raises(InputError) as caught:
-        bench(tmp_path / "new", ["film", "wings"], repeat=0, against=str(tmp_path / "python"))
+        bench(tmp_path / "new", ["motion", "wings"], repeat=0, against=str(tmp_path / "python"))
     assert [fault.where for fault in caught.value.faults] == ["--only", "--repeat", "--against"]
     assert not (tmp_path / "new").exists()
     (tmp_path / "taken").touch()
     with pytest.raises(InputError) as caught:
         bench(tmp_path / "taken", ["wings"])
     assert len(caught.value.faults) == 2
+
+
+def test_solvers_whose_work_no_other_program_knows_are_told(tmp_path):
+    with pytest.raises(InputError, match="compliance and motion"):
+        bench(tmp_path / "new", ["gears"], against=sys.executable)
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -249,7 +256,7 @@ def test_the_command_measures_and_writes(tmp_path):
 
 
 def test_faults_of_the_command_give_status_2_and_no_traceback(tmp_path):
-    done = run(tmp_path, "--only", "wings", "film", "--against", "no-such-python")
+    done = run(tmp_path, "--only", "wings", "motion", "--against", "no-such-python")
     assert done.returncode == 2
     assert "2 faults" in done.stderr
     assert "Traceback" not in done.stderr
