@@ -44,7 +44,7 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
                 "times the estimate of the finest solution count.",
             ),
             (
-                Drawing(svg["overview"], "True error over processor time, by solver."),
+                Drawing(svg["overview"], "True error over processor time, one work of each solver."),
                 Drawing(
                     svg["estimates"],
                     "Estimated over true errors: above the line, the safe side.",

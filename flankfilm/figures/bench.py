@@ -168,25 +168,23 @@ def estimates(cases: Sequence[CaseResult]) -> Figure:
 
 
 def overview(cases: Sequence[CaseResult]) -> Figure:
-    """Draw true error over processor time, one line for the first series and quantity of each case."""
+    """Draw true error over processor time of one work of each solver: its first case, series and quantity."""
     with styled():
         drawn = figure(7.4, 5.2)
         axes = drawn.subplots()
-        solvers = list(dict.fromkeys(c.solver for c in cases))
-        for solver in solvers:
-            place = solvers.index(solver)
-            for number, case in enumerate(c for c in cases if c.solver == solver):
-                rows = [r for r in case.rows if not r.failure]
-                rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
-                axes.plot(
-                    [r.cpu for r in rows],
-                    [max(r.error, LEAST) for r in rows],
-                    "-",
-                    marker=MARKS[place % len(MARKS)],
-                    color=COLOURS[place % len(COLOURS)],
-                    markersize=4,
-                    label=solver if number == 0 else None,
-                )
+        for place, solver in enumerate(dict.fromkeys(c.solver for c in cases)):
+            case = next(c for c in cases if c.solver == solver)
+            rows = [r for r in case.rows if not r.failure]
+            rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
+            axes.plot(
+                [r.cpu for r in rows],
+                [max(r.error, LEAST) for r in rows],
+                "-",
+                marker=MARKS[place % len(MARKS)],
+                color=COLOURS[place % len(COLOURS)],
+                markersize=5,
+                label=f"{solver}: {rows[0].quantity}" if rows else None,
+            )
         axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error")
-        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
     return drawn

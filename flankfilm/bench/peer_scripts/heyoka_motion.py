@@ -67,11 +67,7 @@ def main() -> None:
             seconds.append(time.process_time() - began)
         runs.append({"level": f"tol {tol:g}", "seconds": min(seconds), "first": built, "values": values})
     note = "events call Python; first call: the integrator is compiled"
-    print(
-        json.dumps(
-            {"peer": "heyoka, events in Python", "version": hy.__version__, "runs": runs, "note": note}
-        )
-    )
+    print(json.dumps({"peer": "heyoka", "version": hy.__version__, "runs": runs, "note": note}))
 
 
 if __name__ == "__main__":
