@@ -108,7 +108,7 @@ def summary_cells(one: Summary) -> tuple[str, ...]:
     """Text of a summary under `HEADS`."""
     alone = one.errors[0] == one.errors[1] and one.seconds[0] == one.seconds[1]
     low, high = one.ratios
-    ratios = "" if math.isnan(low) else f"{low:.2g} to {high:.2g}" if low != high else f"{low:.2g}"
+    ratios = "" if math.isnan(low) else _ratio(low) if low == high else f"{_ratio(low)} to {_ratio(high)}"
     return (
         one.title,
         one.series,
@@ -118,6 +118,10 @@ def summary_cells(one: Summary) -> tuple[str, ...]:
         "" if math.isnan(one.gain) else f"x {one.gain:.2g}",
         ratios,
     )
+
+
+def _ratio(value: float) -> str:
+    return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
 
 
 def number(value: float) -> str:
