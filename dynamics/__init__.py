@@ -58,6 +58,12 @@ if TYPE_CHECKING:
     from dynamics.sensitivity import map_derivatives as map_derivatives
     from dynamics.shooting import Orbit as Orbit
     from dynamics.shooting import find_orbit as find_orbit
+    from dynamics.smooth.compiled import CompiledLaw as CompiledLaw
+    from dynamics.smooth.laws import PowerContact as PowerContact
+    from dynamics.smooth.laws import SmoothedBacklash as SmoothedBacklash
+    from dynamics.smooth.laws import SqueezeFilm as SqueezeFilm
+    from dynamics.smooth.oscillator import SmoothOscillator as SmoothOscillator
+    from dynamics.smooth.tabulated import TabulatedContact as TabulatedContact
     from dynamics.special import SpecialPoint as SpecialPoint
     from dynamics.stiffness import FourierStiffness as FourierStiffness
     from dynamics.sweeps import SweepResult as SweepResult
@@ -106,6 +112,12 @@ _HOMES = {
     "MapDerivatives": "sensitivity",
     "Orbit": "shooting",
     "Scaling": "scaling",
+    "CompiledLaw": "smooth.compiled",
+    "PowerContact": "smooth.laws",
+    "SmoothOscillator": "smooth.oscillator",
+    "SmoothedBacklash": "smooth.laws",
+    "SqueezeFilm": "smooth.laws",
+    "TabulatedContact": "smooth.tabulated",
     "SpecialPoint": "special",
     "SweepResult": "sweeps",
     "Trajectory": "flow",

@@ -80,7 +80,7 @@ class Branch:
         Parameters
         ----------
         kind : str
-            "saddle-node", "period-doubling" or "grazing".
+            "saddle-node", "period-doubling" or "grazing"; "neimark-sacker", which the exact flow never meets.
 
         Raises
         ------
@@ -88,8 +88,9 @@ class Branch:
             If there is no such kind.
         """
         faults = Faults()
-        if kind not in KINDS:
-            faults.add("kind", kind, ", ".join(KINDS), "name one of these")
+        known = (*KINDS, "neimark-sacker")
+        if kind not in known:
+            faults.add("kind", kind, ", ".join(known), "name one of these")
         faults.raise_if_any()
         return [p for p in self.points if p.kind == kind]
 

@@ -1,0 +1,158 @@
+"""A restoring force that the user writes."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import Faults
+from dynamics.smooth.laws import unknown
+
+__all__ = ["CompiledLaw", "Surface"]
+
+FloatArray = npt.NDArray[np.float64]
+STEP = 1e-40  # imaginary, so that nothing is lost to cancellation
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A surface n_X X + n_V V = sign q, on which the force is not smooth, or crossings are counted.
+
+    Parameters
+    ----------
+    normal : tuple of float
+        n_X, n_V.
+    parameter : str
+        Name of q; empty for 0.
+    sign : float
+        Factor on q.
+    """
+
+    normal: tuple[float, float] = (1.0, 0.0)
+    parameter: str = ""
+    sign: float = 1.0
+
+
+@dataclass(frozen=True)
+class CompiledLaw:
+    """Force given as a function, compiled with numba.
+
+    Parameters
+    ----------
+    force : callable
+        Either ``force(theta, x, v, region, q)`` that returns f and is written with numpy's functions, which take
+        complex numbers too: derivatives are taken by an imaginary step, exact to rounding, so that within a region
+        the function must be analytic (no abs, max, comparison of x). Or a numba ``cfunc`` of the type
+        `dynamics.smooth.kernels.compiling.LAW`, which gives its own derivatives and is faster.
+    parameters : tuple of (str, float)
+        Names and values of q.
+    surfaces : tuple of Surface
+        Where the force is switched; bit i of `region` is 1 where n . (X, V) is above surface i. The first counts p
+        (falls), the second q of the label.
+    damped : bool
+        Whether the force depends on the speed; only told to the reader, the determinant always has its own equation.
+    size : float
+        Natural size of a displacement.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found.
+
+    Notes
+    -----
+    Compiled anew in every session; one function makes one law however often its parameters are changed.
+    """
+
+    force: Callable[..., Any]
+    parameters: tuple[tuple[str, float], ...] = ()
+    surfaces_at: tuple[Surface, ...] = ()
+    damped: bool = True
+    size: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check."""
+        faults = Faults()
+        if not callable(self.force):
+            faults.add("force", self.force, "a function", "force(theta, x, v, region, q) that returns f")
+        for name, value in self.parameters:
+            faults.number(f"parameters[{name!r}]", value)
+        if len(set(self.names)) != len(self.names):
+            faults.add("parameters", self.names, "different names", "rename one")
+        for surface in self.surfaces_at:
+            if surface.parameter and surface.parameter not in self.names:
+                faults.add("surfaces_at", surface.parameter, ", ".join(self.names), "name a parameter")
+        if len(self.surfaces_at) > 16:
+            faults.add("surfaces_at", len(self.surfaces_at), "16 at most", "join some")
+        faults.raise_if_any()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters."""
+        return tuple(name for name, _ in self.parameters)
+
+    @property
+    def values(self) -> FloatArray:
+        """Their values."""
+        return np.array([value for _, value in self.parameters], dtype=np.float64)
+
+    @property
+    def data(self) -> FloatArray:
+        """Nothing."""
+        return np.empty(0)
+
+    @property
+    def surfaces(self) -> FloatArray:
+        """Rows n_X, n_V, sign, place."""
+        rows = [
+            (*s.normal, s.sign, float(self.names.index(s.parameter)) if s.parameter else -1.0)
+            for s in self.surfaces_at
+        ]
+        return np.array(rows, dtype=np.float64).reshape(-1, 4)
+
+    @property
+    def compiled(self) -> Any:
+        """Function pointer."""
+        return self.force if hasattr(self.force, "native_name") else _compiled(self.force)
+
+    def with_value(self, name: str, value: float) -> CompiledLaw:
+        """Return the law with one parameter changed.
+
+        Raises
+        ------
+        DynamicsError
+            If there is no such parameter.
+        """
+        if name not in self.names:
+            raise unknown(name, self.names)
+        changed = tuple((n, float(value) if n == name else v) for n, v in self.parameters)
+        return dataclasses.replace(self, parameters=changed)
+
+
+@lru_cache(maxsize=64)
+def _compiled(force: Callable[..., Any]) -> Any:
+    """Function pointer with derivatives by imaginary steps."""
+    from numba import cfunc, njit
+
+    from dynamics.smooth.kernels.compiling import LAW
+
+    inner = force if hasattr(force, "py_func") else njit(error_model="numpy")(force)
+
+    def law(theta, x, v, region, q, data, out):  # type: ignore[no-untyped-def]
+        out[0] = inner(theta, x, v, region, q)
+        if len(out) > 1:
+            z = q.astype(np.complex128)
+            out[1] = inner(theta, complex(x, STEP), complex(v, 0.0), region, z).imag / STEP
+            out[2] = inner(theta, complex(x, 0.0), complex(v, STEP), region, z).imag / STEP
+            for j in range(len(q)):
+                z[j] = complex(q[j], STEP)
+                out[3 + j] = inner(theta, complex(x, 0.0), complex(v, 0.0), region, z).imag / STEP
+                z[j] = complex(q[j], 0.0)
+
+    return cfunc(LAW, error_model="numpy")(law)

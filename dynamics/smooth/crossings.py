@@ -1,0 +1,158 @@
+"""Special points between neighbours on a branch, for any period map: signs find them, bracketing locates them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.shooting import EPS, floquet_multipliers, is_stable, motion_label
+from dynamics.smooth.problem import MapPoint, PeriodMap, correct
+from dynamics.special import SpecialPoint
+
+__all__ = ["Sign", "find_crossings", "locate"]
+
+FloatArray = npt.NDArray[np.float64]
+NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
+
+
+@dataclass(frozen=True)
+class Sign:
+    """A quantity whose sign is watched.
+
+    Parameters
+    ----------
+    kind : str
+        "saddle-node", "period-doubling", "neimark-sacker" or "grazing".
+    surface : int
+        At a grazing, which level.
+    kindred : int
+        At a grazing, the sign of X'' of the extremum.
+    phases : tuple of float
+        At a grazing, where in the orbit's period the extremum lies at the two neighbours.
+    """
+
+    kind: str
+    surface: int = -1
+    kindred: int = 0
+    phases: tuple[float, float] = (0.0, 0.0)
+
+    def extremum(self, point: MapPoint, fraction: float) -> int:
+        """Extremum that is meant, part of the way from one neighbour to the other; -1 if there is none."""
+        first, last = self.phases
+        phase = first + fraction * ((last - first + 0.5) % 1.0 - 0.5)
+        gap = np.abs((point.extrema[:, 0] - phase + 0.5) % 1.0 - 0.5)
+        gap[point.extrema[:, 2] * self.kindred <= 0.0] = np.inf
+        at = int(np.argmin(gap)) if len(gap) else -1
+        return at if at >= 0 and np.isfinite(gap[at]) else -1
+
+    def measure(self, point: MapPoint, fraction: float) -> float:
+        """Value of the quantity; nan if there is none."""
+        if self.kind == "saddle-node":
+            return point.fold
+        if self.kind == "period-doubling":
+            return point.flip
+        if self.kind == "neimark-sacker":
+            return point.torus
+        at = self.extremum(point, fraction)
+        return float(point.extrema[at, 1] - point.levels[self.surface]) if at >= 0 else math.nan
+
+
+def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Sign], bool]:
+    """Changes of sign between two neighbours, and whether the grazings explain the change of the counts."""
+    found: list[Sign] = []
+    if a.fold * b.fold < 0.0:
+        found.append(Sign("saddle-node"))
+    if a.flip * b.flip < 0.0:
+        found.append(Sign("period-doubling"))
+    if a.torus * b.torus < 0.0:  # a pair only if |trace| < 2 there: `locate` tells
+        found.append(Sign("neimark-sacker"))
+    change = [0, 0]
+    if len(a.levels) == 2 and min(a.levels[0], b.levels[0]) == 0.0:
+        return found, True
+    for i, j in _pairs(a, b):
+        kindred = 1 if a.extrema[i, 2] > 0.0 else -1
+        for surface in range(len(a.levels)):
+            before = a.extrema[i, 1] - a.levels[surface]
+            after = b.extrema[j, 1] - b.levels[surface]
+            if before * after < 0.0 or (after == 0.0 and before != 0.0):
+                phases = (float(a.extrema[i, 0]), float(b.extrema[j, 0]))
+                found.append(Sign("grazing", surface, kindred, phases))
+                change[surface] += kindred if before > 0.0 else -kindred
+    return found, change == [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
+
+
+def locate(
+    problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign
+) -> tuple[SpecialPoint | None, FloatArray | None, bool]:
+    """Special point between two neighbours, its unknowns, and whether the search arrived.
+
+    A determinant of one with real multipliers is no Neimark-Sacker point: then there is none, and that is no failure.
+    """
+    point, fraction = _bracket(problem, a, b, sign)
+    if point is None:
+        return None, None, False
+    if sign.kind == "neimark-sacker" and abs(point.trace) >= 2.0:
+        return None, None, True
+    finer = problem.refined()
+    ends = [correct(finer, p.u, (b.u - a.u) / np.linalg.norm(b.u - a.u)) for p in (a, b)]
+    error = math.inf
+    if ends[0] is not None and ends[1] is not None:
+        there, _ = _bracket(finer, ends[0], ends[1], sign)
+        error = abs(there.value - point.value) if there is not None else math.inf
+    multipliers = floquet_multipliers(point.trace, point.determinant)
+    label, touch = motion_label(problem.periods, point.counts), {}
+    if sign.kind == "grazing":
+        phase, _, bend = point.extrema[sign.extremum(point, fraction)]
+        label = motion_label(problem.periods, min(a.counts, b.counts), is_stable(multipliers))
+        touch = {"tau": float(phase) * problem.periods * point.period, "acceleration": float(bend)}
+    special = SpecialPoint(
+        sign.kind, point.value, point.u[:2] * problem.scale, multipliers, label,
+        max(error / max(abs(point.value), 1e-300), EPS), problem.periods, (1, -1, 0)[sign.surface], **touch,
+    )  # fmt: skip
+    return special, point.u, True
+
+
+def _pairs(a: MapPoint, b: MapPoint) -> list[tuple[int, int]]:
+    """Extrema of two neighbours that are each other's nearest in phase, and of one kind."""
+    if len(a.extrema) == 0 or len(b.extrema) == 0:
+        return []
+    gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
+    gap = np.minimum(gap, 1.0 - gap)
+    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
+    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
+    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
+
+
+def _bracket(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[MapPoint | None, float]:
+    """Root search along the chord, each trial corrected on to the branch."""
+    from scipy.optimize import brentq
+
+    chord = b.u - a.u
+    row = chord / np.linalg.norm(chord)
+    points: dict[float, MapPoint] = {0.0: replace(a), 1.0: replace(b)}
+
+    def measure(fraction: float) -> float:
+        point = points.get(fraction) or correct(problem, a.u + fraction * chord, row)
+        if point is None:
+            raise _LostError
+        points[fraction] = point
+        value = sign.measure(point, fraction)
+        if not np.isfinite(value):
+            raise _LostError
+        return value
+
+    search: Callable[..., float] = brentq
+    try:
+        root = float(search(measure, 0.0, 1.0, xtol=1e-14, rtol=4.0 * EPS, maxiter=100))
+        measure(root)
+    except (_LostError, ValueError):  # ValueError: the sign did not change after all
+        return None, math.nan
+    return points[root], root
+
+
+class _LostError(Exception):
+    """The branch could not be followed to a point between two neighbours."""

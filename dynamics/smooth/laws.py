@@ -1,0 +1,323 @@
+"""Restoring forces that depend on the deflection nonlinearly, on the angle, and on the speed."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import DynamicsError, Faults
+from dynamics.stiffness import FourierStiffness
+
+__all__ = ["Law", "PowerContact", "SmoothedBacklash", "SqueezeFilm"]
+
+FloatArray = npt.NDArray[np.float64]
+L = TypeVar("L", bound="ContactLaw")
+
+
+class Law(Protocol):
+    """What the stepwise flow asks of a restoring force f(theta, X, V).
+
+    Attributes
+    ----------
+    names : tuple of str
+        Parameters of the law, in the order of `values`.
+    values : ndarray
+        Their values.
+    data : ndarray
+        What else the compiled function reads.
+    surfaces : ndarray, shape (s, 4)
+        Rows n_X, n_V, sign, place: the surface n_X X + n_V V = sign values[place] (0 where place is -1), where the
+        law is switched or crossings are counted. The first counts p, the second q.
+    damped : bool
+        Whether the force depends on the speed.
+    size : float
+        Natural size of a displacement.
+    compiled : object
+        The numba function pointer, see `dynamics.smooth.kernels`.
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]: ...  # noqa: D102
+
+    @property
+    def values(self) -> FloatArray: ...  # noqa: D102
+
+    @property
+    def data(self) -> FloatArray: ...  # noqa: D102
+
+    @property
+    def surfaces(self) -> FloatArray: ...  # noqa: D102
+
+    @property
+    def damped(self) -> bool: ...  # noqa: D102
+
+    @property
+    def size(self) -> float: ...  # noqa: D102
+
+    @property
+    def compiled(self) -> Any: ...  # noqa: D102
+
+    def with_value(self, name: str, value: float) -> Law:
+        """Return the law with one parameter changed."""
+        ...
+
+
+@dataclass(frozen=True)
+class SqueezeFilm:
+    r"""Force of the oil that two approaching flanks squeeze out.
+
+    .. math:: c\,V \left(\frac{h}{h + g}\right)^{3/2}
+
+    for each flank at clearance g, full in contact: the law of a rigid cylinder on a plane, finite at g = 0 by the
+    thickness h that a loaded film keeps.
+
+    Parameters
+    ----------
+    damping : float
+        c, >= 0, in the scaling of :math:`2\zeta`.
+    thickness : float
+        h, > 0, in units of X.
+    """
+
+    damping: float = 0.0
+    thickness: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check."""
+        faults = Faults()
+        faults.number("film.damping", self.damping, "0 or more", "0 is no film", lambda c: c >= 0.0)
+        faults.number("film.thickness", self.thickness, "more than 0", "give h over b_c", lambda h: h > 0.0)
+        faults.raise_if_any()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLaw:
+    """What laws with contacts on one or two sides have in common."""
+
+    half_backlash: float
+    film: SqueezeFilm = field(default_factory=SqueezeFilm)
+    one_sided: bool = False
+
+    def _check(self) -> Faults:
+        faults = Faults()
+        faults.number(
+            "half_backlash", self.half_backlash, "0 or more", "give half the play", lambda d: d >= 0.0
+        )
+        if not isinstance(self.film, SqueezeFilm):
+            faults.add("film", self.film, "a SqueezeFilm", "leave it out for none")
+        if not isinstance(self.one_sided, bool):
+            faults.add("one_sided", self.one_sided, "True or False", "True leaves the second flank out")
+        return faults
+
+    @property
+    def surfaces(self) -> FloatArray:
+        """X = D and X = -D."""
+        both = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]])
+        return both[:1] if self.one_sided else both
+
+    @property
+    def damped(self) -> bool:
+        """Whether there is a film."""
+        return self.film.damping != 0.0
+
+    @property
+    def size(self) -> float:
+        """Half the backlash."""
+        return self.half_backlash
+
+    @property
+    def sides(self) -> float:
+        """1 or 2, as the kernels take it."""
+        return 1.0 if self.one_sided else 2.0
+
+    def with_value(self: L, name: str, value: float) -> L:
+        """Return the law with one parameter changed.
+
+        Raises
+        ------
+        DynamicsError
+            If there is no such parameter or the value is not allowed.
+        """
+        return changed(self, name, value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SmoothedBacklash(ContactLaw):
+    r"""Piecewise-linear contact with rounded corners, to hold the exact flow against.
+
+    .. math:: f = K(\theta)\, s \left[\ln(1 + e^{(X - D)/s}) - \ln(1 + e^{-(X + D)/s})\right]
+
+    It differs from the backlash by :math:`K s \ln 2` at the corners and exponentially little elsewhere. Crossings of
+    :math:`\pm D` are counted; nothing is switched.
+
+    Parameters
+    ----------
+    stiffness : FourierStiffness
+        :math:`K`.
+    half_backlash : float
+        :math:`D \ge 0`.
+    width : float
+        :math:`s > 0`.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found.
+    """
+
+    stiffness: FourierStiffness
+    width: float
+
+    def __post_init__(self) -> None:
+        """Check."""
+        faults = self._check()
+        faults.number("width", self.width, "more than 0", "0 is the exact flow's law", lambda s: s > 0.0)
+        if self.one_sided or self.film != SqueezeFilm():
+            faults.add("film, one_sided", "given", "neither", "PowerContact with exponent 1 has both")
+        _check_stiffness(faults, self.stiffness)
+        faults.raise_if_any()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters."""
+        return ("half_backlash", "width", *series_names(self.stiffness))
+
+    @property
+    def values(self) -> FloatArray:
+        """Their values."""
+        return np.array([self.half_backlash, self.width, *series(self.stiffness)])
+
+    @property
+    def data(self) -> FloatArray:
+        """Nothing."""
+        return np.empty(0)
+
+    @property
+    def compiled(self) -> Any:
+        """Function pointer."""
+        from dynamics.smooth.kernels.laws import smoothed_backlash
+
+        return smoothed_backlash
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerContact(ContactLaw):
+    r"""Contact whose stiffness grows with the load, as a power of the depth.
+
+    .. math:: f = K(\theta)\,\delta^n, \qquad \delta = X - D > 0 \text{ (in front)}, \quad -X - D > 0 \text{ (at the
+        back, force negative)}
+
+    and no force in the gap. n = 1 is the piecewise-linear law, 10/9 about a line contact, 3/2 a point contact.
+
+    Parameters
+    ----------
+    stiffness : FourierStiffness
+        :math:`K`, force over depth to the n.
+    half_backlash : float
+        :math:`D \ge 0`.
+    exponent : float
+        :math:`n \ge 1`.
+    film : SqueezeFilm
+        Squeezed film, if any.
+    one_sided : bool
+        No second flank.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found.
+    """
+
+    stiffness: FourierStiffness
+    exponent: float = 10.0 / 9.0
+
+    def __post_init__(self) -> None:
+        """Check."""
+        faults = self._check()
+        faults.number("exponent", self.exponent, "1 or more", "10/9 for a line contact", lambda n: n >= 1.0)
+        _check_stiffness(faults, self.stiffness)
+        faults.raise_if_any()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters."""
+        return (
+            "half_backlash",
+            "film.damping",
+            "film.thickness",
+            "exponent",
+            *series_names(self.stiffness),
+        )
+
+    @property
+    def values(self) -> FloatArray:
+        """Their values."""
+        own = (self.half_backlash, self.film.damping, self.film.thickness, self.exponent)
+        return np.array([*own, *series(self.stiffness)])
+
+    @property
+    def data(self) -> FloatArray:
+        """Number of sides."""
+        return np.array([self.sides])
+
+    @property
+    def compiled(self) -> Any:
+        """Function pointer."""
+        from dynamics.smooth.kernels.laws import power_contact
+
+        return power_contact
+
+
+def series(stiffness: FourierStiffness) -> tuple[float, ...]:
+    """Mean, amplitudes, phases."""
+    return (stiffness.mean, *stiffness.amplitudes, *stiffness.phases)
+
+
+def series_names(stiffness: FourierStiffness) -> tuple[str, ...]:
+    """Names of these, as in `GearOscillator.with_parameter`."""
+    terms = [f"stiffness.{part}[{j}]" for part in ("amplitudes", "phases") for j in range(stiffness.order)]
+    return ("stiffness.mean", *terms)
+
+
+def changed(record: Any, name: str, value: float) -> Any:
+    """Copy of nested frozen records with the number at a path such as "stiffness.amplitudes[0]" changed.
+
+    Raises
+    ------
+    DynamicsError
+        If the record has no such parameter.
+    """
+    if name not in getattr(record, "names", (name,)):
+        raise unknown(name, record.names)
+    head, _, rest = name.partition(".")
+    if rest:
+        return dataclasses.replace(record, **{head: changed(getattr(record, head), rest, value)})
+    match = re.fullmatch(r"(\w+)\[(\d+)\]", head)
+    if match is None:
+        return dataclasses.replace(record, **{head: float(value)})
+    items = list(getattr(record, match[1]))
+    items[int(match[2])] = float(value)
+    return dataclasses.replace(record, **{match[1]: tuple(items)})
+
+
+def unknown(name: str, names: tuple[str, ...]) -> DynamicsError:
+    """Error that names what there is."""
+    faults = Faults()
+    faults.add("parameter", name, ", ".join(names), "name one of these")
+    return DynamicsError(tuple(faults.found))
+
+
+def _check_stiffness(faults: Faults, stiffness: object) -> None:
+    if not isinstance(stiffness, FourierStiffness):
+        faults.add("stiffness", stiffness, "a FourierStiffness", "build one, or fit one with fit_fourier")
+
+
+def natural_size(*sizes: float) -> float:
+    """Largest of some sizes, never 0."""
+    return max([abs(s) for s in sizes if math.isfinite(s)] + [1e-300])

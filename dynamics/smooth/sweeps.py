@@ -1,0 +1,238 @@
+"""Motions on the stepwise flow that are carried on: sweeps and Lyapunov exponents."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.cost import Cost
+from dynamics.errors import DynamicsError, Fault, Faults
+from dynamics.exponents import BATCHES, LyapunovResult
+from dynamics.flow import checked_state
+from dynamics.shooting import motion_label
+from dynamics.smooth.flow import REASONS, finer, follow
+from dynamics.smooth.oscillator import Engine, SmoothOscillator
+from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, repeat_after
+
+__all__ = ["force", "lyapunov_exponents", "rest_state", "sweep"]
+
+FloatArray = npt.NDArray[np.float64]
+TOLERANCE = 1e-9  # of a motion that is followed for long; orbits and branches have their own
+
+
+def force(
+    oscillator: SmoothOscillator, angle: npt.ArrayLike, x: npt.ArrayLike, v: npt.ArrayLike = 0.0
+) -> FloatArray:
+    """Restoring force and its derivatives with respect to X and V, last axis 3.
+
+    Parameters
+    ----------
+    oscillator : SmoothOscillator
+        Whose law is meant.
+    angle, x, v : array_like
+        Angle omega tau [rad], X and V, broadcast against each other.
+    """
+    from dynamics.smooth.kernels.carrying import probe
+
+    theta, place, speed = np.broadcast_arrays(angle, x, v)
+    engine = Engine(oscillator, TOLERANCE)
+    out = np.empty((theta.size, 3 + len(engine.model[2])))
+    points = np.column_stack([np.asarray(a, dtype=np.float64).ravel() for a in (theta, place, speed)])
+    probe(engine.model, engine.surfaces, points, out)
+    return out[:, :3].reshape(*theta.shape, 3)
+
+
+def rest_state(oscillator: SmoothOscillator) -> FloatArray:
+    """State at rest where the mean of the force over the angle balances the mean force; zeros if there is none."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    side = math.copysign(1.0, oscillator.mean_force)
+
+    def excess(x: float) -> float:
+        mean = float(force(oscillator, angles, np.full(64, side * x))[:, 0].mean())
+        return side * (mean - oscillator.mean_force)
+
+    low, high = 0.0, oscillator.size
+    for _ in range(60):
+        if excess(high) > 0.0:
+            break
+        low, high = high, 2.0 * high
+    else:
+        return np.zeros(2)
+    if excess(low) > 0.0:
+        return np.zeros(2)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
+    return np.array([side * high, 0.0])
+
+
+def sweep(
+    oscillator: SmoothOscillator,
+    parameter: str = "frequency",
+    values: npt.ArrayLike = (),
+    direction: str = "up",
+    *,
+    keep: int = 32,
+    transient: int = 200,
+    initial: npt.ArrayLike | None = None,
+    max_period: int = 16,
+    tolerance: float = TOLERANCE,
+    progress: Callable[[int, int], None] | None = None,
+) -> SweepResult:
+    """Sweep a parameter up or down; each motion starts from the last state of the one before.
+
+    Parameters
+    ----------
+    oscillator : SmoothOscillator
+        The oscillator; its own value of the parameter is not used.
+    parameter : str
+        As in `SmoothOscillator.parameters`.
+    values : array_like, shape (m,)
+        Parameter values, in any order.
+    direction : str
+        "up" visits the values in rising order, "down" in falling order; the result keeps the order given.
+    keep : int
+        Periods kept, at least twice `max_period`.
+    transient : int
+        Periods dropped before those.
+    initial : array_like, shape (2,), optional
+        State at the first value visited. Left out: at rest under the mean force.
+    max_period : int
+        Longest period that is recognised, in excitation periods.
+    tolerance : float
+        Of a step.
+    progress : callable, optional
+        Called with the number of values done and the number of all.
+
+    Returns
+    -------
+    SweepResult
+        States and labels.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range.
+    """
+    began = time.perf_counter()
+    faults = Faults()
+    grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
+        faults.add("values", grid.shape, "finite numbers in one dimension", "give at least one value")
+    if direction not in ("up", "down"):
+        faults.add("direction", direction, "'up' or 'down'", "call twice for both")
+    longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
+    kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
+    wait = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+    faults.raise_if_any()
+    ascending = np.argsort(grid, kind="stable")
+    order = ascending if direction == "up" else ascending[::-1]
+    first = oscillator.with_parameter(parameter, float(grid[order[0]]))
+    state = rest_state(first) if initial is None else checked_state(initial, "initial")
+    restart = state.copy()
+    states, impacts = np.full((len(grid), kept, 2), np.nan), np.full((len(grid), 2), np.nan)
+    labels, periods = [DIVERGED] * len(grid), np.zeros(len(grid), dtype=np.int64)
+    error, lost = 0.0, list[float]()
+    for done, i in enumerate(order, start=1):
+        here = oscillator.with_parameter(parameter, float(grid[i]))
+        motion = follow(Engine(here, tolerance), state, kept, wait, derivatives=False)
+        if motion.message:
+            lost.append(float(grid[i]))
+            state = restart.copy()
+        else:
+            states[i], impacts[i] = motion.states, motion.counts.mean(axis=0)
+            n = periods[i] = repeat_after(motion.states, longest)
+            p, q = motion.counts[kept - n :].sum(axis=0) if n else (0, 0)
+            labels[i] = motion_label(int(n), (int(p), int(q))) if n else APERIODIC
+            error = max(error, _map_error(here, states[i, -2], states[i, -1], tolerance))
+            state = motion.states[-1].copy()
+        if progress is not None:
+            progress(done, len(grid))
+    message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
+    if lost:
+        message += f"; not followed at {len(lost)}, first {parameter} = {lost[0]:g}: check the law there"
+    cost = Cost(time.perf_counter() - began, 0, 0, len(grid) * (kept + wait))
+    return SweepResult(
+        parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
+    )  # fmt: skip
+
+
+def _map_error(here: SmoothOscillator, before: FloatArray, after: FloatArray, tolerance: float) -> float:
+    """Relative change of one period's map with a finer tolerance."""
+    again = follow(Engine(here, finer(tolerance)), before, 1, derivatives=False).state
+    return float(np.max(np.abs(again - after))) / max(float(np.max(np.abs(after))), 1e-300)
+
+
+def lyapunov_exponents(
+    oscillator: SmoothOscillator,
+    periods: int = 2000,
+    *,
+    state: npt.ArrayLike | None = None,
+    transient: int = 200,
+    tolerance: float = TOLERANCE,
+) -> LyapunovResult:
+    """Lyapunov exponents of the motion that starts at a state.
+
+    Parameters
+    ----------
+    oscillator : SmoothOscillator
+        The oscillator.
+    periods : int
+        Excitation periods averaged over, at least 20.
+    state : array_like, shape (2,), optional
+        X and V at tau = 0. Left out: at rest under the mean force.
+    transient : int
+        Periods dropped before.
+    tolerance : float
+        Of a step.
+
+    Returns
+    -------
+    LyapunovResult
+        The exponents and their standard error. Their sum is minus the mean of all damping, -2 zeta if it is linear,
+        which is not used to compute them.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range, or the motion cannot be followed.
+    """
+    from dynamics.smooth.kernels.carrying import stretch
+
+    began = time.perf_counter()
+    faults = Faults()
+    n = faults.whole("periods", periods, BATCHES, 10**9, "10 000 gives two digits in chaos")
+    skip = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+    faults.raise_if_any()
+    at = rest_state(oscillator) if state is None else checked_state(state)
+    engine = Engine(oscillator, tolerance)
+    pieces = max(1, math.ceil(oscillator.period / 1.5))  # so that no stretch between two is large
+    y, (going, on) = engine.vector(at, derivatives=True), engine.going()
+    sizes = [skip, *(n // BATCHES + (i < n % BATCHES) for i in range(BATCHES))]
+    rates = np.empty((BATCHES + 1, 3))
+    for i, size in enumerate(sizes):
+        logs = np.zeros(3)
+        flag = int(
+            stretch(
+                engine.model, engine.surfaces, engine.tolerance, engine.size, y, going, on, size, pieces, logs
+            )
+        )
+        if flag:
+            fault = Fault("state", repr(state), "a motion that can be followed", REASONS[flag])
+            raise DynamicsError((fault,))
+        rates[i] = logs / (max(size, 1) * oscillator.period)
+    weights = np.array(sizes[1:]) / n
+    exponents = np.sort((weights @ rates[1:])[:2])[::-1]
+    spread = float(np.std(rates[1:, 0], ddof=1)) / math.sqrt(BATCHES)
+    largest = float(np.max(np.abs(exponents)))
+    sure = abs(exponents[0]) > 3.0 * spread
+    message = "average more periods: the sign of the larger exponent is not certain"
+    if sure:
+        message = "chaotic" if exponents[0] > 0.0 else "periodic"
+    cost = Cost(time.perf_counter() - began, 0, 0, skip + n)
+    error = spread / largest if largest > 0.0 else spread
+    return LyapunovResult(exponents, spread, error, y[:2].copy(), cost, bool(sure), message)

@@ -1,0 +1,260 @@
+"""A measured law: contact force as a table over deflection and angle, and the spline through it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.errors import Faults
+from dynamics.smooth.laws import ContactLaw
+
+__all__ = ["TabulatedContact"]
+
+FloatArray = npt.NDArray[np.float64]
+INTERVALS = 32
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TabulatedContact(ContactLaw):
+    r"""Contact force as a function of depth and angle, from samples.
+
+    .. math::
+
+        f = c \sum_j \left[a_j(\delta)\cos j\theta + b_j(\delta)\sin j\theta\right]
+
+    with cubic splines :math:`a_j, b_j` that are twice continuously differentiable in the depth
+    :math:`\delta = X - D > 0`, on knots that lie closer towards :math:`\delta = 0`, and go on as straight lines
+    beyond the samples; the same, mirrored, at the back. Build one with `from_deflections` or `from_forces`.
+
+    Parameters
+    ----------
+    half_backlash : float
+        :math:`D \ge 0`.
+    coefficients : ndarray, shape (1 + 2 J, 4 n + 2)
+        Splines of the mean, the cosines and the sines.
+    reach : float
+        Largest depth of the samples.
+    remainder : float
+        Largest difference to the samples, over the mean force of the same deflection.
+    factor : float
+        c.
+    film : SqueezeFilm
+        Squeezed film, if any.
+    one_sided : bool
+        No second flank.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found; also if the force falls anywhere while the depth grows.
+    """
+
+    coefficients: FloatArray
+    reach: float
+    remainder: float = 0.0
+    factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check."""
+        faults = self._check()
+        faults.number("reach", self.reach, "more than 0", "give the largest depth", lambda r: r > 0.0)
+        faults.number("factor", self.factor, "more than 0", "1 is the law itself", lambda c: c > 0.0)
+        shape = np.shape(self.coefficients)
+        if len(shape) != 2 or shape[0] % 2 == 0 or shape[1] < 6 or shape[1] % 4 != 2:
+            faults.add("coefficients", shape, "(1 + 2 J, 4 n + 2)", "use from_deflections")
+        faults.raise_if_any()
+        steepness = self.slopes(np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False))
+        if not steepness.min() > 0.0:
+            turn, at = np.unravel_index(int(np.argmin(steepness)), steepness.shape)
+            where = f"at angle {2 * np.pi * turn / 128:.3f} and interval {at // 4} of {self.intervals}"
+            faults.add(
+                "samples", f"falling {where}", "a force that grows with the depth", "fewer harmonics, more samples"
+            )
+        faults.raise_if_any()
+
+    @classmethod
+    def from_deflections(
+        cls,
+        forces: npt.ArrayLike,
+        deflections: npt.ArrayLike,
+        *,
+        half_backlash: float,
+        order: int = 8,
+        first_angle: float = 0.0,
+        intervals: int = INTERVALS,
+        **options: Any,
+    ) -> TabulatedContact:
+        """Law through deflections under given forces, as a sweep of loads gives them.
+
+        Between the samples of an angle the secant stiffness is a cubic spline over the root of the deflection, below
+        the smallest force it is a straight line; a least-squares Fourier series over the angle follows.
+
+        Parameters
+        ----------
+        forces : array_like, shape (p,)
+            Forces, rising from more than 0, at least four.
+        deflections : array_like, shape (a, p)
+            Deflection at each of a equally spaced angles.
+        half_backlash : float
+            :math:`D`.
+        order : int
+            Harmonics J kept, below a/2.
+        first_angle : float
+            Angle of the first row [rad]; half an interval for midpoints.
+        intervals : int
+            Intervals n of the splines.
+        **options
+            film, one_sided, factor.
+
+        Raises
+        ------
+        DynamicsError
+            With every fault found.
+        """
+        from scipy.interpolate import CubicSpline
+
+        load, table = np.asarray(forces, dtype=np.float64), np.asarray(deflections, dtype=np.float64)
+        _checked_table(load, table, order, intervals)
+        reach = float(table[:, -1].max())
+        knots = reach * (np.arange(intervals + 1) / intervals) ** 2
+        values = np.zeros((len(table), intervals + 1))
+        for row, depth in zip(values, table, strict=True):
+            root = np.sqrt(depth)
+            secant = CubicSpline(root, load / depth)
+            inside = np.clip(np.sqrt(knots), root[0], root[-1])
+            row[:] = secant(inside) * knots
+            below, above = knots < depth[0], knots > depth[-1]
+            row[below] = knots[below] * (
+                secant(root[0]) + secant(root[0], 1) * (np.sqrt(knots[below]) - root[0])
+            )
+            steep = secant(root[-1]) + 0.5 * root[-1] * secant(root[-1], 1)
+            row[above] = load[-1] + steep * (knots[above] - depth[-1])
+        law = cls.from_forces(
+            knots, values, half_backlash=half_backlash, order=order, first_angle=first_angle, **options
+        )
+        return law
+
+    @classmethod
+    def from_forces(
+        cls,
+        depths: npt.ArrayLike,
+        forces: npt.ArrayLike,
+        *,
+        half_backlash: float,
+        order: int = 8,
+        first_angle: float = 0.0,
+        **options: Any,
+    ) -> TabulatedContact:
+        """Law through forces at knots reach (i/n)^2, i = 0 .. n, of the depth.
+
+        Parameters
+        ----------
+        depths : array_like, shape (n + 1,)
+            The knots.
+        forces : array_like, shape (a, n + 1)
+            Force at each of a equally spaced angles, 0 at no depth.
+        half_backlash, order, first_angle, **options
+            As in `from_deflections`.
+
+        Raises
+        ------
+        DynamicsError
+            With every fault found.
+        """
+        from scipy.interpolate import CubicSpline
+
+        knots, table = np.asarray(depths, dtype=np.float64), np.asarray(forces, dtype=np.float64)
+        faults = Faults()
+        n = len(knots) - 1
+        graded = n >= 4 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
+        if not graded:
+            faults.add("depths", knots.tolist(), "reach (i/n)^2, n >= 4", "use from_deflections")
+        if table.shape != (table.shape[0], n + 1) or not np.all(np.isfinite(table)) or np.any(table[:, 0]):
+            faults.add("forces", table.shape, f"finite, (angles, {n + 1}), 0 at no depth", "check the table")
+        count = len(table)
+        whole = faults.whole("order", order, 0, max((count - 1) // 2, 0), "keep it below half the angles")
+        faults.raise_if_any()
+        angles = first_angle + 2.0 * np.pi * np.arange(count) / count
+        j = np.arange(1, whole + 1)
+        waves = np.vstack([np.ones(count), np.cos(j[:, None] * angles), np.sin(j[:, None] * angles)])
+        parts = waves @ table / count
+        parts[1:] *= 2.0
+        remainder = np.max(np.abs(waves.T @ parts - table)[:, 1:] / np.mean(table[:, 1:], axis=0))
+        spline = CubicSpline(knots, parts, axis=1, bc_type=("not-a-knot", (2, np.zeros(len(parts)))))
+        rows = np.moveaxis(spline.c[::-1], (0, 1, 2), (2, 1, 0)).reshape(len(parts), 4 * n)
+        ends = np.column_stack([spline(knots[-1]), spline(knots[-1], 1)])
+        return cls(
+            half_backlash=half_backlash,
+            coefficients=np.column_stack([rows, ends]),
+            reach=float(knots[-1]),
+            remainder=float(remainder),
+            **options,
+        )
+
+    @property
+    def order(self) -> int:
+        """Highest harmonic."""
+        return len(self.coefficients) // 2
+
+    @property
+    def intervals(self) -> int:
+        """Intervals of the splines."""
+        return (np.shape(self.coefficients)[1] - 2) // 4
+
+    @property
+    def knots(self) -> FloatArray:
+        """Depths at which the splines' pieces meet."""
+        return self.reach * (np.arange(self.intervals + 1) / self.intervals) ** 2
+
+    def slopes(self, angles: FloatArray) -> FloatArray:
+        """Stiffness at four places of each interval, shape (angles, 4 intervals)."""
+        n = self.intervals
+        share = np.arange(4) / 3.0 * np.diff(self.knots)[:, None]
+        c = self.coefficients[:, : 4 * n].reshape(-1, n, 4, 1)
+        slope = c[:, :, 1] + share * (2.0 * c[:, :, 2] + 3.0 * share * c[:, :, 3])
+        j = np.arange(1, self.order + 1)
+        waves = np.vstack(
+            [np.ones(len(angles)), np.cos(j[:, None] * angles), np.sin(j[:, None] * angles)]
+        )
+        return np.asarray(waves.T @ slope.reshape(len(slope), -1))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters."""
+        return ("half_backlash", "film.damping", "film.thickness", "factor")
+
+    @property
+    def values(self) -> FloatArray:
+        """Their values."""
+        return np.array([self.half_backlash, self.film.damping, self.film.thickness, self.factor])
+
+    @property
+    def data(self) -> FloatArray:
+        """Splines, as the kernel reads them."""
+        head = [self.sides, float(self.order), float(self.intervals), self.reach]
+        return np.concatenate([head, self.coefficients.ravel()])
+
+    @property
+    def compiled(self) -> Any:
+        """Function pointer."""
+        from dynamics.smooth.kernels.laws import tabulated_contact
+
+        return tabulated_contact
+
+
+def _checked_table(load: FloatArray, table: FloatArray, order: int, intervals: int) -> None:
+    """Raise DynamicsError with every fault of the samples."""
+    faults = Faults()
+    if load.ndim != 1 or len(load) < 4 or not np.all(np.diff(load, prepend=0.0) > 0.0):
+        faults.add("forces", load.tolist(), "four or more, rising from more than 0", "sort them, drop zero")
+    if table.ndim != 2 or table.shape[1:] != load.shape or not np.all(np.isfinite(table)):
+        faults.add("deflections", table.shape, f"finite, (angles, {load.size})", "one row per angle")
+    elif not np.all(np.diff(table, axis=1, prepend=0.0) > 0.0):
+        row = int(np.argmin(np.diff(table, axis=1, prepend=0.0).min(axis=1)))
+        faults.add("deflections", f"not rising in row {row}", "rising with the force", "check the sweep")
+    faults.whole("order", order, 0, max((len(table) - 1) // 2, 0), "keep it below half the angles")
+    faults.whole("intervals", intervals, 4, 10_000, "32 is usual")
+    faults.raise_if_any()
