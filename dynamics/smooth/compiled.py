@@ -48,7 +48,8 @@ class CompiledLaw:
     force : callable
         Either ``force(theta, x, v, region, q)`` that returns f and is written with numpy's functions, which take
         complex numbers too: derivatives are taken by an imaginary step, exact to rounding, so that within a region
-        the function must be analytic (no abs, max, comparison of x). Or a numba ``cfunc`` of the type
+        the function must be analytic (no abs, max, comparison of x), and powers must be written as products, since a
+        complex power of a negative number loses the step. Both are checked against differences. Or a numba ``cfunc`` of the type
         `dynamics.smooth.kernels.compiling.LAW`, which gives its own derivatives and is faster.
     parameters : tuple of (str, float)
         Names and values of q.
@@ -63,7 +64,7 @@ class CompiledLaw:
     Raises
     ------
     DynamicsError
-        With every fault found.
+        With every fault found; when first used, if derivatives by imaginary steps differ from differences.
 
     Notes
     -----
@@ -119,7 +120,7 @@ class CompiledLaw:
     @property
     def compiled(self) -> Any:
         """Function pointer."""
-        return self.force if hasattr(self.force, "native_name") else _compiled(self.force)
+        return self.force if hasattr(self.force, "native_name") else _checked(self)
 
     def with_value(self, name: str, value: float) -> CompiledLaw:
         """Return the law with one parameter changed.
@@ -136,8 +137,8 @@ class CompiledLaw:
 
 
 @lru_cache(maxsize=64)
-def _compiled(force: Callable[..., Any]) -> Any:
-    """Function pointer with derivatives by imaginary steps."""
+def _compiled(force: Callable[..., Any]) -> tuple[Any, Any]:
+    """Function pointer with derivatives by imaginary steps, and the function alone."""
     from numba import cfunc, njit
 
     from dynamics.smooth.kernels.compiling import LAW
@@ -155,4 +156,32 @@ def _compiled(force: Callable[..., Any]) -> Any:
                 out[3 + j] = inner(theta, complex(x, 0.0), complex(v, 0.0), region, z).imag / STEP
                 z[j] = complex(q[j], 0.0)
 
-    return cfunc(LAW, error_model="numpy")(law)
+    return cfunc(LAW, error_model="numpy")(law), inner
+
+
+@lru_cache(maxsize=1024)
+def _checked(law: CompiledLaw) -> Any:
+    """Function pointer, or DynamicsError if derivatives by imaginary steps are not those of the function."""
+    pointer, inner = _compiled(law.force)
+    q, worst = law.values, 0.0
+    for angle, x, v in ((0.4, 1.3, 0.7), (2.9, -1.3, 0.7), (4.1, 0.6, -0.9), (5.5, -0.4, -1.1)):
+        x, v = x * law.size, v * law.size
+        region = 0
+        for i, (n_x, n_v, sign, place) in enumerate(law.surfaces):
+            level = sign * q[int(place)] if place >= 0 else 0.0
+            region |= int(n_x * x + n_v * v > level) << i
+        h = 1e-4 * law.size
+        z = q.astype(np.complex128)
+        for dx, dv in ((1.0, 0.0), (0.0, 1.0)):
+            there, back = (inner(angle, x + s * h * dx, v + s * h * dv, region, q) for s in (1.0, -1.0))
+            imaginary = inner(angle, complex(x, STEP * dx), complex(v, STEP * dv), region, z)
+            slope = complex(imaginary).imag / STEP
+            size = max(abs(there), abs(back), abs(slope) * law.size, 1e-300) / law.size
+            worst = max(worst, abs((there - back) / (2.0 * h) - slope) / size)
+    if not worst < 1e-4:
+        faults = Faults()
+        allowed = "analytic in X and V within a region"
+        remedy = "write x*x*x for x**3, declare a surface where it is not smooth, use numpy's functions"
+        faults.add("force", f"derivatives off by {worst:.1e}", allowed, remedy)
+        faults.raise_if_any()
+    return pointer

@@ -22,7 +22,8 @@ TOLERANCE = 1e-12
 REASONS = {
     1: "the motion grew beyond 1e150",
     2: "more than 100 000 crossings in a period",
-    3: "the step fell below 1e-14 of a radian: the law is not smooth where no surface is declared",
+    3: "more than a million steps in a period, or one below 1e-14 of a radian: the law is not smooth, or its "
+    "derivatives are wrong",
     4: "the motion sticks to a switching surface, which this flow does not follow",
 }
 

@@ -60,10 +60,7 @@ class SmoothOscillator:
     def __post_init__(self) -> None:
         """Check; every fault is listed."""
         faults = Faults()
-        lacking = [
-            name for name in ("names", "values", "data", "surfaces", "compiled") if not hasattr(self.law, name)
-        ]
-        if lacking:
+        if not all(hasattr(self.law, name) for name in ("names", "values", "data", "surfaces")):
             faults.add("law", self.law, "a law", "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw")
         for name in OWN:
             if name != "frequency":

@@ -14,8 +14,9 @@ from dynamics.errors import DynamicsError, Fault, Faults
 from dynamics.exponents import BATCHES, LyapunovResult
 from dynamics.flow import checked_state
 from dynamics.shooting import motion_label
-from dynamics.smooth.flow import REASONS, finer, follow
+from dynamics.smooth.flow import REASONS, FlowMap, finer, follow
 from dynamics.smooth.oscillator import Engine, SmoothOscillator
+from dynamics.smooth.shooting import find_orbit
 from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, repeat_after
 
 __all__ = ["force", "lyapunov_exponents", "rest_state", "sweep"]
@@ -76,8 +77,8 @@ def sweep(
     values: npt.ArrayLike = (),
     direction: str = "up",
     *,
-    keep: int = 32,
-    transient: int = 200,
+    keep: int = 64,
+    transient: int | None = None,
     initial: npt.ArrayLike | None = None,
     max_period: int = 16,
     tolerance: float = TOLERANCE,
@@ -97,8 +98,9 @@ def sweep(
         "up" visits the values in rising order, "down" in falling order; the result keeps the order given.
     keep : int
         Periods kept, at least twice `max_period`.
-    transient : int
-        Periods dropped before those.
+    transient : int, optional
+        Periods dropped before those. Left out: as many as linear damping needs for a disturbance to shrink by 1e-6,
+        between 200 and 5000; a motion that does not repeat then is given three times as many again.
     initial : array_like, shape (2,), optional
         State at the first value visited. Left out: at rest under the mean force.
     max_period : int
@@ -127,7 +129,7 @@ def sweep(
         faults.add("direction", direction, "'up' or 'down'", "call twice for both")
     longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
     kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
-    wait = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+    wait = None if transient is None else faults.whole("transient", transient, 0, 10**9, "give 0 or more")
     faults.raise_if_any()
     ascending = np.argsort(grid, kind="stable")
     order = ascending if direction == "up" else ascending[::-1]
@@ -136,18 +138,18 @@ def sweep(
     restart = state.copy()
     states, impacts = np.full((len(grid), kept, 2), np.nan), np.full((len(grid), 2), np.nan)
     labels, periods = [DIVERGED] * len(grid), np.zeros(len(grid), dtype=np.int64)
-    error, lost = 0.0, list[float]()
+    error, total, lost = 0.0, 0, list[float]()
     for done, i in enumerate(order, start=1):
         here = oscillator.with_parameter(parameter, float(grid[i]))
-        motion = follow(Engine(here, tolerance), state, kept, wait, derivatives=False)
+        motion, n, label, used = _settled(here, state, kept, wait, longest, tolerance)
+        total += used
         if motion.message:
             lost.append(float(grid[i]))
             state = restart.copy()
         else:
             states[i], impacts[i] = motion.states, motion.counts.mean(axis=0)
-            n = periods[i] = repeat_after(motion.states, longest)
-            p, q = motion.counts[kept - n :].sum(axis=0) if n else (0, 0)
-            labels[i] = motion_label(int(n), (int(p), int(q))) if n else APERIODIC
+            periods[i] = n
+            labels[i] = label
             error = max(error, _map_error(here, states[i, -2], states[i, -1], tolerance))
             state = motion.states[-1].copy()
         if progress is not None:
@@ -155,10 +157,35 @@ def sweep(
     message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
     if lost:
         message += f"; not followed at {len(lost)}, first {parameter} = {lost[0]:g}: check the law there"
-    cost = Cost(time.perf_counter() - began, 0, 0, len(grid) * (kept + wait))
+    cost = Cost(time.perf_counter() - began, 0, 0, total)
     return SweepResult(
         parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
     )  # fmt: skip
+
+
+def _settled(
+    here: SmoothOscillator, state: FloatArray, kept: int, wait: int | None, longest: int, tolerance: float
+) -> tuple[FlowMap, int, str, int]:
+    """Motion after its transient, the periods after which it repeats, its label, the periods spent."""
+    decay = here.damping_ratio * here.period
+    skip = 5000 if decay <= 0.0 else int(min(max(math.log(1e6) / decay, 200), 5000))
+    engine, used = Engine(here, tolerance), 0
+    for attempt in range(4):
+        skip = skip if wait is None else wait
+        motion = follow(engine, state, kept, skip, derivatives=False)
+        used += kept + skip
+        n = 0 if motion.message else repeat_after(motion.states, longest, max(1e-6, 1e3 * tolerance))
+        if n or motion.message or wait is not None or attempt == 3:
+            break
+        state = motion.states[-1]
+    if n > 1:  # close to a period doubling a motion of period n/2 still alternates
+        orbit = find_orbit(here, motion.states[-1], n, tolerance=tolerance)
+        near = 0.05 * float(np.max(np.abs(motion.states)))
+        if orbit.converged and orbit.stable and orbit.periods < n:
+            if float(np.max(np.abs(orbit.state - motion.states[-1]))) < near:
+                return motion, orbit.periods, orbit.label, used
+    p, q = motion.counts[kept - n :].sum(axis=0) if n else (0, 0)
+    return motion, n, motion_label(n, (int(p), int(q))) if n else APERIODIC, used
 
 
 def _map_error(here: SmoothOscillator, before: FloatArray, after: FloatArray, tolerance: float) -> float:

@@ -12,6 +12,7 @@ from dynamics.smooth.kernels.compiling import (
     FINE,
     FREQUENCY,
     MAX_EVENTS,
+    MAX_STEPS,
     OWN,
     STUCK,
     TINY,
@@ -125,7 +126,7 @@ def cross(
             for j in range((len(y) - COLUMNS) // 2):
                 at = COLUMNS + 2 * j
                 off = surfaces[i, 0] * y[at] + surfaces[i, 1] * y[at + 1]
-                if j >= 2 and ways[j - 2] - OWN == int(surfaces[i, 3]):
+                if j >= 2 and ways[j - 2] >= OWN and ways[j - 2] - OWN == int(surfaces[i, 3]):
                     off -= surfaces[i, 2]
                 y[at + 1] += jump * off / rate
             slope(model, theta, y, new, out, k, 0)
@@ -168,13 +169,16 @@ def carry(
     if going[0] < 0.0:
         going[0] = regions_of(model, surfaces, start, y, out, k, on)
     region = int(going[0])
-    theta, met, rejected = start, 0, False
+    theta, met, tried, rejected = start, 0, 0, False
     slope(model, theta, y, region, out, k, 0)
     while theta < stop:
         rest = stop - theta
         h = min(going[1], rest)
         attempt(model, theta, h, y, region, out, k, stage, path, new)
         going[3] += 12.0
+        tried += 1
+        if tried > MAX_STEPS:
+            return TINY
         error = discrepancy(h, y, new, k, tol, size)
         if not error <= 1.0:
             going[1] = next_step(h, error, True)
@@ -207,12 +211,12 @@ def carry(
         theta = min(theta + length, stop)
         copy(new, y)
         release(on)
-        side = -way_of(region, i)
+        side, before = -way_of(region, i), region
         region, stuck = cross(model, surfaces, i, theta, y, region, on, out, k)
         if stuck:
             return STUCK
-        if side < 0 and i < 2:
-            falls[i] += 1
+        for j in range(min(2, len(surfaces))):
+            falls[j] += (before >> j) & 1 & ~(region >> j)
         note(events, int(going[2]), theta + turns * TURN, i, side, y, k[0, 1] * par[FREQUENCY])
         going[2] += 1.0
         going[0] = region

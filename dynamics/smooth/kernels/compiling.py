@@ -18,6 +18,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 ZETA, FORCE, ERROR, FREQUENCY, PHASE, OWN = range(6)  # places in `par`; from OWN on a parameter of the law
 FINE, DIVERGED, CROWDED, TINY, STUCK = range(5)
 MAX_EVENTS = 100_000  # in one call, which is a period at most
+MAX_STEPS = 1_000_000  # likewise: seconds of work
 VECTOR = types.Array(types.float64, 1, "C")
 LAW = types.void(types.float64, types.float64, types.float64, types.int64, VECTOR, VECTOR, VECTOR)
 

@@ -120,10 +120,10 @@ def discrepancy(h: float, y: FloatArray, new: FloatArray, k: FloatArray, tol: fl
                 e3 += E3[s] * k[s, i]
             high += (e5 / scale) ** 2
             low += (e3 / scale) ** 2
-        if high > 0.0 or not high == high:
-            error = h * high / math.sqrt(2.0 * (high + 0.01 * low))
-            if not error <= worst:
-                worst = error
+        if not high < math.inf:
+            return math.inf
+        if high > 0.0:
+            worst = max(worst, h * high / math.sqrt(2.0 * (high + 0.01 * low)))
         at += 2 if at > 0 else COLUMNS
     return worst
 
