@@ -1,8 +1,8 @@
 """Oscillators whose restoring force is any smooth or piecewise smooth function of angle, deflection and speed.
 
 The functions have the names and arguments of those of the exact flow, and results of the same kind:
-``smooth.find_orbit(oscillator, guess)`` instead of ``find_orbit(oscillator, guess)``. Steps are of order 8 with a stated
-tolerance; switchings are met exactly. Names are loaded when first used.
+``smooth.find_orbit(oscillator, guess)`` instead of ``find_orbit(oscillator, guess)``. Steps are of order 8 with a
+stated tolerance; switchings are met exactly. Names are loaded when first used.
 """
 
 from __future__ import annotations

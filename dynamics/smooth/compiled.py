@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.errors import Faults
-from dynamics.smooth.laws import unknown
+from dynamics.smooth.naming import unknown
 
 __all__ = ["CompiledLaw", "Surface"]
 
@@ -49,8 +49,8 @@ class CompiledLaw:
         Either ``force(theta, x, v, region, q)`` that returns f and is written with numpy's functions, which take
         complex numbers too: derivatives are taken by an imaginary step, exact to rounding, so that within a region
         the function must be analytic (no abs, max, comparison of x), and powers must be written as products, since a
-        complex power of a negative number loses the step. Both are checked against differences. Or a numba ``cfunc`` of the type
-        `dynamics.smooth.kernels.compiling.LAW`, which gives its own derivatives and is faster.
+        complex power of a negative number loses the step. Both are checked against differences. Or a numba ``cfunc``
+        of the type `dynamics.smooth.kernels.compiling.LAW`, which gives its own derivatives and is faster.
     parameters : tuple of (str, float)
         Names and values of q.
     surfaces : tuple of Surface

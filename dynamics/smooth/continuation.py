@@ -72,9 +72,7 @@ def continue_branch(
         faults.add("orbit", value, f"{parameter} within bounds", "widen the bounds")
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.size)
-    problem = FlowProblem(
-        orbit.oscillator, parameter, orbit.periods, low, high, scale, orbit.tolerance
-    )
+    problem = FlowProblem(orbit.oscillator, parameter, orbit.periods, low, high, scale, orbit.tolerance)
     return follow_branch(
         problem, orbit.state, value, (step, max_step, min_step), max_points=max_points, progress=progress
     )

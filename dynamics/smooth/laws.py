@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import dataclasses
-import math
-import re
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError, Faults
+from dynamics.errors import Faults
+from dynamics.smooth.naming import changed, series, series_names
 from dynamics.stiffness import FourierStiffness
 
 __all__ = ["Law", "PowerContact", "SmoothedBacklash", "SqueezeFilm"]
@@ -144,7 +142,8 @@ class ContactLaw:
         DynamicsError
             If there is no such parameter or the value is not allowed.
         """
-        return changed(self, name, value)
+        new: L = changed(self, name, value)
+        return new
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,50 +273,6 @@ class PowerContact(ContactLaw):
         return power_contact
 
 
-def series(stiffness: FourierStiffness) -> tuple[float, ...]:
-    """Mean, amplitudes, phases."""
-    return (stiffness.mean, *stiffness.amplitudes, *stiffness.phases)
-
-
-def series_names(stiffness: FourierStiffness) -> tuple[str, ...]:
-    """Names of these, as in `GearOscillator.with_parameter`."""
-    terms = [f"stiffness.{part}[{j}]" for part in ("amplitudes", "phases") for j in range(stiffness.order)]
-    return ("stiffness.mean", *terms)
-
-
-def changed(record: Any, name: str, value: float) -> Any:
-    """Copy of nested frozen records with the number at a path such as "stiffness.amplitudes[0]" changed.
-
-    Raises
-    ------
-    DynamicsError
-        If the record has no such parameter.
-    """
-    if name not in getattr(record, "names", (name,)):
-        raise unknown(name, record.names)
-    head, _, rest = name.partition(".")
-    if rest:
-        return dataclasses.replace(record, **{head: changed(getattr(record, head), rest, value)})
-    match = re.fullmatch(r"(\w+)\[(\d+)\]", head)
-    if match is None:
-        return dataclasses.replace(record, **{head: float(value)})
-    items = list(getattr(record, match[1]))
-    items[int(match[2])] = float(value)
-    return dataclasses.replace(record, **{match[1]: tuple(items)})
-
-
-def unknown(name: str, names: tuple[str, ...]) -> DynamicsError:
-    """Error that names what there is."""
-    faults = Faults()
-    faults.add("parameter", name, ", ".join(names), "name one of these")
-    return DynamicsError(tuple(faults.found))
-
-
 def _check_stiffness(faults: Faults, stiffness: object) -> None:
     if not isinstance(stiffness, FourierStiffness):
         faults.add("stiffness", stiffness, "a FourierStiffness", "build one, or fit one with fit_fourier")
-
-
-def natural_size(*sizes: float) -> float:
-    """Largest of some sizes, never 0."""
-    return max([abs(s) for s in sizes if math.isfinite(s)] + [1e-300])

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.errors import DynamicsError, Faults
-from dynamics.smooth.laws import Law, natural_size, unknown
+from dynamics.smooth.laws import Law
+from dynamics.smooth.naming import natural_size, unknown
 
 __all__ = ["OWN", "Engine", "SmoothOscillator"]
 
@@ -61,7 +62,9 @@ class SmoothOscillator:
         """Check; every fault is listed."""
         faults = Faults()
         if not all(hasattr(self.law, name) for name in ("names", "values", "data", "surfaces")):
-            faults.add("law", self.law, "a law", "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw")
+            faults.add(
+                "law", self.law, "a law", "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw"
+            )
         for name in OWN:
             if name != "frequency":
                 faults.number(name, getattr(self, name))

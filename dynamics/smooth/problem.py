@@ -96,11 +96,20 @@ class PeriodMap(Protocol):
         Residual over the stretch of the map that cannot be got below.
     """
 
-    parameter: str
-    periods: int
-    low: float
-    high: float
-    scale: float
+    @property
+    def parameter(self) -> str: ...  # noqa: D102
+
+    @property
+    def periods(self) -> int: ...  # noqa: D102
+
+    @property
+    def low(self) -> float: ...  # noqa: D102
+
+    @property
+    def high(self) -> float: ...  # noqa: D102
+
+    @property
+    def scale(self) -> float: ...  # noqa: D102
 
     @property
     def noise(self) -> float: ...  # noqa: D102
@@ -157,17 +166,15 @@ class FlowProblem:
         levels = np.where(places >= 0, upright[:, 2] * here.law.values[places], 0.0)
         counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return MapPoint(
-            u.copy(), value, here.period, image.state / self.scale, derivative, math.exp(image.log_determinant), counts, levels,
-            extrema,
+            u.copy(), value, here.period, image.state / self.scale, derivative, math.exp(image.log_determinant), counts,
+            levels, extrema,
         )  # fmt: skip
 
     def states(self, point: MapPoint) -> FloatArray:
         """X and V over the scale after each period."""
         here = self.oscillator.with_parameter(self.parameter, point.value)
         engine = Engine(here, self.tolerance)
-        return (
-            follow(engine, point.u[:2] * self.scale, self.periods, derivatives=False).states / self.scale
-        )
+        return follow(engine, point.u[:2] * self.scale, self.periods, derivatives=False).states / self.scale
 
     def refined(self) -> FlowProblem:
         """The same with an eighth of the tolerance."""

@@ -141,7 +141,9 @@ def find_orbit(
         if n != periods:
             message += f"; the orbit has period {n}, a divisor of the {periods} asked for"
         if not good:
-            message = f"the orbit moves by {error:.0e} of its size with a finer tolerance: lower the tolerance"
+            message = (
+                f"the orbit moves by {error:.0e} of its size with a finer tolerance: lower the tolerance"
+            )
     cost = Cost(time.perf_counter() - began, 2, len(history) - 1, used + n * (len(history) + 2))
     return _assembled(engine, x, n, image, history, error, cost, good, message)
 

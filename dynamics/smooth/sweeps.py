@@ -181,9 +181,9 @@ def _settled(
     if n > 1:  # close to a period doubling a motion of period n/2 still alternates
         orbit = find_orbit(here, motion.states[-1], n, tolerance=tolerance)
         near = 0.05 * float(np.max(np.abs(motion.states)))
-        if orbit.converged and orbit.stable and orbit.periods < n:
-            if float(np.max(np.abs(orbit.state - motion.states[-1]))) < near:
-                return motion, orbit.periods, orbit.label, used
+        gap = float(np.max(np.abs(orbit.state - motion.states[-1])))
+        if orbit.converged and orbit.stable and orbit.periods < n and gap < near:
+            return motion, orbit.periods, orbit.label, used
     p, q = motion.counts[kept - n :].sum(axis=0) if n else (0, 0)
     return motion, n, motion_label(n, (int(p), int(q))) if n else APERIODIC, used
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,15 +26,15 @@ class TabulatedContact(ContactLaw):
 
         f = c \sum_j \left[a_j(\delta)\cos j\theta + b_j(\delta)\sin j\theta\right]
 
-    with cubic splines :math:`a_j, b_j` that are twice continuously differentiable in the depth
-    :math:`\delta = X - D > 0`, on knots that lie closer towards :math:`\delta = 0`, and go on as straight lines
-    beyond the samples; the same, mirrored, at the back. Build one with `from_deflections` or `from_forces`.
+    with splines :math:`a_j, b_j` of degree 5 in the depth :math:`\delta = X - D > 0`, on knots that lie closer towards
+    :math:`\delta = 0`: four times continuously differentiable, three times where they go on as straight lines beyond
+    the samples; the same, mirrored, at the back. Build one with `from_deflections` or `from_forces`.
 
     Parameters
     ----------
     half_backlash : float
         :math:`D \ge 0`.
-    coefficients : ndarray, shape (1 + 2 J, 4 n + 2)
+    coefficients : ndarray, shape (1 + 2 J, 6 n + 2)
         Splines of the mean, the cosines and the sines.
     reach : float
         Largest depth of the samples.
@@ -63,15 +64,18 @@ class TabulatedContact(ContactLaw):
         faults.number("reach", self.reach, "more than 0", "give the largest depth", lambda r: r > 0.0)
         faults.number("factor", self.factor, "more than 0", "1 is the law itself", lambda c: c > 0.0)
         shape = np.shape(self.coefficients)
-        if len(shape) != 2 or shape[0] % 2 == 0 or shape[1] < 6 or shape[1] % 4 != 2:
-            faults.add("coefficients", shape, "(1 + 2 J, 4 n + 2)", "use from_deflections")
+        if len(shape) != 2 or shape[0] % 2 == 0 or shape[1] < 8 or shape[1] % 6 != 2:
+            faults.add("coefficients", shape, "(1 + 2 J, 6 n + 2)", "use from_deflections")
         faults.raise_if_any()
         steepness = self.slopes(np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False))
         if not steepness.min() > 0.0:
             turn, at = np.unravel_index(int(np.argmin(steepness)), steepness.shape)
             where = f"at angle {2 * np.pi * turn / 128:.3f} and interval {at // 4} of {self.intervals}"
             faults.add(
-                "samples", f"falling {where}", "a force that grows with the depth", "fewer harmonics, more samples"
+                "samples",
+                f"falling {where}",
+                "a force that grows with the depth",
+                "fewer harmonics, more samples",
             )
         faults.raise_if_any()
 
@@ -132,10 +136,9 @@ class TabulatedContact(ContactLaw):
             )
             steep = secant(root[-1]) + 0.5 * root[-1] * secant(root[-1], 1)
             row[above] = load[-1] + steep * (knots[above] - depth[-1])
-        law = cls.from_forces(
+        return cls.from_forces(
             knots, values, half_backlash=half_backlash, order=order, first_angle=first_angle, **options
         )
-        return law
 
     @classmethod
     def from_forces(
@@ -164,14 +167,14 @@ class TabulatedContact(ContactLaw):
         DynamicsError
             With every fault found.
         """
-        from scipy.interpolate import CubicSpline
+        from scipy.interpolate import make_interp_spline
 
         knots, table = np.asarray(depths, dtype=np.float64), np.asarray(forces, dtype=np.float64)
         faults = Faults()
         n = len(knots) - 1
-        graded = n >= 4 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
+        graded = n >= 6 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
         if not graded:
-            faults.add("depths", knots.tolist(), "reach (i/n)^2, n >= 4", "use from_deflections")
+            faults.add("depths", knots.tolist(), "reach (i/n)^2, n >= 6", "use from_deflections")
         if table.shape != (table.shape[0], n + 1) or not np.all(np.isfinite(table)) or np.any(table[:, 0]):
             faults.add("forces", table.shape, f"finite, (angles, {n + 1}), 0 at no depth", "check the table")
         count = len(table)
@@ -183,12 +186,16 @@ class TabulatedContact(ContactLaw):
         parts = waves @ table / count
         parts[1:] *= 2.0
         remainder = np.max(np.abs(waves.T @ parts - table)[:, 1:] / np.mean(table[:, 1:], axis=0))
-        spline = CubicSpline(knots, parts, axis=1, bc_type=("not-a-knot", (2, np.zeros(len(parts)))))
-        rows = np.moveaxis(spline.c[::-1], (0, 1, 2), (2, 1, 0)).reshape(len(parts), 4 * n)
-        ends = np.column_stack([spline(knots[-1]), spline(knots[-1], 1)])
+        # the second and third knot are left out for the two conditions at the far end, where a straight line follows
+        places = np.concatenate([[knots[0]] * 6, knots[3:-1], [knots[-1]] * 6])
+        ends: Any = (None, [(m, np.zeros(len(parts))) for m in (2, 3)])  # scipy's stubs know no derivatives
+        spline = make_interp_spline(knots, parts.T, k=5, t=places, bc_type=ends)
+        terms = [spline(knots[:-1], m) / math.factorial(m) for m in range(6)]
+        rows = np.stack(terms, axis=-1).transpose(1, 0, 2).reshape(len(parts), 6 * n)
+        last = np.column_stack([spline(knots[-1]), spline(knots[-1], 1)])
         return cls(
             half_backlash=half_backlash,
-            coefficients=np.column_stack([rows, ends]),
+            coefficients=np.column_stack([rows, last]),
             reach=float(knots[-1]),
             remainder=float(remainder),
             **options,
@@ -202,7 +209,7 @@ class TabulatedContact(ContactLaw):
     @property
     def intervals(self) -> int:
         """Intervals of the splines."""
-        return (np.shape(self.coefficients)[1] - 2) // 4
+        return (int(np.shape(self.coefficients)[1]) - 2) // 6
 
     @property
     def knots(self) -> FloatArray:
@@ -213,12 +220,12 @@ class TabulatedContact(ContactLaw):
         """Stiffness at four places of each interval, shape (angles, 4 intervals)."""
         n = self.intervals
         share = np.arange(4) / 3.0 * np.diff(self.knots)[:, None]
-        c = self.coefficients[:, : 4 * n].reshape(-1, n, 4, 1)
-        slope = c[:, :, 1] + share * (2.0 * c[:, :, 2] + 3.0 * share * c[:, :, 3])
+        c = self.coefficients[:, : 6 * n].reshape(-1, n, 6, 1)
+        slope = np.zeros((len(c), n, 4))
+        for m in range(5, 0, -1):
+            slope = slope * share + m * c[:, :, m]
         j = np.arange(1, self.order + 1)
-        waves = np.vstack(
-            [np.ones(len(angles)), np.cos(j[:, None] * angles), np.sin(j[:, None] * angles)]
-        )
+        waves = np.vstack([np.ones(len(angles)), np.cos(j[:, None] * angles), np.sin(j[:, None] * angles)])
         return np.asarray(waves.T @ slope.reshape(len(slope), -1))
 
     @property
@@ -256,5 +263,5 @@ def _checked_table(load: FloatArray, table: FloatArray, order: int, intervals: i
         row = int(np.argmin(np.diff(table, axis=1, prepend=0.0).min(axis=1)))
         faults.add("deflections", f"not rising in row {row}", "rising with the force", "check the sweep")
     faults.whole("order", order, 0, max((len(table) - 1) // 2, 0), "keep it below half the angles")
-    faults.whole("intervals", intervals, 4, 10_000, "32 is usual")
+    faults.whole("intervals", intervals, 6, 10_000, "32 is usual")
     faults.raise_if_any()

@@ -6,7 +6,10 @@ import importlib.util
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from dynamics import SmoothOscillator, smooth
 
 FOLDER = Path(__file__).parents[2] / "examples" / "motion"
 
@@ -61,3 +64,28 @@ def test_table_of_all_scans():
     told = "\n".join(example("table").main([]))
     assert told.count("| reproduced") == 14
     assert told.count("printed late") == 4
+
+
+def test_loaded_law_gives_back_the_finite_elements():
+    """At every position of the sweep the law has the force that gave the deflection."""
+    study = example("loaded_law")
+    here = study.setting(held=False)
+    law = study.law(here, 19)
+    osc = SmoothOscillator(law, 0.05, 0.1, 0.1, 0.5)
+    angles = 2 * np.pi * (np.arange(40) + 0.5) / 40
+    for k in (4, 7, 10):
+        x = law.half_backlash + here.deflection[:, k] / here.scales.length
+        force = here.scales.force(smooth.force(osc, angles, x)[:, 0])
+        assert force == pytest.approx(here.force[k], rel=2e-3)
+
+
+@pytest.mark.slow
+def test_loaded_law_lies_between_secant_and_tangent(tmp_path: Path):
+    """So do the first and the last fold of the motion in contact."""
+    files = example("loaded_law").main(["--out", str(tmp_path), "--order", "1"])
+    assert all(f.stat().st_size > 100 for f in files)
+    rows = [line for line in files[-1].read_text().splitlines() if "jumps at" in line]
+    folds = [[int(v) for v in row.split("jumps at ")[1].split(" rpm")[0].split(", ")] for row in rows]
+    secant, tangent, loaded = (np.array(f)[:2] for f in folds)  # the way up ends, the way down ends
+    assert np.all(secant < loaded)
+    assert np.all(loaded < tangent)

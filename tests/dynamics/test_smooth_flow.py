@@ -203,7 +203,9 @@ def test_derivatives_against_differences(name):
         if parameter.startswith("film") and osc.get(parameter) < h:
             continue  # no negative damping
         column = (image(start, parameter, h) - image(start, parameter, -h)) / (2 * h)
-        assert column == pytest.approx(done.slope[:, j], abs=1e-6 * max(1, np.max(np.abs(done.slope)))), parameter
+        assert column == pytest.approx(done.slope[:, j], abs=1e-6 * max(1, np.max(np.abs(done.slope)))), (
+            parameter
+        )
     assert np.log(np.linalg.det(done.jacobian)) == pytest.approx(done.log_determinant, abs=1e-11)
     if not osc.law.damped:
         assert done.log_determinant == pytest.approx(-0.06 * osc.period, abs=1e-13)
@@ -212,9 +214,7 @@ def test_derivatives_against_differences(name):
 def test_friction_in_closed_form():
     """Dry friction on a free oscillator takes 2 mu from the amplitude every half turn."""
     law = CompiledLaw(friction, (("mu", 0.01),), (Surface((0.0, 1.0)),))
-    done = smooth.period_map(
-        SmoothOscillator(law, 0.0, 0.0, 0.0, 1.0 / 1.5), (1.0, -1e-9), tolerance=1e-13
-    )
+    done = smooth.period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 1.0 / 1.5), (1.0, -1e-9), tolerance=1e-13)
     ends = np.abs(done.events[done.events[:, 1] == 0, 3])
     assert ends == pytest.approx(1.0 - 0.02 * np.arange(1, 4), abs=1e-12)
 
@@ -252,9 +252,7 @@ def test_touch_in_one_long_step(depth):
 
 def test_trajectory_has_the_exact_events():
     exact = GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, 0.2)
-    ours = smooth.trajectory(
-        SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 3, 40
-    )
+    ours = smooth.trajectory(SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 3, 40)
     theirs = trajectory(exact, (0.5, 0.2), 3, 40)
     for name in ("tau", "x", "v", "events", "extrema"):
         assert getattr(ours, name) == pytest.approx(getattr(theirs, name), abs=2e-11), name

@@ -216,7 +216,7 @@ def test_table_gives_back_its_law():
         forces, deflections, half_backlash=0.2, order=2, first_angle=angles[0]
     )
     osc = SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6)
-    depth = np.linspace(0.02, 1.2, 40)
+    depth = np.linspace(0.05, 1.2, 40)
     theta = 0.7
     stiff = 1.0 + 0.2 * np.cos(theta) + 0.05 * np.sin(2 * theta)
     got = smooth.force(osc, theta, 0.2 + depth)

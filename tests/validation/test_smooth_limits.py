@@ -1,4 +1,4 @@
-"""The stepwise flow against values of others: Mathieu's equation, and the exact flow as a rounding of corners vanishes."""
+"""The stepwise flow against values of others: Mathieu's equation, the exact flow as rounded corners sharpen."""
 
 from __future__ import annotations
 
@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 import dynamics
-from dynamics import FourierStiffness, GearOscillator, PowerContact, SmoothedBacklash, SmoothOscillator, smooth
+from dynamics import (
+    FourierStiffness,
+    GearOscillator,
+    PowerContact,
+    SmoothedBacklash,
+    SmoothOscillator,
+    smooth,
+)
 
 TRACES = [  # mpmath at 30 digits, as in test_mathieu
     (1.0, 0.5, -2.61241890662466),
@@ -40,7 +47,9 @@ def special(kind: str, start: float, guess, bounds) -> tuple[float, list[float]]
     found = []
     for width in WIDTHS:
         law = SmoothedBacklash(stiffness=series, half_backlash=0.2, width=width)
-        rounded = smooth.find_orbit(SmoothOscillator(law, 0.05, 0.1, 0.2, start), orbit.state, tolerance=1e-10)
+        rounded = smooth.find_orbit(
+            SmoothOscillator(law, 0.05, 0.1, 0.2, start), orbit.state, tolerance=1e-10
+        )
         branch = smooth.continue_branch(rounded, "frequency", bounds, step=0.02, max_step=0.05)
         found.append(branch.special(kind)[0].parameter)
     return exact, found

@@ -16,6 +16,7 @@ from dynamics.smooth.kernels.compiling import (
     OWN,
     STUCK,
     TINY,
+    Model,
     helper,
     kernel,
 )
@@ -40,7 +41,7 @@ EPS = 2.220446049250313e-16
 
 @helper
 def first_event(
-    model, surfaces: FloatArray, theta: float, h: float, y: FloatArray, new: FloatArray, region: int,
+    model: Model, surfaces: FloatArray, theta: float, h: float, y: FloatArray, new: FloatArray, region: int,
     on: IntArray, few: FloatArray, k: FloatArray, path: FloatArray, f: FloatArray, dense: FloatArray, c: FloatArray,
     b: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
@@ -70,7 +71,7 @@ def first_event(
 
 @helper
 def land(
-    model, surfaces: FloatArray, i: int, theta: float, h: float, guess: float, y: FloatArray, region: int,
+    model: Model, surfaces: FloatArray, i: int, theta: float, h: float, guess: float, y: FloatArray, region: int,
     few: FloatArray, out: FloatArray, k: FloatArray, stage: FloatArray, path: FloatArray, new: FloatArray,
 ) -> tuple[float, int]:  # fmt: skip
     """Shorten a step until its end lies on surface i, to the order of the step and not of its dense output.
@@ -100,7 +101,7 @@ def land(
 
 @helper
 def cross(
-    model, surfaces: FloatArray, i: int, theta: float, y: FloatArray, region: int, on: IntArray,
+    model: Model, surfaces: FloatArray, i: int, theta: float, y: FloatArray, region: int, on: IntArray,
     out: FloatArray, k: FloatArray,
 ) -> tuple[int, bool]:  # fmt: skip
     """Change sides, of all surfaces that are crossed here; the derivatives jump by the saltation matrix."""
@@ -112,7 +113,7 @@ def cross(
         speed = surfaces[j, 0] * before_x + surfaces[j, 1] * before_v
         size = abs(level(surfaces, j, q)) + abs(surfaces[j, 0] * y[0]) + abs(surfaces[j, 1] * y[1])
         here = j == i or abs(height(surfaces, j, q, y[0], y[1])) <= 8.9e-16 * size
-        if here and way_of(region, j) * speed < 0.0 or j == i:
+        if (here and way_of(region, j) * speed < 0.0) or j == i:
             new = new ^ (1 << j)
             on[j] = 1
     slope(model, theta, y, new, out, k, 0)
@@ -152,8 +153,8 @@ def note(events: FloatArray, row: int, theta: float, i: int, side: int, y: Float
 
 @kernel
 def carry(
-    model, surfaces: FloatArray, tol: float, size: float, start: float, stop: float, y: FloatArray, going: FloatArray,
-    on: IntArray, falls: IntArray, events: FloatArray, turns: int,
+    model: Model, surfaces: FloatArray, tol: float, size: float, start: float, stop: float, y: FloatArray,
+    going: FloatArray, on: IntArray, falls: IntArray, events: FloatArray, turns: int,
 ) -> int:  # fmt: skip
     """Carry y over an angle less than a few periods; 0 or why it could not be.
 
@@ -226,7 +227,7 @@ def carry(
 
 @kernel
 def iterate(
-    model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
+    model: Model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
     skip: int, states: FloatArray, falls: IntArray, events: FloatArray,
 ) -> int:  # fmt: skip
     """Carry y over `skip` periods and then over len(states), keeping state and falls of each; 0 or why it failed."""
@@ -245,7 +246,7 @@ def iterate(
 
 @kernel
 def stretch(
-    model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
+    model: Model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
     periods: int, pieces: int, logs: FloatArray,
 ) -> int:  # fmt: skip
     """Carry the state and two directions that are made orthonormal `pieces` times a period; sum their logarithms.
@@ -276,7 +277,7 @@ def stretch(
 
 
 @kernel
-def probe(model, surfaces: FloatArray, points: FloatArray, out: FloatArray) -> None:
+def probe(model: Model, surfaces: FloatArray, points: FloatArray, out: FloatArray) -> None:
     """What the law says at points (angle, X, V), each in the region where it lies."""
     _, law, q, data, _ = model
     for p in range(len(points)):

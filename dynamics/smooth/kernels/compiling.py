@@ -11,9 +11,13 @@ from typing import Any, TypeVar, cast
 from numba import cfunc, njit, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 
+from dynamics.kernels.compiling import FloatArray, IntArray
 from dynamics.kernels.compiling import sources_digest as exact_digest
 
 F = TypeVar("F", bound=Callable[..., Any])
+# own parameters, law, parameters and data of the law, places of the parameters to differentiate by; a tuple that
+# began with a function would not be typed as one
+Model = tuple[FloatArray, Any, FloatArray, FloatArray, IntArray]
 
 ZETA, FORCE, ERROR, FREQUENCY, PHASE, OWN = range(6)  # places in `par`; from OWN on a parameter of the law
 FINE, DIVERGED, CROWDED, TINY, STUCK = range(5)

@@ -6,24 +6,23 @@ Helpers live here too, because compiled laws are kept on disk by the date of thi
 
 import math
 
-from numba import njit
-
-from dynamics.smooth.kernels.compiling import law_kernel
-
-helper = njit(error_model="numpy", nogil=True, inline="never")
+from dynamics.kernels.compiling import FloatArray
+from dynamics.smooth.kernels.compiling import helper, law_kernel
 
 
 @helper
-def stiffness(theta, q, first, order):
+def stiffness(theta: float, q: FloatArray, first: int, order: int) -> float:
     """Fourier series whose mean, amplitudes and phases begin at q[first]."""
-    k = q[first]
+    k: float = q[first]
     for j in range(order):
         k += q[first + 1 + j] * math.cos((j + 1) * theta + q[first + 1 + order + j])
     return k
 
 
 @helper
-def stiffness_slopes(theta, q, first, order, force, out):
+def stiffness_slopes(
+    theta: float, q: FloatArray, first: int, order: int, force: float, out: FloatArray
+) -> None:
     """Derivatives of stiffness times force with respect to the series, into `out` from 3 + first on."""
     out[3 + first] = force
     for j in range(order):
@@ -33,7 +32,7 @@ def stiffness_slopes(theta, q, first, order, force, out):
 
 
 @helper
-def narrow(gap, thickness):
+def narrow(gap: float, thickness: float) -> tuple[float, float, float]:
     """(h / (h + gap))^1.5 and its derivatives with respect to gap and h; 1 in contact."""
     if gap <= 0.0 or thickness <= 0.0:
         return (1.0 if gap <= 0.0 else 0.0), 0.0, 0.0
@@ -44,7 +43,7 @@ def narrow(gap, thickness):
 
 
 @helper
-def squeeze(x, v, region, q, out):
+def squeeze(x: float, v: float, region: int, q: FloatArray, out: FloatArray) -> None:
     """Add the force of the film squeezed between both flanks, in proportion to V."""
     if q[1] == 0.0 and len(out) == 1:
         return
@@ -62,7 +61,7 @@ def squeeze(x, v, region, q, out):
 
 
 @helper
-def depth(x, region, d, two_sided):
+def depth(x: float, region: int, d: float, two_sided: bool) -> tuple[float, float]:
     """Depth of contact and the side of it: 1 in front, -1 at the back, 0 in the gap."""
     if region & 1:
         return x - d, 1.0
@@ -72,14 +71,16 @@ def depth(x, region, d, two_sided):
 
 
 @helper
-def clean(out):
+def clean(out: FloatArray) -> None:
     """Begin with zeros."""
     for i in range(len(out)):
         out[i] = 0.0
 
 
 @law_kernel
-def smoothed_backlash(theta, x, v, region, q, data, out):
+def smoothed_backlash(
+    theta: float, x: float, v: float, region: int, q: FloatArray, data: FloatArray, out: FloatArray
+) -> None:
     """K s [ln(1 + e^((x - d)/s)) - ln(1 + e^(-(x + d)/s))]; q: d, s, series of K."""
     clean(out)
     order = (len(q) - 3) // 2
@@ -98,7 +99,9 @@ def smoothed_backlash(theta, x, v, region, q, data, out):
 
 
 @law_kernel
-def power_contact(theta, x, v, region, q, data, out):
+def power_contact(
+    theta: float, x: float, v: float, region: int, q: FloatArray, data: FloatArray, out: FloatArray
+) -> None:
     """K depth^n; q: d, film damping, film thickness, n, series of K; data: number of sides."""
     clean(out)
     order = (len(q) - 5) // 2
@@ -119,17 +122,19 @@ def power_contact(theta, x, v, region, q, data, out):
 
 
 @law_kernel
-def tabulated_contact(theta, x, v, region, q, data, out):
+def tabulated_contact(
+    theta: float, x: float, v: float, region: int, q: FloatArray, data: FloatArray, out: FloatArray
+) -> None:
     """Fourier series in the angle of splines in the depth; q: d, film damping, film thickness, factor.
 
-    data: sides, order J, intervals n, reach, then for each of 1 + 2 J series (mean, cosines, sines) n rows of four
+    data: sides, order J, intervals n, reach, then for each of 1 + 2 J series (mean, cosines, sines) n rows of six
     coefficients in powers of the distance from the knot reach (i/n)^2, and at last the end value and slope.
     """
     clean(out)
     deep, side = depth(x, region, q[0], data[0] > 1.5)
     if side != 0.0:
         order, n, reach = int(data[1]), int(data[2]), data[3]
-        width = 4 * n + 2
+        width = 6 * n + 2
         force = steep = 0.0
         at, t, beyond = 0, deep, False
         if deep >= reach:
@@ -148,14 +153,15 @@ def tabulated_contact(theta, x, v, region, q, data, out):
                 wave = math.sin((j - order) * theta)
             base = 4 + j * width
             if beyond:
-                value, tangent = data[base + 4 * n] + t * data[base + 4 * n + 1], data[base + 4 * n + 1]
+                value, tangent = data[base + 6 * n] + t * data[base + 6 * n + 1], data[base + 6 * n + 1]
             elif deep <= 0.0:
                 value, tangent = t * data[base + 1], data[base + 1]
             else:
-                base += 4 * at
-                c1, c2, c3 = data[base + 1], data[base + 2], data[base + 3]
-                value = data[base] + t * (c1 + t * (c2 + t * c3))
-                tangent = c1 + t * (2.0 * c2 + t * 3.0 * c3)
+                base += 6 * at
+                value = tangent = 0.0
+                for m in range(5, -1, -1):
+                    tangent = tangent * t + value
+                    value = value * t + data[base + m]
             force += wave * value
             steep += wave * tangent
         out[0] = side * q[3] * force

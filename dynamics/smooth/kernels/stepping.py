@@ -6,20 +6,20 @@ holds X and V alone, or X, V, the logarithm of the determinant of the flow, and 
 
 import math
 
-import numpy as np
-
 from dynamics.kernels.compiling import FloatArray, IntArray
-from dynamics.smooth.kernels.compiling import ERROR, FORCE, FREQUENCY, OWN, PHASE, ZETA, helper
-from dynamics.smooth.kernels.tableau import B, C, DENSE, E3, E5, STAGES, A
+from dynamics.smooth.kernels.compiling import ERROR, FORCE, FREQUENCY, OWN, PHASE, ZETA, Model, helper
+from dynamics.smooth.kernels.tableau import DENSE, E3, E5, STAGES, A, B, C
 
 COLUMNS = 3  # where the pairs of derivatives begin
 FLOOR = 1e-3  # a derivative smaller than this is computed to an absolute tolerance
 
 
 @helper
-def slope(model, theta: float, y: FloatArray, region: int, out: FloatArray, k: FloatArray, s: int) -> None:
+def slope(
+    model: Model, theta: float, y: FloatArray, region: int, out: FloatArray, k: FloatArray, s: int
+) -> None:
     """dy/dtheta into k[s]; `out` (1 or 3 + parameters of the law) is room for the law's answer."""
-    par, law, q, data, ways = model  # a tuple that begins with a function would not be typed as one
+    par, law, q, data, ways = model
     w, x, v = par[FREQUENCY], y[0], y[1]
     law(theta, x, v, region, q, data, out)
     c = math.cos(theta + par[PHASE])
@@ -56,7 +56,7 @@ def slope(model, theta: float, y: FloatArray, region: int, out: FloatArray, k: F
 
 @helper
 def attempt_state(
-    model, theta: float, h: float, y: FloatArray, region: int, few: FloatArray, k: FloatArray, path: FloatArray,
+    model: Model, theta: float, h: float, y: FloatArray, region: int, few: FloatArray, k: FloatArray, path: FloatArray,
     new: FloatArray,
 ) -> None:  # fmt: skip
     """The same as `attempt` for X and V alone, three times as fast."""
@@ -80,7 +80,7 @@ def attempt_state(
 
 @helper
 def attempt(
-    model, theta: float, h: float, y: FloatArray, region: int, out: FloatArray, k: FloatArray, stage: FloatArray,
+    model: Model, theta: float, h: float, y: FloatArray, region: int, out: FloatArray, k: FloatArray, stage: FloatArray,
     path: FloatArray, new: FloatArray,
 ) -> None:  # fmt: skip
     """A step from known k[0]: stages in `k`, k[12] at its end, X and V of the stages in `path`, the end in `new`."""
@@ -130,7 +130,7 @@ def discrepancy(h: float, y: FloatArray, new: FloatArray, k: FloatArray, tol: fl
 
 @helper
 def polynomials(
-    model, theta: float, h: float, y: FloatArray, new: FloatArray, region: int, few: FloatArray, k: FloatArray,
+    model: Model, theta: float, h: float, y: FloatArray, new: FloatArray, region: int, few: FloatArray, k: FloatArray,
     f: FloatArray, dense: FloatArray,
 ) -> None:  # fmt: skip
     """Dense output: coefficients of X and V in powers of the fraction of the step, dense[0:2, 0:8]; f (7) is room."""
@@ -178,7 +178,7 @@ def next_step(h: float, error: float, rejected: bool) -> float:
     """Length for the next step, or for another try."""
     if not error < math.inf:
         return 0.1 * h
-    factor = 0.9 * max(error, 1e-30) ** -0.125
+    factor: float = 0.9 * max(error, 1e-30) ** -0.125
     factor = min(max(factor, 0.2), 6.0)
     return h * (min(factor, 1.0) if rejected else factor)
 
@@ -187,13 +187,13 @@ def next_step(h: float, error: float, rejected: bool) -> float:
 def level(surfaces: FloatArray, i: int, q: FloatArray) -> float:
     """Value at which n . (X, V) lies on surface i; a row of `surfaces` holds n_X, n_V, sign, place in q or -1."""
     place = int(surfaces[i, 3])
-    return surfaces[i, 2] * q[place] if place >= 0 else 0.0
+    return float(surfaces[i, 2] * q[place]) if place >= 0 else 0.0
 
 
 @helper
 def height(surfaces: FloatArray, i: int, q: FloatArray, x: float, v: float) -> float:
     """Positive on one side of surface i, negative on the other."""
-    return surfaces[i, 0] * x + surfaces[i, 1] * v - level(surfaces, i, q)
+    return float(surfaces[i, 0] * x + surfaces[i, 1] * v - level(surfaces, i, q))
 
 
 @helper
@@ -214,7 +214,13 @@ def way_of(region: int, i: int) -> int:
 
 @helper
 def regions_of(
-    model, surfaces: FloatArray, theta: float, y: FloatArray, out: FloatArray, k: FloatArray, on: IntArray
+    model: Model,
+    surfaces: FloatArray,
+    theta: float,
+    y: FloatArray,
+    out: FloatArray,
+    k: FloatArray,
+    on: IntArray,
 ) -> int:
     """Region of a state; on a surface, the one it moves to, and `on` is set. Overwrites k[0]."""
     q = model[2]
@@ -223,11 +229,10 @@ def regions_of(
         for i in range(len(surfaces)):
             off = height(surfaces, i, q, y[0], y[1])
             size = abs(level(surfaces, i, q)) + abs(surfaces[i, 0] * y[0]) + abs(surfaces[i, 1] * y[1])
-            if abs(off) <= 8.9e-16 * size:
-                if sweep == 1:
-                    slope(model, theta, y, region, out, k, 0)
-                    off = surfaces[i, 0] * k[0, 0] + surfaces[i, 1] * k[0, 1]
-                    on[i] = 1
+            if abs(off) <= 8.9e-16 * size and sweep == 1:
+                slope(model, theta, y, region, out, k, 0)
+                off = surfaces[i, 0] * k[0, 0] + surfaces[i, 1] * k[0, 1]
+                on[i] = 1
             bit = 1 << i
             region = region | bit if off > 0.0 else region & ~bit
     return region

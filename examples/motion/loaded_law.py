@@ -1,0 +1,296 @@
+"""Tangent or secant? The motion with the loaded law itself: force over deflection and angle by finite elements.
+
+A torque sweep of the loaded contact gives the deflection under each force at each position. `TabulatedContact` makes a
+law of it. The same pair moves under three laws of the same number of harmonics: the secant stiffness and the tangent
+stiffness at the mean load (both by the exact flow), and the law itself (by the stepwise flow).
+
+    python examples/motion/loaded_law.py --out out/loaded_law [--order 1 2 4] [--held]
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import dynamics
+import fem
+from dynamics import Branch, GearOscillator, Scaling, SmoothOscillator, SpecialPoint, TabulatedContact, fit_fourier, smooth
+from gears import BasicRack, Gear, GearPair, Material
+
+Array = NDArray[np.float64]
+TORQUE = 600.0  # N m
+SHARES = (0.003, 0.01, 0.03, 0.08, 0.2, 0.4, 0.7, 1.0, 1.5, 2.2, 3.2, 4.5)  # of it, in the sweep
+SPEEDS = (6000.0, 13000.0)  # rpm
+DAMPING, ERROR, BACKLASH, POSITIONS = 0.05, 10e-6, 50e-6, 40
+COLOURS = {"secant": "tab:blue", "tangent": "tab:red", "loaded law": "black"}
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The pair, its sweep and its scales.
+
+    Attributes
+    ----------
+    force : (p,) array
+        Normal forces of the sweep [N].
+    deflection : (positions, p) array
+        Their deflections [m].
+    secant, tangent : (positions,) array
+        Stiffness at the mean load [N/m].
+    load : float
+        Mean normal force [N].
+    scales : Scaling
+        By the mean secant stiffness.
+    play : float
+        Half the backlash along the line of action [m].
+    """
+
+    force: Array
+    deflection: Array
+    secant: Array
+    tangent: Array
+    load: float
+    scales: Scaling
+    play: float
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Motions of period 1 over the speed under one law.
+
+    Attributes
+    ----------
+    name : str
+        Law.
+    rpm, swing, highest : (m,) array
+        Pinion speed, peak-to-peak and greatest displacement [um].
+    stable : (m,) array of bool
+        Stability.
+    jumps : tuple of (float, float)
+        Speed [rpm] and swing [um] of the folds.
+    others : tuple of str
+        Other special points, with speed.
+    branch : Branch
+        As computed.
+    """
+
+    name: str
+    rpm: Array
+    swing: Array
+    highest: Array
+    stable: NDArray[np.bool_]
+    jumps: tuple[tuple[float, float], ...]
+    others: tuple[str, ...]
+    branch: Branch
+
+
+def article_pair() -> GearPair:
+    steel = Material(youngs_modulus=200.2e9, poisson_ratio=0.3, density=7850.0)
+    pair = GearPair(
+        pinion=Gear(teeth=36, profile_shift=0.0, bore_radius=0.5 * 0.0335),
+        wheel=Gear(teeth=40, profile_shift=0.0, bore_radius=0.5 * 0.0375),
+        module=2e-3,
+        face_width=40e-3,
+        rack=BasicRack(),
+        material=steel,
+        centre_distance=None,
+    )
+    return pair.with_backlash(BACKLASH)
+
+
+def setting(held: bool) -> Setting:
+    """Finite elements: deflections under every force, and the scales."""
+    pair = article_pair()
+    cycles = fem.torque_sweep(
+        pair, TORQUE * np.array(SHARES), POSITIONS, fem.compliance(pair, tolerance=0.002), not held
+    )
+    if not all(cycle.converged for cycle in cycles):
+        raise SystemExit("\n".join(c.message for c in cycles if not c.converged))
+    mean = cycles[SHARES.index(1.0)]
+    force = np.array([cycle.force for cycle in cycles])
+    deflection = np.stack([cycle.force / cycle.secant_stiffness for cycle in cycles], axis=1)
+    scales = Scaling.from_inertias(
+        inertias=pair.moments_of_inertia,
+        base_radii=pair.base_radii,
+        mean_stiffness=float(mean.secant_stiffness.mean()),
+        cycles_per_revolution=pair.pinion.teeth,
+        force=mean.force,
+        mean_force=0.1,
+    )
+    return Setting(
+        force, deflection, mean.secant_stiffness, mean.stiffness, mean.force, scales, 0.5 * pair.backlash
+    )
+
+
+def law(given: Setting, order: int) -> TabulatedContact:
+    """The loaded law, dimensionless."""
+    scales = given.scales
+    return TabulatedContact.from_deflections(
+        given.force / (scales.mean_stiffness * scales.length),
+        given.deflection / scales.length,
+        half_backlash=scales.scaled(given.play),
+        order=order,
+        first_angle=math.pi / POSITIONS,
+    )
+
+
+def oscillators(given: Setting, order: int) -> dict[str, GearOscillator | SmoothOscillator]:
+    """The three laws at the lowest speed."""
+    scales = given.scales
+    linear = {
+        name: scales.oscillator(
+            stiffness=fit_fourier(samples, order=order).stiffness,
+            damping_ratio=DAMPING,
+            force=given.load,
+            error_amplitude=ERROR,
+            half_backlash=given.play,
+            speed=SPEEDS[0] * math.pi / 30.0,
+        )
+        for name, samples in (("secant", given.secant), ("tangent", given.tangent))
+    }
+    one = linear["secant"]
+    loaded = SmoothOscillator(law(given, order), DAMPING, one.mean_force, one.error_amplitude, one.frequency)
+    return {**linear, "loaded law": loaded}
+
+
+def curve(name: str, osc: GearOscillator | SmoothOscillator, given: Setting) -> Curve:
+    """Follow the motion of period 1 from the lowest speed."""
+    low, high = (given.scales.frequency_from_rpm(rpm) for rpm in SPEEDS)
+    start = (osc.size if isinstance(osc, SmoothOscillator) else osc.half_backlash + osc.mean_force, 0.0)
+    if isinstance(osc, SmoothOscillator):
+        orbit = smooth.find_orbit(osc, start, transient=300, tolerance=1e-10)
+        branch = smooth.continue_branch(orbit, "frequency", (low, high))
+    else:
+        branch = dynamics.continue_branch(
+            dynamics.find_orbit(osc, start, transient=300), "frequency", (low, high)
+        )
+    ends = np.array([extent(osc, w, x) for w, x in zip(branch.values, branch.states, strict=True)])
+    um = 1e6 * given.scales.length * ends
+    folds = branch.special("saddle-node")
+
+    def swing(point: SpecialPoint) -> float:
+        ends = extent(osc, point.parameter, point.state)
+        return 1e6 * given.scales.length * (ends[1] - ends[0])
+
+    rest = [p for p in branch.points if p.kind != "saddle-node"]
+    return Curve(
+        name, np.array([given.scales.rpm(w) for w in branch.values]), um[:, 1] - um[:, 0], um[:, 1], branch.stable,
+        tuple((given.scales.rpm(p.parameter), swing(p)) for p in folds),
+        tuple(f"{p.kind} {given.scales.rpm(p.parameter):.0f}" for p in rest), branch,
+    )  # fmt: skip
+
+
+def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Array) -> tuple[float, float]:
+    """Least and greatest X of the motion of period 1 through a state."""
+    here = osc.with_parameter("frequency", float(frequency))
+    if isinstance(here, SmoothOscillator):
+        events = smooth.period_map(here, state, extrema=True, tolerance=1e-8).events
+        x = events[events[:, 1] == events[:, 1].max(), 3]
+    else:
+        x = dynamics.turning_points(here, state)[:, 1]
+    return float(x.min()), float(x.max())
+
+
+def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
+    """Laws at the stiffest and the softest position, and the swing over the speed."""
+    page = Figure(figsize=(10, 4.2), layout="constrained")
+    left, right = page.subplots(1, 2, width_ratios=(1, 1.7))
+    for row, style in ((int(np.argmax(given.secant)), "-"), (int(np.argmin(given.secant)), "--")):
+        x = 1e6 * given.deflection[row]
+        at = given.load / given.secant[row]
+        line = np.array([0.0, 2.0 * at])
+        left.plot(x, 1e-3 * given.force, "k.", markersize=4)
+        left.plot(1e6 * line, 1e-3 * given.secant[row] * line, style, color=COLOURS["secant"])
+        touching = given.load + given.tangent[row] * (line - at)
+        left.plot(1e6 * line, 1e-3 * touching, style, color=COLOURS["tangent"])
+    left.axhline(1e-3 * given.load, color="grey", linewidth=0.7)
+    left.set(xlabel="deflection [µm]", ylabel="normal force [kN]", xlim=(0, 60), ylim=(0, 50))
+    left.set_title("law at the stiffest (solid) and softest (dashed) position", fontsize=8)
+    for one in curves:
+        for wanted, style in ((True, "-"), (False, ":")):
+            keep = one.stable == wanted
+            keep[1:] |= one.stable[:-1] == wanted
+            colour = COLOURS[one.name]
+            label = one.name if wanted else None
+            right.plot(
+                one.rpm, np.where(keep, one.swing, np.nan), style, color=colour, linewidth=1.2, label=label
+            )
+        for speed, swing in one.jumps:
+            right.plot(speed, swing, "o", color=COLOURS[one.name], markersize=4)
+    right.set(xlabel="pinion speed [rpm]", ylabel="peak to peak [µm]", xlim=SPEEDS, ylim=(0, None))
+    right.set_title(f"motions of period 1, {order} harmonic(s); stable solid, folds as dots", fontsize=8)
+    right.legend(fontsize=8, loc="upper left")
+    return page
+
+
+def told(given: Setting, curves: Sequence[Curve], order: int) -> str:
+    """Jump speeds, greatest swings, and what differs."""
+    lines = [f"{order} harmonic(s)"]
+    for one in curves:
+        jumps = ", ".join(f"{speed:.0f}" for speed, _ in one.jumps) or "none"
+        steady = np.where(one.stable, one.swing, -np.inf)
+        peak = int(np.argmax(steady))
+        lines.append(
+            f"  {one.name:10s} jumps at {jumps} rpm; greatest stable swing {one.swing[peak]:.1f} um at "
+            f"{one.rpm[peak]:.0f} rpm, contact {one.highest[peak] - 1e6 * given.play:.0f} um deep; "
+            f"{one.branch.message}"
+        )
+        lines.append(f"             {'; '.join(one.others) or 'no other special points'}")
+    for rpm in (6500.0, 7500.0, 8500.0, 11000.0, 12500.0):
+        swings = [float(np.interp(rpm, *lowest_branch(one, rpm))) for one in curves]
+        row = ", ".join(f"{one.name} {swing:.2f}" for one, swing in zip(curves, swings, strict=True))
+        lines.append(f"  swing at {rpm:.0f} rpm [um]: {row}")
+    return "\n".join(lines)
+
+
+def lowest_branch(one: Curve, rpm: float) -> tuple[Array, Array]:
+    """The two neighbours of a speed between which the stable swing is least."""
+    between = (one.rpm[:-1] - rpm) * (one.rpm[1:] - rpm) <= 0.0
+    good = np.flatnonzero(between & one.stable[:-1] & one.stable[1:])
+    if not good.size:
+        return np.array([rpm]), np.array([np.nan])
+    at = good[np.argmin(one.swing[good])]
+    pair = np.argsort(one.rpm[at : at + 2]) + at
+    return one.rpm[pair], one.swing[pair]
+
+
+def main(arguments: Sequence[str] | None = None) -> list[Path]:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
+    parser.add_argument("--order", type=int, nargs="+", default=[1, 2, 4], help="harmonics kept")
+    parser.add_argument("--held", action="store_true", help="hold the contact to the path")
+    given = parser.parse_args(arguments)
+    given.out.mkdir(parents=True, exist_ok=True)
+    here = setting(given.held)
+    mean = here.scales
+    text = [
+        f"mean load {here.load:.0f} N, mean secant {here.secant.mean():.4g} N/m, mean tangent "
+        f"{here.tangent.mean():.4g} N/m, natural frequency {mean.natural_frequency:.0f} Hz"
+    ]
+    files = []
+    for order in given.order:
+        loaded = law(here, order)
+        curves = [curve(name, osc, here) for name, osc in oscillators(here, order).items()]
+        text.append(told(here, curves, order))
+        text.append(
+            f"  the loaded law leaves out {100 * loaded.remainder:.2g} % of the mean force at most, and reaches to "
+            f"{1e6 * mean.length * loaded.reach:.0f} um"
+        )
+        files.append(given.out / f"loaded_law_{order}.png")
+        figure(here, curves, order).savefig(files[-1], dpi=130)
+    files.append(given.out / "loaded_law.txt")
+    files[-1].write_text("\n".join(text) + "\n", encoding="utf-8")
+    sys.stdout.write("\n".join(text) + "\n")
+    return files
+
+
+if __name__ == "__main__":
+    main()
