@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from dynamics.smooth.sweeps import lyapunov_exponents as lyapunov_exponents
     from dynamics.smooth.sweeps import rest_state as rest_state
     from dynamics.smooth.sweeps import sweep as sweep
+    from dynamics.smooth.switching import doubled_orbit as doubled_orbit
     from dynamics.smooth.tabulated import TabulatedContact as TabulatedContact
 
 _HOMES = {
@@ -47,6 +48,7 @@ _HOMES = {
     "Surface": "compiled",
     "TabulatedContact": "tabulated",
     "continue_branch": "continuation",
+    "doubled_orbit": "switching",
     "find_orbit": "shooting",
     "follow_branch": "continuation",
     "force": "sweeps",

@@ -22,7 +22,16 @@ from numpy.typing import NDArray
 
 import dynamics
 import fem
-from dynamics import Branch, GearOscillator, Scaling, SmoothOscillator, SpecialPoint, TabulatedContact, fit_fourier, smooth
+from dynamics import (
+    Branch,
+    GearOscillator,
+    Scaling,
+    SmoothOscillator,
+    SpecialPoint,
+    TabulatedContact,
+    fit_fourier,
+    smooth,
+)
 from gears import BasicRack, Gear, GearPair, Material
 
 Array = NDArray[np.float64]
@@ -213,7 +222,7 @@ def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
         left.plot(1e6 * line, 1e-3 * touching, style, color=COLOURS["tangent"])
     left.axhline(1e-3 * given.load, color="grey", linewidth=0.7)
     left.set(xlabel="deflection [µm]", ylabel="normal force [kN]", xlim=(0, 60), ylim=(0, 50))
-    left.set_title("law at the stiffest (solid) and softest (dashed) position", fontsize=8)
+    left.set_title("finite elements (dots), stiffest (solid), softest (dashed)", fontsize=8)
     for one in curves:
         for wanted, style in ((True, "-"), (False, ":")):
             keep = one.stable == wanted

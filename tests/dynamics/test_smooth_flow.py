@@ -164,6 +164,31 @@ def test_exponent_one_is_the_exact_flow(case):
     assert done.log_determinant == pytest.approx(-2 * z * osc.period * 2, abs=1e-13)
 
 
+@pytest.mark.parametrize(
+    ("kappa", "zeta", "frequency", "d"),
+    [
+        (5.0, 0.05, 0.6, 0.2),
+        (1.5, 0.0, 50.0, 0.2),
+        (0.2, 2.0, 0.6, 0.2),
+        (0.2, 0.05, 0.02, 0.2),
+        (0.5, 0.0, 0.6, 1e-13),
+    ],
+)
+def test_hard_cases_against_the_exact_flow(kappa, zeta, frequency, d):
+    """Negative stiffness, no and much damping, long and short periods: within the tolerance times the stretch."""
+    series = FourierStiffness(1.0, (kappa,), (0.0,))
+    exact = map_derivatives(GearOscillator(series, zeta, 0.1, 0.2, frequency, d), (0.5, 0.2), ("mean_force",))
+    law = PowerContact(stiffness=series, half_backlash=d, exponent=1.0)
+    osc = SmoothOscillator(law, zeta, 0.1, 0.2, frequency)
+    done = smooth.period_map(osc, (0.5, 0.2), parameters=("mean_force",), tolerance=1e-13)
+    stretch = max(1.0, np.max(np.abs(exact.jacobian)))
+    assert np.max(np.abs(done.state - exact.state)) < 1e-11 * stretch
+    assert np.max(np.abs(done.jacobian - exact.jacobian)) < 1e-10 * stretch
+    assert np.max(np.abs(done.slope - exact.slope)) < 1e-10 * max(stretch, np.max(np.abs(exact.slope)))
+    assert tuple(done.counts[0]) == exact.counts
+    assert done.log_determinant == pytest.approx(-2 * zeta * osc.period, rel=1e-12, abs=1e-13)
+
+
 def laws():
     film = SqueezeFilm(0.2, 0.05)
     depths = np.linspace(0, 1, 13) ** 2 * 2.0

@@ -18,6 +18,7 @@ from dynamics import (
     SmoothOscillator,
     SqueezeFilm,
     TabulatedContact,
+    continuation,
     smooth,
 )
 from dynamics.smooth import MapPoint, Surface
@@ -63,6 +64,21 @@ def test_branch_has_the_exact_special_points(exact_branch):
     assert len(branch.special("saddle-node")) == 4
     assert branch.special("period-doubling")[0].parameter == pytest.approx(0.887241499860580, abs=1e-12)
     assert_same_points(branch, exact_branch, 1e-12)
+
+
+def test_doubled_branch():
+    """From the period doubling at 1.7687 on to period 2, the exact flow's orbit."""
+    orbit = smooth.find_orbit(ours(1.8), (0.3, 0.3), transient=300)
+    (point,) = smooth.continue_branch(orbit, "frequency", (1.75, 1.82)).special("period-doubling")
+    doubled = smooth.doubled_orbit(ours(1.8), "frequency", point, (1.6, 1.9))
+    assert doubled.periods == 2
+    branch = smooth.continue_branch(doubled, "frequency", (1.72, 1.82), max_step=0.05)
+    assert continuation.MEETS in branch.ended
+    assert branch.values.max() == pytest.approx(point.parameter, abs=1e-3)
+    at = int(np.argmin(np.abs(branch.values - 1.74)))
+    theirs = dynamics.find_orbit(exact(branch.values[at]), branch.states[at], 2)
+    assert theirs.periods == 2
+    assert branch.states[at] == pytest.approx(theirs.state, abs=1e-10)
 
 
 @dataclass(frozen=True)
