@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import json
+import os
 import subprocess
 import sys
 
@@ -302,3 +304,37 @@ def test_building_an_oscillator_compiles_nothing():
         "sys.exit('numba' in sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+INTERPRETED = """
+import json, numpy as np, dynamics as d
+from dynamics import smooth
+series, film = d.FourierStiffness(1.0, (0.18,), (0.3,)), d.SqueezeFilm(0.1, 0.05)
+depths, angles = np.linspace(0, 1, 9) ** 2 * 1.5, 2 * np.pi * np.arange(5) / 5
+forces = (1 + 0.2 * np.cos(angles))[:, None] * depths**1.2
+found = []
+for law in (
+    d.PowerContact(stiffness=series, half_backlash=0.2, film=film),
+    d.SmoothedBacklash(stiffness=series, half_backlash=0.2, width=0.05),
+    d.TabulatedContact.from_forces(depths, forces, half_backlash=0.2, order=2),
+):
+    osc = d.SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6, 0.1)
+    done = smooth.period_map(osc, (0.5, 0.2), parameters=osc.parameters, extrema=True, tolerance=1e-8)
+    found += [*done.state, *done.jacobian.ravel(), *done.slope.ravel(), *done.events.ravel(), *done.counts.ravel()]
+print(json.dumps([float(v) for v in found]))
+"""
+
+
+def test_compiled_code_computes_what_is_written():
+    """The kernels interpreted give the same figures."""
+    runs = []
+    for switch in ({}, {"NUMBA_DISABLE_JIT": "1"}):
+        done = subprocess.run(
+            [sys.executable, "-c", INTERPRETED],
+            capture_output=True,
+            text=True,
+            env={**os.environ, **switch},
+            check=True,
+        )
+        runs.append(json.loads(done.stdout))
+    assert runs[0] == pytest.approx(runs[1], rel=1e-9, abs=1e-9)
