@@ -5,9 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Literal
 
 from flankfilm.faults import Fault, InputError
@@ -17,13 +18,28 @@ Kind = Literal["processes", "dask", "mpi"]
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
+@dataclass(frozen=True)
+class Pool:
+    """An executor, and how many rows it computes at once.
+
+    Attributes
+    ----------
+    executor : Executor
+    size : callable
+        Workers at this moment: those of a cluster come and go.
+    """
+
+    executor: Executor
+    size: Callable[[], int]
+
+
 def default_workers() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager
-def executor(kind: Kind, workers: int) -> Iterator[Executor]:
+def executor(kind: Kind, workers: int) -> Iterator[Pool]:
     """Give an executor whose workers use one thread each.
 
     Parameters
@@ -43,7 +59,7 @@ def executor(kind: Kind, workers: int) -> Iterator[Executor]:
         with _single_threaded():
             pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _leave_interrupts)
             try:
-                yield pool
+                yield Pool(pool, lambda: workers)
             finally:
                 pool.shutdown(wait=True, cancel_futures=True)
     elif kind == "dask":
@@ -52,7 +68,7 @@ def executor(kind: Kind, workers: int) -> Iterator[Executor]:
         yield from _mpi()
 
 
-def _dask(workers: int) -> Iterator[Executor]:
+def _dask(workers: int) -> Iterator[Pool]:
     try:
         from dask.distributed import Client
     except ImportError as fault:
@@ -61,16 +77,20 @@ def _dask(workers: int) -> Iterator[Executor]:
     with _single_threaded():
         client = Client(address) if address else Client(n_workers=workers, threads_per_worker=1)
         with client:
-            yield client.get_executor()
+            yield Pool(client.get_executor(), lambda: len(client.nthreads()))
 
 
-def _mpi() -> Iterator[Executor]:
+def _mpi() -> Iterator[Pool]:
     try:
         from mpi4py.futures import MPIPoolExecutor
     except (ImportError, RuntimeError) as fault:
         raise _missing("mpi", "mpi4py") from fault
-    with MPIPoolExecutor() as pool:
-        yield pool
+    # ranks have started already: they take the settings before they load the libraries that heed them
+    with MPIPoolExecutor(env=dict.fromkeys(_ONE_THREAD, "1")) as pool:
+        try:
+            yield Pool(pool, lambda: pool.num_workers)
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _missing(kind: str, library: str) -> InputError:

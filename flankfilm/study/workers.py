@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from contextlib import ExitStack
 from types import TracebackType
 
-from flankfilm.study.executors import Kind, executor
+from flankfilm.study.executors import Kind, Pool, executor
 from flankfilm.study.row import Row, RowResult, compute_row, failed
 
 AHEAD = 3
@@ -28,7 +28,7 @@ class Workers:
         self.kind: Kind = kind
         self.count = count
         self._open = ExitStack()
-        self._pool: Executor | None = None
+        self._pool: Pool | None = None
 
     def __enter__(self) -> Workers:
         """Processes start with the first rows."""
@@ -69,8 +69,9 @@ class Workers:
             self._pool = self._open.enter_context(executor(self.kind, self.count))
         ahead = iter(rows)
         while True:
-            while len(waiting) < AHEAD * self.count and (row := next(ahead, None)) is not None:
-                waiting[self._pool.submit(compute_row, row)] = row
+            room = AHEAD * max(1, self._pool.size())
+            while len(waiting) < room and (row := next(ahead, None)) is not None:
+                waiting[self._pool.executor.submit(compute_row, row)] = row
             if not waiting:
                 return
             for future in wait(waiting, return_when=FIRST_COMPLETED).done:
@@ -92,6 +93,6 @@ def _alone(row: Row) -> RowResult:
     """Compute a row in a process of its own."""
     with executor("processes", 1) as pool:
         try:
-            return pool.submit(compute_row, row).result()
+            return pool.executor.submit(compute_row, row).result()
         except BrokenExecutor:
             return failed(row, "the process that computed it died, perhaps for want of memory")

@@ -1,0 +1,54 @@
+"""How many rows are on their way: as many as the executor of the moment can take, whatever this machine has."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
+
+from flankfilm.study.executors import Pool
+from flankfilm.study.row import Row, RowResult
+from flankfilm.study.workers import AHEAD, Workers
+
+
+class Cluster(Executor):
+    """Workers elsewhere: rows wait until one is looked for, and then the oldest is done."""
+
+    def __init__(self) -> None:
+        self.waiting: list[tuple[Future[RowResult], Row]] = []
+        self.most = 0
+
+    def submit(self, fn, /, *args, **kwargs):
+        future: Future[RowResult] = Future()
+        self.waiting.append((future, args[0]))
+        self.most = max(self.most, len(self.waiting))
+        return future
+
+    def work(self) -> None:
+        future, row = self.waiting.pop(0)
+        future.set_result(RowResult(row.index, (float(row.index),), 0.0))
+
+
+def test_a_cluster_larger_than_this_machine_is_kept_busy_and_one_that_grows_too(monkeypatch):
+    cluster, size = Cluster(), [8]
+
+    @contextmanager
+    def executor(kind, workers):
+        yield Pool(cluster, lambda: size[0])
+
+    def wait(futures, return_when):
+        cluster.work()
+        done = {future for future in futures if future.done()}
+        return type("Waited", (), {"done": done})
+
+    monkeypatch.setattr("flankfilm.study.workers.executor", executor)
+    monkeypatch.setattr("flankfilm.study.workers.wait", wait)
+    rows = [Row(index, {}, ("contact_ratio",)) for index in range(100)]
+    seen = []
+    with Workers("mpi", 2) as workers:
+        for result in workers.computed(rows):
+            seen.append(result.index)
+            if len(seen) == 1:
+                assert cluster.most == AHEAD * 8
+                size[0] = 20
+    assert sorted(seen) == list(range(100))
+    assert cluster.most == AHEAD * 20
