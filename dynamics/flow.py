@@ -102,7 +102,7 @@ class Trajectory:
         Time, X and acceleration at every extremum of X.
     error : float
         Difference to the motion on tables with half the cell, largest over the samples, over the largest
-        |X|, |V|.
+        ``|X|``, ``|V|``.
     """
 
     tau: FloatArray

@@ -68,7 +68,7 @@ def roelands_index(ln_viscosity: float, alpha: float) -> float:
 class Roelands:
     """``ln(eta/eta0) = (alpha p0/z) [(1 + p/p0)^z - 1]``, p0 = 1/5.1e-9 Pa.
 
-    With z from :func:`roelands_index` this is Roelands' law in its usual form,
+    With z from :func:`ehl.rheology.roelands_index` this is Roelands' law in its usual form,
     ``(ln eta0 + 9.67) [(1 + 5.1e-9 p)^z - 1]``.
 
     Parameters

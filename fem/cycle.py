@@ -173,7 +173,7 @@ class MeshCycle:
         return np.asarray(np.sum(self.forces * arm, axis=1, where=np.isfinite(arm)))
 
     def friction_loss(self, speed: float) -> Array:
-        """Power lost by sliding (n,) [W], sum of mu F_i |u1 - u2|; speed of the pinion [rad/s]."""
+        """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""
         slip = np.abs(self.sliding(speed))
         return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
 

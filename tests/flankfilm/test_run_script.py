@@ -34,7 +34,7 @@ case "$*" in
         [ ! -e /proc/self/fd/9 ] || exit 99
         [ -z "${PYTHONPATH:-}" ] || exit 98
         sleep "${JOB_SECONDS:-0}"; exit "${JOB_STATUS:-0}" ;;
-    *"-m ruff"* | *"-m mypy"*) exit "${JOB_STATUS:-0}" ;;
+    *"-m ruff"* | *"-m mypy"* | *"-m sphinx"*) exit "${JOB_STATUS:-0}" ;;
 esac
 """
 
@@ -161,12 +161,12 @@ def test_help(sandbox: Sandbox, arguments: tuple[str, ...]) -> None:
     done = sandbox.run(*arguments)
     assert done.returncode == 0
     assert done.stdout.startswith("usage: ./run JOB")
-    assert all(f"\n  {job}" in done.stdout for job in ("demo", "test", "check", "setup", "help"))
+    assert all(f"\n  {job}" in done.stdout for job in ("demo", "test", "check", "docs", "setup", "help"))
     assert not sandbox.calls()
     assert not (sandbox.root / ".venv").exists()
 
 
-@pytest.mark.parametrize("arguments", [("tset",), ("check", "more"), ("setup", "more"), ("",)])
+@pytest.mark.parametrize("arguments", [("tset",), ("check", "more"), ("docs", "more"), ("setup", "more"), ("",)])
 def test_wrong_usage(sandbox: Sandbox, arguments: tuple[str, ...]) -> None:
     done = sandbox.run(*arguments)
     assert done.returncode == 2
@@ -276,6 +276,66 @@ def test_failed_update_leaves_the_environment_standing(sandbox: Sandbox) -> None
     assert sandbox.run("test").returncode == 0
     assert not sandbox.calls("-m venv")
     assert sandbox.calls("-m pip install")
+
+
+# ---------------------------------------------------------------- what the documentation needs besides
+
+
+def test_the_documentation_brings_its_own_libraries_once(sandbox: Sandbox) -> None:
+    sandbox.run("setup")
+    assert not sandbox.calls("docs")  # nobody else waits for them
+    sandbox.forget_calls()
+    done = sandbox.run("docs")
+    assert done.returncode == 0, done.stderr
+    (install,) = sandbox.calls("-m pip install")
+    assert install.endswith("--no-build-isolation -e .[docs]")
+    (build,) = sandbox.calls("-m sphinx")
+    assert "-W" in build
+    assert build.endswith("docs out/docs")
+    assert done.stderr.splitlines()[-1] == f"run: the pages: {sandbox.root}/out/docs/index.html"
+    sandbox.forget_calls()
+    assert sandbox.run("docs").returncode == 0
+    assert not sandbox.calls("-m pip install")
+
+
+def test_a_warning_of_the_documentation_is_a_failure(sandbox: Sandbox) -> None:
+    done = sandbox.run("docs", JOB_STATUS="2")
+    assert done.returncode == 1
+    assert "the pages" not in done.stderr
+
+
+def change_the_pins(sandbox: Sandbox) -> None:
+    with (sandbox.root / "constraints.txt").open("a") as file:
+        file.write("# changed\n")
+
+
+def lose_the_python(sandbox: Sandbox) -> None:
+    (sandbox.root / ".venv" / "bin" / "python").unlink()
+
+
+@pytest.mark.parametrize("happening", [change_the_pins, lose_the_python])
+@pytest.mark.parametrize("between", [[], ["test"]])
+def test_the_libraries_of_the_documentation_come_back(sandbox: Sandbox, happening, between) -> None:
+    """After a new environment, or new pins, whichever job made it."""
+    sandbox.run("docs")
+    happening(sandbox)
+    for job in between:
+        sandbox.run(job)
+    sandbox.forget_calls()
+    assert sandbox.run("docs").returncode == 0
+    assert len(sandbox.calls(".[docs]")) == 1
+
+
+def test_libraries_of_the_documentation_that_cannot_be_had_leave_the_environment(sandbox: Sandbox) -> None:
+    sandbox.run("setup")
+    done = sandbox.run("docs", PIP_STATUS="1")
+    assert done.returncode == 3
+    assert "pip says" in done.stderr
+    assert not sandbox.calls("-m sphinx")
+    sandbox.forget_calls()
+    assert sandbox.run("test").returncode == 0
+    assert not sandbox.calls("-m venv")
+    assert sandbox.run("docs").returncode == 0
 
 
 def wait_for(condition, seconds: float = 30.0) -> None:
@@ -390,10 +450,11 @@ def test_missing_libraries(sandbox: Sandbox, uid: int) -> None:
     assert ("sudo apt-get install --no-install-recommends libgl1" in done.stderr) == (uid != 0)
 
 
-def test_checks_need_no_libraries(sandbox: Sandbox) -> None:
+@pytest.mark.parametrize("job", ["check", "docs"])
+def test_checks_and_pages_need_no_libraries(sandbox: Sandbox, job: str) -> None:
     become(sandbox, 1000)
     Path(sandbox.environment["LIBRARIES_THERE"]).unlink()
-    assert "libgl1" not in sandbox.run("check").stderr
+    assert "libgl1" not in sandbox.run(job).stderr
 
 
 # ---------------------------------------------------------------- jobs

@@ -1,0 +1,123 @@
+"""Tables of keys and outputs, made from the code that reads them: the directives ``keys`` and ``outputs``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
+
+from docutils import nodes
+from docutils.parsers.rst import Directive
+from docutils.statemachine import StringList
+from sphinx.application import Sphinx
+
+Schema = dict[str, Any]
+
+_BOUNDS = (
+    ("exclusiveMinimum", "above "),
+    ("minimum", "from "),
+    ("exclusiveMaximum", "below "),
+    ("maximum", "to "),
+)
+_WORDS = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true or false"}
+
+
+def _options(schema: Schema, definitions: Schema) -> list[Schema]:
+    """Members of a union without null, references resolved."""
+    if "$ref" in schema:
+        return _options(definitions[schema["$ref"].rpartition("/")[2]], definitions)
+    members = [m for key in ("anyOf", "allOf") for m in schema.get(key, ())]
+    return [o for m in members for o in _options(m, definitions)] if members else [schema]
+
+
+def _allowed(schema: Schema, definitions: Schema) -> str:
+    if "properties" in schema:
+        return "a table"
+    if "enum" in schema or "const" in schema:
+        return ", ".join(f"`{value}`" for value in schema.get("enum", [schema.get("const")]))
+    if schema.get("type") == "array":
+        item = schema.get("items") or (schema.get("prefixItems") or [{}])[0]
+        fixed = schema.get("maxItems") if schema.get("minItems") == schema.get("maxItems") else None
+        inner = " or ".join(_allowed(o, definitions) for o in _options(item, definitions))
+        return f"{fixed or 'list'} of: {inner}"
+    kind = _WORDS.get(schema.get("type", ""), "table")
+    if "minimum" in schema and "maximum" in schema:
+        return f"{kind}, {schema['minimum']:g} to {schema['maximum']:g}"
+    bounds = [f"{sign}{schema[name]:g}" for name, sign in _BOUNDS if name in schema]
+    return ", ".join([kind, *bounds])
+
+
+def _shown(value: Any) -> str:
+    if value is None or value in ([], {}):
+        return ""
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+def rows(schema: Schema, definitions: Schema, prefix: str = "") -> Iterator[tuple[str, str, str, str]]:
+    """Key, what is allowed, default and meaning of every key, sections opened up."""
+    needed = schema.get("required", ())
+    opened: dict[str, str] = {}
+    for name, field in schema["properties"].items():
+        same = opened.setdefault(str(field.get("$ref") or field.get("anyOf") or name), name)
+        if same != name and any("properties" in o for o in _options(field, definitions)):
+            yield f"`{prefix}{name}`", f"as `{prefix}{same}`", "required" if name in needed else "", ""
+            continue
+        members = [o for o in _options(field, definitions) if o.get("type") != "null"]
+        sections = [o for o in members if "properties" in o]
+        simple = [o for o in members if "properties" not in o]
+        if simple or not sections:
+            default = "required" if name in needed else _shown(field.get("default"))
+            told = " or ".join(_allowed(o, definitions) for o in members)
+            yield f"`{prefix}{name}`", told, default, field.get("description", "")
+        for section in sections:
+            yield from rows(section, definitions, f"{prefix}{name}.")
+
+
+def _table(head: tuple[str, ...], body: list[tuple[str, ...]]) -> list[str]:
+    def line(cells: tuple[str, ...]) -> str:
+        return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+    return [line(head), "|" + "---|" * len(head), *map(line, body)]
+
+
+class _Parsed(Directive):
+    """Lines of Markdown in place of the directive."""
+
+    def lines(self) -> list[str]:
+        """Lines of Markdown."""
+        raise NotImplementedError
+
+    def run(self) -> list[nodes.Node]:
+        """Parse the lines."""
+        box = nodes.container()
+        self.state.nested_parse(StringList(self.lines(), source="tables of keys"), 0, box)
+        return box.children
+
+
+class Keys(_Parsed):
+    """``{keys} module:Model``: all keys of a section."""
+
+    required_arguments = 1
+
+    def lines(self) -> list[str]:
+        """Lines of the table."""
+        module, _, name = self.arguments[0].partition(":")
+        schema = getattr(import_module(module), name).model_json_schema()
+        return _table(("key", "allowed", "default", "meaning"), list(rows(schema, schema.get("$defs", {}))))
+
+
+class Outputs(_Parsed):
+    """``{outputs}``: what a study can ask for."""
+
+    def lines(self) -> list[str]:
+        """Lines of the table."""
+        found = import_module("flankfilm.study.outputs").OUTPUTS
+        body = [(f"`{name}`", o.unit, o.meaning, ", ".join(o.wants)) for name, o in found.items()]
+        return _table(("output", "unit", "meaning", "wants"), body)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Add the directives."""
+    app.add_directive("keys", Keys)
+    app.add_directive("outputs", Outputs)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
