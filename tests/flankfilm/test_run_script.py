@@ -166,7 +166,9 @@ def test_help(sandbox: Sandbox, arguments: tuple[str, ...]) -> None:
     assert not (sandbox.root / ".venv").exists()
 
 
-@pytest.mark.parametrize("arguments", [("tset",), ("check", "more"), ("docs", "more"), ("setup", "more"), ("",)])
+@pytest.mark.parametrize(
+    "arguments", [("tset",), ("check", "more"), ("docs", "more"), ("setup", "more"), ("",)]
+)
 def test_wrong_usage(sandbox: Sandbox, arguments: tuple[str, ...]) -> None:
     done = sandbox.run(*arguments)
     assert done.returncode == 2
