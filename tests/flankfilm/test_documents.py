@@ -197,6 +197,15 @@ def test_names_of_the_interface_exist_and_say_what_they_are(page: str):
         assert getattr(importlib.import_module(home), last) is not None, full
 
 
+def test_the_version_to_cite_is_this_one():
+    version = re.search(
+        r'^version = "(.+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert version
+    assert f"\nversion: {version[1]}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"version = {{{version[1]}}}" in (DOCS / "cite.md").read_text(encoding="utf-8")
+
+
 # ---------------------------------------------------------------- examples
 
 
