@@ -50,11 +50,11 @@ class _Kept(FunctionCache):
 
 def helper(function: F) -> F:
     """Compile when first called by a kernel; not kept on disk, because its callers hold it."""
-    return cast(F, njit(error_model="numpy", nogil=True)(function))
+    return cast(F, njit(error_model="numpy", nogil=True, fastmath={"contract"})(function))
 
 
 def kernel(function: F) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    compiled = njit(error_model="numpy", nogil=True)(function)
+    compiled = njit(error_model="numpy", nogil=True, fastmath={"contract"})(function)
     compiled._cache = _Kept(function)
     return cast(F, compiled)

@@ -21,7 +21,7 @@ from dynamics.kernels.compiling import (
     kernel,
 )
 from dynamics.kernels.regions import clear, enter, leave, start
-from dynamics.kernels.roots import binomials, poly, shift
+from dynamics.kernels.roots import binomials, poly, shift, sole_root
 
 
 @helper
@@ -92,25 +92,48 @@ def stays(
 
 
 @helper
-def carry(coef: FloatArray, row: int, s: float, later: float, jac: FloatArray) -> None:
-    """Multiply the sensitivities by the flow between two instants of a cell."""
-    f0, f1, _, g0, g1, _ = basis(coef, row, s)
-    p0, p1, _, q0, q1, _ = basis(coef, row, later)
-    wronskian = f0 * g1 - f1 * g0
+def to_middle(edge: FloatArray, row: int, jac: FloatArray) -> None:
+    """Sensitivities of the state at the middle of the cell from those of the state at its start."""
     for j in range(2):
-        c0 = (jac[0, j] * g1 - jac[1, j] * f1) / wronskian
-        c1 = (jac[1, j] * f0 - jac[0, j] * g0) / wronskian
-        jac[0, j] = c0 * p0 + c1 * p1
-        jac[1, j] = c0 * q0 + c1 * q1
+        top = edge[row, 9] * jac[0, j] + edge[row, 10] * jac[1, j]
+        jac[1, j] = edge[row, 11] * jac[0, j] + edge[row, 12] * jac[1, j]
+        jac[0, j] = top
+
+
+@helper
+def from_middle(p0: float, p1: float, q0: float, q1: float, jac: FloatArray) -> None:
+    """Sensitivities at an instant from those at the middle; values p and speeds q of both solutions there."""
+    for j in range(2):
+        top = p0 * jac[0, j] + p1 * jac[1, j]
+        jac[1, j] = q0 * jac[0, j] + q1 * jac[1, j]
+        jac[0, j] = top
 
 
 @helper
 def apply(edge: FloatArray, row: int, jac: FloatArray) -> None:
     """Multiply the sensitivities by the map of a whole cell."""
-    for j in range(2):
-        top = edge[row, 0] * jac[0, j] + edge[row, 1] * jac[1, j]
-        jac[1, j] = edge[row, 2] * jac[0, j] + edge[row, 3] * jac[1, j]
-        jac[0, j] = top
+    from_middle(edge[row, 0], edge[row, 1], edge[row, 2], edge[row, 3], jac)
+
+
+@helper
+def sole_exit(
+    region: int, par: FloatArray, y: float, w: float, y_end: float, w_end: float, jerk: float
+) -> int:
+    """Boundary (1, -1) that a motion leaves through exactly once, 0 if it leaves through none, 2 if that is open.
+
+    The speed departs from its chord by less than `jerk`: if it is proved to keep its sign, the ends tell all.
+    """
+    if not (w * w_end > 0.0 and min(abs(w), abs(w_end)) > jerk):
+        return 2
+    if region != 0:
+        if region * w > 0.0 or region * y_end >= 0.0:
+            return 0
+        return region if region * y > 0.0 else 2
+    side = 1 if w > 0.0 else -1
+    d = par[HALF_BACKLASH]
+    if (side == -1 and par[SIDES] < 1.5) or d - side * y_end >= 0.0:
+        return 0
+    return side if d - side * y > 0.0 else 2
 
 
 @helper
@@ -118,34 +141,46 @@ def cross_cell(
     par: FloatArray, coef: FloatArray, edge: FloatArray, cell: int, region: int, y: float, w: float, want: int,
     jac: FloatArray, a: FloatArray, b: FloatArray, g: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
-    """State at the end of a cell that may hold impacts; counts exits and entries."""
+    """State at the end of a cell that may hold impacts; counts exits and entries.
+
+    Between impacts the motion, and its sensitivities, are those of its state at the middle of the cell.
+    """
     cells = len(edge) // 2
     s = -0.5
     fresh = ZERO
+    row = cell if region != 0 else cell + cells
+    c0 = edge[row, 9] * y + edge[row, 10] * w + edge[row, 13]
+    c1 = edge[row, 11] * y + edge[row, 12] * w + edge[row, 14]
+    if want > 0:
+        to_middle(edge, row, jac)
     for _ in range(MAX_EVENTS):
-        row = cell if region != 0 else cell + cells
-        c0, c1 = middle(coef, edge, row, s, y, w)
-        if fresh != 0:
-            y_end = c0 * edge[row, 21] + c1 * edge[row, 22] + edge[row, 23]
+        y_end = c0 * edge[row, 21] + c1 * edge[row, 22] + edge[row, 23]
+        w_end = c0 * edge[row, 24] + c1 * edge[row, 25] + edge[row, 26]
+        rest = 0.5 - s
+        jerk = (abs(c0) * edge[row, 27] + abs(c1) * edge[row, 28] + edge[row, 29]) * rest * rest
+        hit = sole_exit(region, par, y, w, y_end, w_end, jerk)
+        if hit == 2 and fresh != 0:
             bend = abs(c0) * edge[row, 18] + abs(c1) * edge[row, 19] + edge[row, 20]
-            if stays(par, region, fresh, y, y_end, w, bend, 0.5 - s):
-                if want > 0:
-                    carry(coef, row, s, 0.5, jac)
-                return region, y_end, c0 * edge[row, 24] + c1 * edge[row, 25] + edge[row, 26], FINE
-        expand_from(coef, row, s, y, w, c0, c1, a, b, choose)
-        t, hit = leave(region, par, a, g, b, 0.5 - s, fresh)
-        if hit == 0 and s == -0.5:  # nothing happened: the map of the whole cell holds
-            if want > 0:
-                apply(edge, row, jac)
-            y_new = edge[row, 0] * y + edge[row, 1] * w + edge[row, 4]
-            return region, y_new, edge[row, 2] * y + edge[row, 3] * w + edge[row, 5], FINE
-        y, w, _ = poly(a, ZERO, t)
-        later = 0.5 if hit == 0 else s + t
-        if want > 0 and t > 0.0:
-            carry(coef, row, s, later, jac)
-        s = later
+            if stays(par, region, fresh, y, y_end, w, bend, rest):
+                hit = ZERO
+        if hit == 2:
+            expand_from(coef, row, s, y, w, c0, c1, a, b, choose)
+            t, hit = leave(region, par, a, g, b, rest, fresh)
+            if hit != 0:
+                _, w, _ = poly(a, ZERO, t)
+                s += t
+        elif hit != 0:
+            for k in range(len(b)):
+                b[k] = c0 * coef[row, 0, k] + c1 * coef[row, 1, k] + coef[row, 2, k]
+            limit = 0.0 if region != 0 else hit * par[HALF_BACKLASH]
+            s, w = sole_root(b, limit, s, y, w, y_end, w_end)
         if hit == 0:
-            return region, y, w, FINE
+            if want > 0:
+                from_middle(edge[row, 21], edge[row, 22], edge[row, 24], edge[row, 25], jac)
+            return region, y_end, w_end, FINE
+        if want > 0:
+            f0, f1, _, g0, g1, _ = basis(coef, row, s)
+            from_middle(f0, f1, g0, g1, jac)
         old = region
         region, y = enter(region, hit, par)
         fresh = hit
@@ -153,6 +188,13 @@ def cross_cell(
         count[1] += region == -1
         if s >= 0.5:
             return region, y, w, FINE
+        row = cell if region != 0 else cell + cells
+        f0, f1, f2, g0, g1, g2 = basis(coef, row, s)
+        wronskian = f0 * g1 - f1 * g0
+        p, q = y - f2, w - g2
+        c0, c1 = (p * g1 - q * f1) / wronskian, (q * f0 - p * g0) / wronskian
+        if want > 0:
+            from_middle(g1 / wronskian, -f1 / wronskian, -g0 / wronskian, f0 / wronskian, jac)
     return region, y, w, CROWDED
 
 

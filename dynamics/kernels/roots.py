@@ -21,6 +21,49 @@ def poly(c: FloatArray, first: int, t: float) -> tuple[float, float, float]:
 
 
 @helper
+def sole_root(
+    b: FloatArray, limit: float, low: float, y_low: float, w_low: float, y_high: float, w_high: float
+) -> tuple[float, float]:
+    """Instant in (low, 1/2) at which a monotone polynomial meets `limit`, and its slope there.
+
+    Values and slopes at both ends are given; the cubic through them, as time over value, is the first guess. Halley's
+    step follows; the last one is judged by its error, of the third order, and takes the slope along.
+    """
+    high, rising = 0.5, y_high > y_low
+    width, rise = high - low, y_high - y_low
+    share = (limit - y_low) / rise
+    other = 1.0 - share
+    t = rise * other * share * (other / w_low - share / w_high) + width * share * share * (1.0 + 2.0 * other)
+    t = low + t if 0.0 < t < width else low + share * width
+    slope = w_low
+    for _ in range(200):
+        f = f1 = f2 = f3 = 0.0
+        for k in range(len(b) - 1, -1, -1):
+            f3 = f3 * t + f2
+            f2 = f2 * t + f1
+            f1 = f1 * t + f
+            f = f * t + b[k]
+        f -= limit
+        if (f < 0.0) == rising:
+            low = t
+        else:
+            high = t
+        step = -f * f1 / (f1 * f1 - f * f2)
+        new = t + step
+        if not (low <= new <= high):
+            new = 0.5 * (low + high)
+            step = new - t
+            if step == 0.0:
+                return t, f1
+        slope = f1 + step * (2.0 * f2 + 3.0 * step * f3)
+        size = abs(step)
+        if size * size * size * (f2 * f2 + abs(f1 * f3)) <= 1e-17 * f1 * f1 or size <= 4.5e-16 * abs(t):
+            return new, slope
+        t = new
+    return t, slope
+
+
+@helper
 def copy(source: FloatArray, target: FloatArray) -> None:
     """Copy a vector (a slice assignment takes much longer to compile)."""
     for k in range(len(source)):

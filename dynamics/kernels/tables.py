@@ -66,6 +66,7 @@ def fill_edge(coef: FloatArray, edge: FloatArray, row: int) -> None:
     b1, j1 = bounds(coef, row, 1)
     b2, j2 = bounds(coef, row, 2)
     edge[row, 18], edge[row, 19], edge[row, 20] = b0, b1, b2
+    edge[row, 27], edge[row, 28], edge[row, 29] = j0, j1, j2
     edge[row, 21], edge[row, 22], edge[row, 23] = p0, p1, p2
     edge[row, 24], edge[row, 25], edge[row, 26] = q0, q1, q2
     edge[row, 6], edge[row, 15] = abs(c00) * b0 + abs(c10) * b1, abs(c00) * j0 + abs(c10) * j1
@@ -78,7 +79,7 @@ def tabulate(
     par: FloatArray, amplitudes: FloatArray, phases: FloatArray, cells: int, degree: int
 ) -> tuple[FloatArray, FloatArray]:
     """Taylor tables `coef` and cell maps `edge` of one period."""
-    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, 27))
+    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, 30))
     turn = 2.0 * math.pi / cells
     h = turn / par[FREQUENCY]
     drag = 2.0 * par[ZETA] * h
