@@ -23,6 +23,7 @@ FINE, DIVERGED, CROWDED, LOST = range(
     4
 )  # all well, not finite, too many events in a cell, Newton's method failed
 ZERO, ONE = cast(int, np.int64(0)), cast(int, np.int64(1))  # a literal would have numba compile callees twice
+FUSED = {"contract"}  # a product and a sum may be rounded once; nothing else is relaxed
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
 
 
@@ -49,12 +50,21 @@ class _Kept(FunctionCache):
 
 
 def helper(function: F) -> F:
-    """Compile when first called by a kernel; not kept on disk, because its callers hold it."""
-    return cast(F, njit(error_model="numpy", nogil=True, fastmath={"contract"})(function))
+    """Compile when first called by a kernel; not kept on disk, because its callers hold it.
+
+    A helper allocates nothing: `_nrt=False` leaves out the counting of references to its arrays, whose locked
+    instructions would take longer than the arithmetic of an impact.
+    """
+    return cast(F, njit(error_model="numpy", nogil=True, fastmath=FUSED, _nrt=False)(function))
+
+
+def maker(function: F) -> F:
+    """Compile as a helper that returns a fresh array."""
+    return cast(F, njit(error_model="numpy", nogil=True, fastmath=FUSED)(function))
 
 
 def kernel(function: F) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    compiled = njit(error_model="numpy", nogil=True, fastmath={"contract"})(function)
+    compiled = njit(error_model="numpy", nogil=True, fastmath=FUSED)(function)
     compiled._cache = _Kept(function)
     return cast(F, compiled)

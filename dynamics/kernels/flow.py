@@ -139,13 +139,14 @@ def sole_exit(
 @helper
 def cross_cell(
     par: FloatArray, coef: FloatArray, edge: FloatArray, cell: int, region: int, y: float, w: float, want: int,
-    jac: FloatArray, a: FloatArray, b: FloatArray, g: FloatArray, choose: FloatArray, count: IntArray,
+    jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
     """State at the end of a cell that may hold impacts; counts exits and entries.
 
     Between impacts the motion, and its sensitivities, are those of its state at the middle of the cell.
     """
     cells = len(edge) // 2
+    a, b, g = work[0], work[1], work[2]
     s = -0.5
     fresh = ZERO
     row = cell if region != 0 else cell + cells
@@ -212,6 +213,33 @@ def straighten(jac: FloatArray, h: float) -> None:
     jac[0, 1], jac[1, 1] = -s * turned, c * turned * h
 
 
+@helper
+def one_period(
+    par: FloatArray, coef: FloatArray, edge: FloatArray, region: int, y: float, w: float, want: int,
+    jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
+) -> tuple[int, float, float, int]:  # fmt: skip
+    """Carry a state, in its region's coordinates, over one period; `want` and `jac` as in `iterate`, in cells."""
+    cells = len(edge) // 2
+    for cell in range(cells):
+        row = cell if region != 0 else cell + cells
+        y_new = edge[row, 0] * y + edge[row, 1] * w + edge[row, 4]
+        reach = edge[row, 6] * abs(y) + edge[row, 7] * abs(w) + edge[row, 8]
+        if clear(region, par, y, y_new, reach):
+            w = edge[row, 2] * y + edge[row, 3] * w + edge[row, 5]
+            y = y_new
+            if want > 0:
+                apply(edge, row, jac)
+        else:
+            region, y, w, flag = cross_cell(
+                par, coef, edge, cell, region, y, w, want, jac, work, choose, count
+            )
+            if flag != FINE:
+                return region, y, w, flag
+        if want == 2 and (cell % 8 == 7 or cell == cells - 1):
+            straighten(jac, 2.0 * math.pi / par[FREQUENCY] / cells)
+    return region, y, w, FINE if abs(y) < 1e150 and abs(w) < 1e150 else DIVERGED
+
+
 @kernel
 def iterate(
     table: Table,
@@ -229,10 +257,8 @@ def iterate(
     2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2.
     """
     par, coef, edge = table
-    cells = len(edge) // 2
-    h = 2.0 * math.pi / par[FREQUENCY] / cells
-    n = coef.shape[2]
-    a, b, g, choose = np.empty(n), np.empty(n), np.empty(n), binomials(n - 1)
+    h = 2.0 * math.pi / par[FREQUENCY] / (len(edge) // 2)
+    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
     count = np.zeros(2, dtype=np.int64)
     region, y = start(state[0], state[1], par)
     w = state[1] * h
@@ -241,25 +267,9 @@ def iterate(
         jac[1, 1] *= h
     for period in range(skip + len(states)):
         count[0] = count[1] = 0
-        for cell in range(cells):
-            row = cell if region != 0 else cell + cells
-            y_new = edge[row, 0] * y + edge[row, 1] * w + edge[row, 4]
-            reach = edge[row, 6] * abs(y) + edge[row, 7] * abs(w) + edge[row, 8]
-            if clear(region, par, y, y_new, reach):
-                w = edge[row, 2] * y + edge[row, 3] * w + edge[row, 5]
-                y = y_new
-                if want > 0:
-                    apply(edge, row, jac)
-            else:
-                region, y, w, flag = cross_cell(
-                    par, coef, edge, cell, region, y, w, want, jac, a, b, g, choose, count
-                )
-                if flag != FINE:
-                    return flag
-            if want == 2 and (cell % 8 == 7 or cell == cells - 1):
-                straighten(jac, h)
-        if not (abs(y) < 1e150 and abs(w) < 1e150):
-            return DIVERGED
+        region, y, w, flag = one_period(par, coef, edge, region, y, w, want, jac, work, choose, count)
+        if flag != FINE:
+            return flag
         if period >= skip:
             states[period - skip, 0] = y + region * par[HALF_BACKLASH]
             states[period - skip, 1] = w / h
@@ -285,15 +295,14 @@ def partial(
     par, coef, edge = table
     cells = len(edge) // 2
     h = 2.0 * math.pi / par[FREQUENCY] / cells
-    n = coef.shape[2]
-    a, b, g, choose = np.empty(n), np.empty(n), np.empty(n), binomials(n - 1)
+    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
     region, y = start(state[0], state[1], par)
     w = state[1] * h
     jac[1, 0] *= h
     jac[1, 1] *= h
     for at in range(first, first + number):
         region, y, w, flag = cross_cell(
-            par, coef, edge, at % cells, region, y, w, ONE, jac, a, b, g, choose, counts
+            par, coef, edge, at % cells, region, y, w, ONE, jac, work, choose, counts
         )
         if flag != FINE:
             return flag

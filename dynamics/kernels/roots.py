@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import ONE, ZERO, FloatArray, helper, kernel
+from dynamics.kernels.compiling import ONE, ZERO, FloatArray, helper, kernel, maker
 
 
 @helper
@@ -26,8 +26,9 @@ def sole_root(
 ) -> tuple[float, float]:
     """Instant in (low, 1/2) at which a monotone polynomial meets `limit`, and its slope there.
 
-    Values and slopes at both ends are given; the cubic through them, as time over value, is the first guess. Halley's
-    step follows; the last one is judged by its error, of the third order, and takes the slope along.
+    Values and slopes at both ends are given; the cubic through them, as time over value, is the first guess. Steps are
+    of the fourth order; the last one is judged by the error it leaves, against rounding and the last term of the
+    polynomial, and takes the slope along.
     """
     high, rising = 0.5, y_high > y_low
     width, rise = high - low, y_high - y_low
@@ -36,9 +37,11 @@ def sole_root(
     t = rise * other * share * (other / w_low - share / w_high) + width * share * share * (1.0 + 2.0 * other)
     t = low + t if 0.0 < t < width else low + share * width
     slope = w_low
+    crude = 1e-17 * abs(rise) + 0.01 * abs(b[-1]) * 0.5 ** len(b)
     for _ in range(200):
-        f = f1 = f2 = f3 = 0.0
+        f = f1 = f2 = f3 = f4 = 0.0
         for k in range(len(b) - 1, -1, -1):
+            f4 = f4 * t + f3
             f3 = f3 * t + f2
             f2 = f2 * t + f1
             f1 = f1 * t + f
@@ -48,16 +51,18 @@ def sole_root(
             low = t
         else:
             high = t
-        step = -f * f1 / (f1 * f1 - f * f2)
+        square = f1 * f1
+        step = f * (f * f2 - square) / (f1 * (square - 2.0 * f * f2) + f * f * f3)
         new = t + step
         if not (low <= new <= high):
             new = 0.5 * (low + high)
             step = new - t
             if step == 0.0:
                 return t, f1
-        slope = f1 + step * (2.0 * f2 + 3.0 * step * f3)
-        size = abs(step)
-        if size * size * size * (f2 * f2 + abs(f1 * f3)) <= 1e-17 * f1 * f1 or size <= 4.5e-16 * abs(t):
+        slope = f1 + step * (2.0 * f2 + step * (3.0 * f3 + 4.0 * step * f4))
+        size = step * step
+        left = size * size * (abs(f2) * (f2 * f2 + abs(f1 * f3)) + square * abs(f4))
+        if left <= crude * square or size <= 2e-31 * t * t:
             return new, slope
         t = new
     return t, slope
@@ -80,7 +85,7 @@ def largest(matrix: FloatArray, columns: int) -> float:
     return size
 
 
-@helper
+@maker
 def binomials(n: int) -> FloatArray:
     """Table [j, i] of (i + j over j) for `shift`."""
     table = np.ones((n + 1, n + 1))
@@ -183,7 +188,7 @@ def monotone(c: FloatArray, first: int, end: float) -> bool:
     return bool(-c[first + 1] > 1.0001 * rest)
 
 
-@kernel
+@helper
 def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
     """Smallest t in [0, end] at which the polynomial turns negative, -1 if it does not.
 

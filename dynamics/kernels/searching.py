@@ -4,9 +4,20 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import FINE, ONE, ZERO, FloatArray, IntArray, Table, kernel
-from dynamics.kernels.flow import iterate
-from dynamics.kernels.roots import largest
+from dynamics.kernels.compiling import (
+    FINE,
+    FREQUENCY,
+    HALF_BACKLASH,
+    ONE,
+    ZERO,
+    FloatArray,
+    IntArray,
+    Table,
+    kernel,
+)
+from dynamics.kernels.flow import iterate, one_period
+from dynamics.kernels.regions import start
+from dynamics.kernels.roots import binomials, largest
 
 
 @kernel
@@ -19,25 +30,33 @@ def settle(
     when it is within `radius` of a point, in the largest norm, and no farther after one more round. Labels:
     attractor, -1 not arrived within `limit` periods, -2 grown without bound. Returns periods used.
     """
-    one, counts, jac = np.zeros((1, 2)), np.zeros((1, 2), dtype=np.int64), np.zeros((3, 2))
+    par, coef, edge = table
+    h, d = 2.0 * math.pi / par[FREQUENCY] / (len(edge) // 2), par[HALF_BACKLASH]
+    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
+    count, jac = np.zeros(2, dtype=np.int64), np.zeros((3, 2))
     used = 0
     for i in range(len(starts)):
-        state = starts[i]
+        region, y = start(starts[i, 0], starts[i, 1], par)
+        x, v = starts[i, 0], starts[i, 1]
+        w = v * h
         home = wait = period = 0
         distance = 0.0
         while labels[i] == -1 and period < limit:
             period += 1
-            if iterate(table, state, ZERO, ZERO, jac, one, counts) != FINE:
+            region, y, w, flag = one_period(par, coef, edge, region, y, w, ZERO, jac, work, choose, count)
+            if flag != FINE:
                 labels[i] = -2
+            x, v = y + region * d, w / h
             wait -= 1
             for k in range(
                 home if wait == 0 else 0, home + 1 if wait == 0 else len(homes) if wait < 0 else 0
             ):
-                gap = max(abs(state[0] - homes[k, 0]), abs(state[1] - homes[k, 1]))
+                gap = max(abs(x - homes[k, 0]), abs(v - homes[k, 1]))
                 if wait == 0 and gap <= distance:
                     labels[i] = int(homes[k, 2])
                 elif wait < 0 and gap < radius:
                     home, distance, wait = k, gap, int(homes[k, 3])
+        starts[i, 0], starts[i, 1] = x, v
         used += period
     return used
 
