@@ -190,6 +190,7 @@ class _Walker:
         self.points = [start]
         self.special: list[SpecialPoint] = []
         self.tangent = problem.tangent(start, along)
+        self.bend = np.zeros(3)
         even = problem.periods % 2 == 0
         self.phases = self._phases(start)
         self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
@@ -224,23 +225,30 @@ class _Walker:
             elif float(np.max(np.abs(new.u[:2]))) > 1e6:
                 self.ended = "the motion grows without bound"
 
-    def _phases(self, start: Point) -> FloatArray:
+    def _phases(self, start: Point) -> list[list[float]]:
         """Unknowns of the start, its orbit taken from each excitation period on."""
         n = self.problem.periods
         states = period_map(self.problem.at(start.u), start.state, n).states
         value = np.full((n, 1), start.u[2])
-        return np.hstack([np.roll(states, 1, axis=0) / self.problem.scale, value])
+        phases: list[list[float]] = np.hstack([np.roll(states, 1, axis=0) / self.problem.scale, value]).tolist()
+        return phases
 
     def _closed(self, last: Point, new: Point) -> bool:
         """Tell whether a step passes the start, at any of the n phases of its orbit."""
-        chord, back = new.u - last.u, self.phases - last.u
-        along = back @ chord / (chord @ chord)
-        beside = np.linalg.norm(back - along[:, None] * chord, axis=1)
-        return bool(np.any((along > 0.0) & (along <= 1.0) & (beside < 0.1 * math.sqrt(chord @ chord))))
+        chord = (new.u - last.u).tolist()
+        square = sum(c * c for c in chord)
+        for phase in self.phases:
+            back = [p - u for p, u in zip(phase, last.u.tolist(), strict=True)]
+            along = sum(b * c for b, c in zip(back, chord, strict=True)) / square
+            if 0.0 < along <= 1.0:
+                beside = sum((b - along * c) ** 2 for b, c in zip(back, chord, strict=True))
+                if beside < 0.01 * square:
+                    return True
+        return False
 
     def _try(self, last: Point) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
-        guess = last.u + self.step * self.tangent
+        guess = last.u + self.step * (self.tangent + self.step * self.bend)
         row = self.tangent
         bound = 1.0 if guess[2] > 1.0 else 0.0 if guess[2] < 0.0 else math.nan
         if not math.isnan(bound):
@@ -287,6 +295,9 @@ class _Walker:
         self.special += found
         self.points.append(new)
         self.iterations += new.iterations
+        # half the curvature, for the predictor: none from so short a step that the difference is rounding
+        length = math.sqrt(chord @ chord)
+        self.bend = 0.5 / length * (step.tangent - self.tangent) if length > 1e-5 else np.zeros(3)
         self.tangent = step.tangent
         if new.u[2] in (0.0, 1.0):
             self.ended = "bound"

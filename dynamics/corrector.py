@@ -234,27 +234,33 @@ class OrbitProblem:
         return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
 
     def _point(self, u: FloatArray, store: _Store, turned: int, residual: float, iterations: int) -> Point:
-        packed = self.packed(u)
-        derivative = store.lin
-        derivative[:, 2:] /= self.scale
-        second = store.bend
-        second[:2] *= self.scale
         turns = store.turns[:turned]
-        period = 2.0 * math.pi / packed[4]
-        extrema = turns[:, :3].copy()
-        extrema[:, 0] = np.mod(extrema[:, 0] / (self.periods * period), 1.0)
-        slope = turns[:, 5:].copy()
-        slope[:, 2:] /= self.scale
+        amounts = u[2:].tolist()
+        damping, frequency = (self._along(place, amounts) for place in (1, 4))
         # log det = -4 pi zeta n / omega
-        decay = 2.0 * period * self.periods
-        determinant = math.exp(-decay * packed[1])
-        change = np.zeros(len(u))
-        change[2:] = -decay * determinant * (self.ways[:, 1] - packed[1] / packed[4] * self.ways[:, 4])
-        counts = (int(store.counts[0]), int(store.counts[1]))
+        decay = 4.0 * math.pi * self.periods / frequency
+        determinant = math.exp(-decay * damping)
+        change = [0.0, 0.0]
+        change += [-decay * determinant * (way[1] - damping / frequency * way[4]) for way in self._way_rows]
+        p, q = store.counts.tolist()
         return Point(
-            u, self.values(u), u[:2] * self.scale, store.image, derivative, second, determinant, change, counts,
-            extrema, slope, residual, iterations,
+            u, self.low + u[2:] * (self.high - self.low), u[:2] * self.scale, store.image, store.lin, store.bend,
+            determinant, np.array(change), (p, q), turns[:, :3], turns[:, 5:], residual, iterations,
         )  # fmt: skip
+
+    @cached_property
+    def _way_rows(self) -> list[list[float]]:
+        rows: list[list[float]] = self.ways.tolist()
+        return rows
+
+    def _along(self, place: int, amounts: list[float]) -> float:
+        """One packed parameter of the unknowns."""
+        ways = zip(self._way_rows, amounts, strict=True)
+        return float(self.origin[place]) + sum(amount * way[place] for way, amount in ways)
+
+    def play(self, u: FloatArray) -> float:
+        """D of the unknowns."""
+        return self._along(6, u[2:].tolist())
 
 
 class _Store:

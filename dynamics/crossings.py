@@ -38,7 +38,7 @@ def find_crossings(problem: OrbitProblem, a: Point, b: Point) -> tuple[list[Cros
         found.append((Condition("saddle-node"),) * 2)
     if a.flip * b.flip < 0.0:
         found.append((Condition("period-doubling"),) * 2)
-    d_a, d_b = (float(problem.packed(p.u)[6]) for p in (a, b))
+    d_a, d_b = problem.play(a.u), problem.play(b.u)
     if min(d_a, d_b) == 0.0 and not problem.oscillator.one_sided:
         return found, True
     change = [0, 0]

@@ -24,11 +24,14 @@ from dynamics.kernels.compiling import (
     Table,
     helper,
     kernel,
+    maker,
 )
 from dynamics.kernels.flow import basis, expand
 from dynamics.kernels.regions import clear, enter, leave, start
 from dynamics.kernels.roots import binomials, copy, find_turn, largest, poly, shift
 from dynamics.kernels.tables import differentiate, tabulate
+
+NEARLY = 1e-6  # Newton's step, over the scale, after which an orbit is likely to be good to rounding
 
 
 @helper
@@ -311,8 +314,8 @@ def solve_three(matrix: FloatArray, right: FloatArray) -> bool:
     return True
 
 
-@kernel
-def evaluate(
+@maker
+def look(
     origin: FloatArray, ways: FloatArray, order: int, cells: int, degree: int, u: FloatArray, scale: float,
     periods: int, state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
 ) -> tuple[int, int, float]:  # fmt: skip
@@ -334,6 +337,47 @@ def evaluate(
     flag, turned = probe((par, coef, edge), slopes, ways, state, periods, lin, bend, counts, turns)
     off = max(abs(state[0] / scale - u[0]), abs(state[1] / scale - u[1]))
     return flag, turned, off if flag == FINE and off < math.inf else math.inf
+
+
+@helper
+def scaled(
+    q_frequency: float, scale: float, periods: int, lin: FloatArray, bend: FloatArray, turns: FloatArray
+) -> None:  # fmt: skip
+    """Derivatives with respect to the unknowns, over the scale; times of the extrema as phases of the orbit."""
+    length = periods * 2.0 * math.pi / q_frequency
+    for k in range(lin.shape[1]):
+        for j in range(2):
+            if k >= 2:
+                lin[j, k] /= scale
+            else:
+                bend[k, 0, j] *= scale
+                bend[k, 1, j] *= scale
+    for i in range(len(turns)):
+        turns[i, 0] = turns[i, 0] / length % 1.0
+        for k in range(7, turns.shape[1]):
+            turns[i, k] /= scale
+
+
+@helper
+def frequency(origin: FloatArray, ways: FloatArray, u: FloatArray) -> float:
+    """The frequency of the unknowns."""
+    value = origin[FREQUENCY]
+    for k in range(len(ways)):
+        value += u[2 + k] * ways[k, FREQUENCY]
+    return float(value)
+
+
+@kernel
+def evaluate(
+    origin: FloatArray, ways: FloatArray, order: int, cells: int, degree: int, u: FloatArray, scale: float,
+    periods: int, state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
+) -> tuple[int, int, float]:  # fmt: skip
+    """Do as `look`, and give everything with respect to the unknowns and as phases, as `correct` does."""
+    flag, turned, residual = look(
+        origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
+    )
+    scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
+    return flag, turned, residual
 
 
 @helper
@@ -365,40 +409,44 @@ def correct(
     """Newton's method for a periodic orbit in the plane across . (u - guess) = 0, `u` being the guess.
 
     Returns flag, number of extrema, iterations and residual over the scale; `u` becomes the orbit, and the rest is
-    filled as by `probe`, for the image of the orbit.
+    filled as by `probe`, for the image of the orbit, but with derivatives with respect to the unknowns, over the scale,
+    and with phases in [0, 1) of the orbit's period for times.
     """
-    guess, trial = u.copy(), u.copy()
+    guess, last = u.copy(), u.copy()
     matrix, right = np.empty((3, 3)), np.empty(3)
-    no_bend, no_turns = bend[:0], turns[:0]
-    flag, best, size, step = FINE, math.inf, math.inf, 1.0
-    done = -1
+    best, step, done = math.inf, math.inf, 0
     while True:
-        flag, _, size = evaluate(
-            origin, ways, order, cells, degree, trial, scale, periods, state, lin, no_bend, counts, no_turns
-        )
+        whole = step < NEARLY  # the error falls with the square of the step: this is likely to be the last time
+        flag, turned, size = look(
+            origin, ways, order, cells, degree, u, scale, periods, state, lin,
+            bend if whole else bend[:0], counts, turns if whole else turns[:0],
+        )  # fmt: skip
         if flag != FINE:
             return flag, 0, done, best
-        if not size < best and done > 3:
+        if not size < best and done > 3:  # rounding: the one before was as good
+            for k in range(3):
+                u[k] = last[k]
+            whole = False
             break
+        best = size
+        rest = newton_step(u, guess, across, scale, state, lin, matrix, right) if size > 0.0 else 0.0
+        if whole and (rest < 1e-14 or step < 1e-11):
+            break
+        if rest == 0.0 or done >= limit:
+            whole = False
+            break
+        if not rest < 0.5:
+            return LOST, 0, done, best
+        step = rest
         done += 1
         for k in range(3):
-            u[k] = trial[k]
-        best = size
-        if best == 0.0 or done >= limit:
-            break
-        step = newton_step(u, guess, across, scale, state, lin, matrix, right)
-        if not step < 0.5:
-            return LOST, 0, done, best
-        for k in range(3):
-            trial[k] = u[k] + right[k]
-        if step < 1e-11:  # the last step, to rounding: its end is evaluated in full below
-            for k in range(3):
-                u[k] = trial[k]
-            done += 1
-            break
-    flag, turned, best = evaluate(
-        origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
-    )
+            last[k] = u[k]
+            u[k] += right[k]
+    if not whole:
+        flag, turned, best = look(
+            origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
+        )
     if not best <= 1.5e-14 * max(1.0, largest(lin, 2)):
         flag = LOST
+    scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
     return flag, turned, done, best
