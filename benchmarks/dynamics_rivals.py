@@ -145,38 +145,42 @@ def scipy_with_events(x, v, periods, rtol, par):
 
 
 def heyoka_with_events(par):
-    """`(x, v, periods, tol) -> (x, v)` by heyoka's Taylor integrator, or None where it is not installed."""
+    """`(x, v, periods, tol) -> (x, v)` by heyoka's Taylor integrator, or None where it is not installed.
+
+    One compiled integrator for all regions: the region is a parameter, which terminal events at both limits of the
+    backlash change. The callbacks are Python's, some microseconds of each period.
+    """
     try:
         import heyoka as hy
     except ImportError:
         return None
-    kappa, zeta, force, eps, w, d = par
+    kappa, zeta, force, eps, w, d = par.tolist()
     x, v = hy.make_vars("x", "v")
     c = hy.cos(w * hy.time)
     region = hy.par[0]
-    spring = hy.select(hy.eq(region, 0.0), 0.0, x - region * d) if hasattr(hy, "select") else None
-    if spring is None:
-        return None
-    system = [(x, v), (v, force + eps * w**2 * c - 2 * zeta * v - (1 + kappa * c) * spring)]
+    spring = (1.0 + kappa * c) * region * region * (x - region * d)
+    system = [(x, v), (v, force + eps * w**2 * c - 2.0 * zeta * v - spring)]
 
     def crossed(side):
-        def note(ta, d_sgn):
-            ta.pars[0] = 0.0 if ta.pars[0] != 0.0 else float(side)
+        def note(ta, _):
+            ta.pars[0] = 0.0 if ta.pars[0] != 0.0 else side
             return True
 
-        return hy.t_event(x - side * d, callback=note, cooldown=0.0)
+        return hy.t_event(x - side * d, callback=note)
 
     built = {}
 
     def run(x0, v0, periods, tol):
         if tol not in built:
-            built[tol] = hy.taylor_adaptive(
-                system, [x0, v0], tol=tol, pars=[0.0], t_events=[crossed(1), crossed(-1)]
-            )
+            events = [crossed(1.0), crossed(-1.0)]
+            built[tol] = hy.taylor_adaptive(system, [x0, v0], tol=tol, pars=[0.0], t_events=events)
         ta = built[tol]
+        ta.reset_cooldowns()
         ta.time, ta.state[:] = 0.0, [x0, v0]
         ta.pars[0] = 1.0 if x0 > d else -1.0 if x0 < -d else 0.0
-        ta.propagate_until(periods * 2.0 * math.pi / w)
+        outcome = ta.propagate_until(periods * 2.0 * math.pi / w)[0]
+        if outcome != hy.taylor_outcome.time_limit:
+            raise RuntimeError(f"heyoka stopped: {outcome}")
         return ta.state[0], ta.state[1]
 
     return run

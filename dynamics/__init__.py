@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from dynamics.errors import DynamicsWarning as DynamicsWarning
     from dynamics.errors import Fault as Fault
     from dynamics.exponents import LyapunovResult as LyapunovResult
+    from dynamics.exponents import LyapunovScan as LyapunovScan
     from dynamics.exponents import lyapunov_exponents as lyapunov_exponents
+    from dynamics.exponents import lyapunov_scan as lyapunov_scan
     from dynamics.finding import OrbitSet as OrbitSet
     from dynamics.finding import find_orbits as find_orbits
     from dynamics.flow import Trajectory as Trajectory
@@ -85,7 +87,9 @@ _HOMES = {
     "LyapunovResult": "exponents",
     "basins": "attraction",
     "continue_branch": "continuation",
+    "LyapunovScan": "exponents",
     "lyapunov_exponents": "exponents",
+    "lyapunov_scan": "exponents",
     "ContactGrazing": "grazing",
     "Cost": "cost",
     "DynamicsError": "errors",

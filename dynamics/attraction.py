@@ -13,8 +13,9 @@ from dynamics.cost import Cost
 from dynamics.errors import Faults
 from dynamics.flow import Tables, period_map, tables
 from dynamics.oscillator import GearOscillator
+from dynamics.exponents import stretch_rate
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.sweeps import APERIODIC, repeat_after, settling_periods
+from dynamics.sweeps import APERIODIC, creeping, repeat_after, settling_periods
 
 __all__ = ["Attractor", "BasinResult", "basins"]
 
@@ -22,6 +23,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
+PATIENCE = 20  # times the limit that a motion which does not repeat is followed on
+TRIALS = 3  # motions followed so far to tell chaos from a long transient
+SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +62,17 @@ class BasinResult:
     x, v : ndarray, shape (nx,) and (nv,)
         Starting values.
     labels : ndarray of int, shape (nx, nv)
-        Index into `attractors`; -1 undecided, -2 unbounded. X runs along the first axis.
+        Index into `attractors`; -1 unsettled, -2 unbounded. X runs along the first axis.
     attractors : tuple of Attractor
         In the order in which they were found; all aperiodic motion counts as one.
     error : float
-        Part of the starts undecided plus the largest standard error of a share.
+        Part of the starts unsettled plus the largest standard error of a share.
     cost : Cost
         Effort.
     converged : bool
-        Whether every start was decided.
+        Whether every start has settled.
     message : str
-        What was found, with a remedy if some starts were not decided.
+        What was found, with a remedy if some starts have not settled.
     """
 
     x: FloatArray
@@ -100,7 +104,11 @@ def basins(
     """Find the attractors that a grid of starts comes to, and which start comes to which.
 
     Each start is followed until it is near a point of a known attractor and no farther from it one round later. A
-    start that comes to none is followed on; if it repeats, Newton's method makes it a new attractor.
+    start that comes to none is followed on; if it repeats, Newton's method makes it a new attractor. One that does not
+    repeat is aperiodic if it stays on a set where a motion of 20 limits has a positive Lyapunov exponent, by three
+    standard errors; else it is followed for 20 limits, and what then has not come to an orbit is unsettled: chaos may be
+    a transient, and a creeping motion is no chaos. (Without damping nothing settles: all that does not repeat is
+    aperiodic.)
 
     Parameters
     ----------
@@ -139,7 +147,7 @@ def basins(
     table = tables(oscillator)
     starts = np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1).reshape(-1, 2)
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
-    found = _Found(oscillator, table, longest, near)
+    found = _Found(oscillator, table, longest, near, wait)
     sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
     for i in sample:
         labels[i] = found.follow(starts[i], wait)
@@ -152,9 +160,15 @@ def basins(
             found.settle(there, 2 * wait, mine)  # transient chaos outlives damping
         for i in np.flatnonzero(mine == UNDECIDED):
             mine[i] = found.follow(there[i], 0)
+        found.settle(there, PATIENCE * wait, mine, UNSETTLED)
         labels[part] = mine
         if progress is not None:
             progress(int(part[-1]) + 1, len(labels))
+    last = labels == UNSETTLED  # of the first starts: there were fewer attractors to come to
+    if np.any(last):
+        mine, there = labels[last], starts[last]
+        found.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)
+        labels[last] = mine
     labels[labels == UNSETTLED] = UNDECIDED
     attractors = found.attractors(labels)
     lost = float(np.mean(labels == UNDECIDED))
@@ -163,7 +177,7 @@ def basins(
     if np.any(labels == UNBOUNDED):
         message += f"; {np.mean(labels == UNBOUNDED):.3g} of the starts grow without bound"
     if lost:
-        message += f"; {lost:.3g} of the starts undecided: raise limit"
+        message += f"; {lost:.3g} of the starts unsettled: raise limit"
     cost = Cost(time.perf_counter() - began, 2, found.iterations, found.periods)
     return BasinResult(
         xs, vs, labels.reshape(len(xs), len(vs)), attractors, error, cost, lost == 0.0, message
@@ -173,11 +187,13 @@ def basins(
 class _Found:
     """Attractors found so far."""
 
-    def __init__(self, oscillator: GearOscillator, table: Tables, longest: int, near: float) -> None:
+    def __init__(self, oscillator: GearOscillator, table: Tables, longest: int, near: float, limit: int) -> None:
         self.oscillator, self.table, self.longest, self.near = oscillator, table, longest, near
         self.orbits: list[Orbit | None] = []
         self.points: list[FloatArray] = []
-        self.periods = self.iterations = 0
+        self.periods = self.iterations = self.trials = 0
+        self.patience = PATIENCE * limit
+        self.sieves: list[_Sieve] = []
 
     def follow(self, state: FloatArray, wait: int) -> int:
         """Attractor that one state comes to, noted if it is new; or one of the negative labels."""
@@ -187,13 +203,36 @@ class _Found:
         if image.message:
             return UNBOUNDED
         n = repeat_after(image.states, self.longest)
-        if n == 0:
-            return self.note(None, image.states)
-        orbit = find_orbit(self.oscillator, image.state, periods=n)
+        return self.polish(image.states, n) if n else self.wandering(image.states)
+
+    def wandering(self, states: FloatArray) -> int:
+        """Label of a motion that does not repeat: chaotic, on its way to an orbit after all, or unsettled."""
+        if self.oscillator.damping_ratio == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
+            return self.note(None, states)
+        if self.trials == TRIALS:
+            return UNSETTLED
+        self.trials += 1
+        motion, exponent, error = stretch_rate(self.table, states[-1], self.patience)
+        self.periods += self.patience
+        if not np.all(np.isfinite(motion)):
+            return UNBOUNDED
+        end = motion[-4 * self.longest :]
+        n = repeat_after(end, self.longest)
+        if n:
+            return self.polish(end, n)
+        if exponent > 3.0 * error:
+            self.sieves.append(_Sieve(motion))
+            return self.note(None, states)
+        n, _, more = creeping(self.oscillator, self.table, end, self.longest)
+        return self.polish(end, n) if n and more else UNSETTLED
+
+    def polish(self, states: FloatArray, n: int) -> int:
+        """Label of a motion that nearly repeats after n periods, if Newton's method finds its orbit."""
+        orbit = find_orbit(self.oscillator, states[-1], periods=n)
         self.periods += orbit.cost.periods
         self.iterations += orbit.cost.iterations
-        size = max(float(np.max(np.abs(image.states))), 1e-300)
-        if not (orbit.converged and orbit.stable and _apart(orbit.state, image.states) < 1e-3 * size):
+        size = max(float(np.max(np.abs(states))), 1e-300)
+        if not (orbit.converged and orbit.stable and _apart(orbit.state, states) < 1e-3 * size):
             return UNSETTLED
         return self.note(orbit, period_map(self.table, orbit.state, orbit.periods).states)
 
@@ -211,10 +250,18 @@ class _Found:
         self.points.append(states)
         return len(self.orbits) - 1
 
-    def settle(self, starts: FloatArray, limit: int, labels: IntArray) -> None:
-        """Follow all undecided starts until they arrive at a known periodic attractor."""
+    def settle(self, starts: FloatArray, limit: int, labels: IntArray, which: int = UNDECIDED) -> None:
+        """Follow all starts with the label `which` until they arrive at a known periodic attractor."""
         from dynamics.kernels.searching import settle
 
+        if which != UNDECIDED:
+            some = labels == which
+            if np.any(some):
+                mine, there = np.full(int(np.sum(some)), UNDECIDED, dtype=np.int64), starts[some]
+                self.settle(there, limit, mine)
+                mine[mine == UNDECIDED] = which
+                labels[some], starts[some] = mine, there
+            return
         rows = [
             np.column_stack([p, np.full(len(p), i), np.full(len(p), len(p))])
             for i, (orbit, p) in enumerate(zip(self.orbits, self.points, strict=True))
@@ -232,6 +279,27 @@ class _Found:
             scatter = float(np.sqrt(share * (1.0 - share) / len(labels)))
             records.append(Attractor(orbit.label if orbit else APERIODIC, states, orbit, share, scatter))
         return tuple(records)
+
+
+class _Sieve:
+    """The cells of a rectangle that a chaotic motion visits, and their neighbours."""
+
+    def __init__(self, motion: FloatArray) -> None:
+        self.low = motion.min(axis=0)
+        self.size = np.maximum((motion.max(axis=0) - self.low) / SIEVE, 1e-300)
+        visited = np.zeros((SIEVE + 4, SIEVE + 4), dtype=bool)
+        visited[tuple(self._cells(motion).T)] = True
+        self.open = visited.copy()
+        for shift in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            self.open |= np.roll(visited, shift, axis=(0, 1))
+
+    def _cells(self, states: FloatArray) -> IntArray:
+        """Indices of the cells; what lies far outside comes to the margin, which stays closed."""
+        return np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0).astype(np.int64)
+
+    def holds(self, states: FloatArray) -> bool:
+        """Tell whether a motion has come to it: all of the later half of its states."""
+        return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :]).T)]))
 
 
 def _apart(state: FloatArray, states: FloatArray) -> float:

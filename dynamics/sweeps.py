@@ -229,7 +229,7 @@ def _settle(
     for _ in range(3 if patient else 0):
         if n:
             break
-        n, label, more = _creeping(oscillator, table, states, longest)
+        n, label, more = creeping(oscillator, table, states, longest)
         if more == 0:
             break
         used += more
@@ -256,7 +256,7 @@ def _named(oscillator: GearOscillator, states: FloatArray, n: int) -> tuple[int,
     return n, ""
 
 
-def _creeping(
+def creeping(
     oscillator: GearOscillator, table: Tables, states: FloatArray, longest: int
 ) -> tuple[int, str, int]:
     """Period and label of the stable orbit that a motion creeps to, and periods to follow it on; zeros if none.

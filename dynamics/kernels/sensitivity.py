@@ -430,7 +430,7 @@ def correct(
             break
         best = size
         rest = newton_step(u, guess, across, scale, state, lin, matrix, right) if size > 0.0 else 0.0
-        if whole and (rest < 1e-14 or step < 1e-11):
+        if whole and (size <= 4e-15 * max(1.0, largest(lin, 2)) or step < 1e-11):
             break
         if rest == 0.0 or done >= limit:
             whole = False
