@@ -125,7 +125,26 @@ class Trajectory:
         return np.stack([self.x, self.v], axis=1)[:: self.points_per_period]
 
 
-def tables(oscillator: GearOscillator, refinement: int = 1, degree: int = DEGREE) -> Tables:
+def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:
+    """Degree of the Taylor tables that leaves less than a tolerance, at most the usual one.
+
+    A cell is half a radian of the fastest time scale, so that the series of the speeds are cut at (1/4)^n/n!; a period
+    adds at most as many of these as it has cells. The factor 4 is for the three series together.
+    """
+    left, degree = 4.0 * oscillator.cells * 0.25**6 / math.factorial(6), 6
+    while left > tolerance and degree < DEGREE:
+        degree += 1
+        left *= 0.25 / degree
+    return degree
+
+
+def tables(
+    oscillator: GearOscillator,
+    refinement: int = 1,
+    degree: int | None = None,
+    *,
+    tolerance: float | None = None,
+) -> Tables:
     """Tabulate an oscillator.
 
     Parameters
@@ -134,20 +153,30 @@ def tables(oscillator: GearOscillator, refinement: int = 1, degree: int = DEGREE
         The oscillator.
     refinement : int
         Factor on the number of cells.
-    degree : int
-        Of the Taylor polynomials, 6 or more.
+    degree : int, optional
+        Of the Taylor polynomials, 6 or more. Left out: what `tolerance` asks for, or 13, which leaves rounding alone.
+    tolerance : float, optional
+        Error allowed in one period's map, over the size of the motion and the stretch of the map. A loose one makes
+        impacts cheaper, by a fifth at 1e-6.
 
     Raises
     ------
     DynamicsError
-        If refinement or degree are out of range.
+        If an argument is out of range, or both degree and tolerance are given.
     """
     from dynamics.kernels.tables import tabulate
 
     faults = Faults()
     faults.whole("refinement", refinement, 1, 1000, "2 is enough for an error estimate")
-    faults.whole("degree", degree, 6, 60, "12 leaves rounding alone")
+    if degree is not None:
+        faults.whole("degree", degree, 6, 60, "13 leaves rounding alone")
+    if tolerance is not None:
+        faults.number("tolerance", tolerance, "more than 0", "1e-9, say", lambda t: t > 0.0)
+        if degree is not None:
+            faults.add("tolerance", tolerance, "one of degree and tolerance", "leave one out")
     faults.raise_if_any()
+    if degree is None:
+        degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
     packed, order = oscillator.packed(), oscillator.stiffness.order
     cells = math.ceil(oscillator.cells) * refinement
     coef, edge = tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree)

@@ -22,8 +22,12 @@ MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES = range(8)
 FINE, DIVERGED, CROWDED, LOST = range(
     4
 )  # all well, not finite, too many events in a cell, Newton's method failed
-ZERO, ONE = cast(int, np.int64(0)), cast(int, np.int64(1))  # a literal would have numba compile callees twice
-FUSED = {"contract"}  # a product and a sum may be rounded once; nothing else is relaxed
+# a literal would have numba compile callees twice
+ZERO, ONE, TWO = cast(int, np.int64(0)), cast(int, np.int64(1)), cast(int, np.int64(2))
+YES, NO = cast(bool, np.bool_(True)), cast(bool, np.bool_(False))
+# a product and a sum may be rounded once; nothing else is relaxed
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}}
+_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
 
 
@@ -55,16 +59,16 @@ def helper(function: F) -> F:
     A helper allocates nothing: `_nrt=False` leaves out the counting of references to its arrays, whose locked
     instructions would take longer than the arithmetic of an impact.
     """
-    return cast(F, njit(error_model="numpy", nogil=True, fastmath=FUSED, _nrt=False)(function))
+    return cast(F, njit(_nrt=False, **_INNER)(function))
 
 
 def maker(function: F) -> F:
     """Compile as a helper that returns a fresh array."""
-    return cast(F, njit(error_model="numpy", nogil=True, fastmath=FUSED)(function))
+    return cast(F, njit(**_INNER)(function))
 
 
 def kernel(function: F) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    compiled = njit(error_model="numpy", nogil=True, fastmath=FUSED)(function)
+    compiled = njit(**_OPTIONS)(function)
     compiled._cache = _Kept(function)
     return cast(F, compiled)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import ONE, ZERO, FloatArray, helper, kernel, maker
+from dynamics.kernels.compiling import NO, ONE, YES, ZERO, FloatArray, helper, maker
 
 
 @helper
@@ -233,7 +233,7 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
             for k in range(n):
                 b[k] = (k + 1) * c[m + k + 1]
             b[n:] = 0.0
-            turn = find_root(b, ZERO, left, right, guess, True)
+            turn = find_root(b, ZERO, left, right, guess, YES)
             f_t, _, ddf = poly(c, m, turn)
             guess = -1.0
             if f_t < 0.0:
@@ -249,8 +249,8 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
         return -1.0
     if guess < 0.0:
         f_l, slope, curve = poly(c, m, left)
-        guess = left + parabola(f_l, slope, curve, False)
-    return find_root(c, m, left, right, guess, False)
+        guess = left + parabola(f_l, slope, curve, NO)
+    return find_root(c, m, left, right, guess, NO)
 
 
 @helper

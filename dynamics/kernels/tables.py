@@ -4,7 +4,20 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import ERROR, FORCE, FREQUENCY, MEAN, PHASE, ZETA, FloatArray, helper, kernel
+from dynamics.kernels.compiling import (
+    ERROR,
+    FORCE,
+    FREQUENCY,
+    MEAN,
+    ONE,
+    PHASE,
+    TWO,
+    ZERO,
+    ZETA,
+    FloatArray,
+    helper,
+    kernel,
+)
 
 
 @helper
@@ -51,9 +64,9 @@ def bounds(coef: FloatArray, row: int, which: int) -> tuple[float, float]:
 @helper
 def fill_edge(coef: FloatArray, edge: FloatArray, row: int) -> None:
     """Map over the whole cell, to its middle, and the bounds, from the polynomials of a row."""
-    f0, p0, g0, q0 = ends(coef, row, 0)
-    f1, p1, g1, q1 = ends(coef, row, 1)
-    f2, p2, g2, q2 = ends(coef, row, 2)
+    f0, p0, g0, q0 = ends(coef, row, ZERO)
+    f1, p1, g1, q1 = ends(coef, row, ONE)
+    f2, p2, g2, q2 = ends(coef, row, TWO)
     w = f0 * g1 - f1 * g0
     c00, c01, c10, c11 = g1 / w, -f1 / w, -g0 / w, f0 / w
     c0, c1 = -c00 * f2 - c01 * g2, -c10 * f2 - c11 * g2
@@ -62,9 +75,9 @@ def fill_edge(coef: FloatArray, edge: FloatArray, row: int) -> None:
     edge[row, 4], edge[row, 5] = p0 * c0 + p1 * c1 + p2, q0 * c0 + q1 * c1 + q2
     edge[row, 9], edge[row, 10], edge[row, 11], edge[row, 12] = c00, c01, c10, c11
     edge[row, 13], edge[row, 14] = c0, c1
-    b0, j0 = bounds(coef, row, 0)
-    b1, j1 = bounds(coef, row, 1)
-    b2, j2 = bounds(coef, row, 2)
+    b0, j0 = bounds(coef, row, ZERO)
+    b1, j1 = bounds(coef, row, ONE)
+    b2, j2 = bounds(coef, row, TWO)
     edge[row, 18], edge[row, 19], edge[row, 20] = b0, b1, b2
     edge[row, 27], edge[row, 28], edge[row, 29] = j0, j1, j2
     edge[row, 21], edge[row, 22], edge[row, 23] = p0, p1, p2
@@ -121,12 +134,12 @@ def edge_derivative(
     coef: FloatArray, edge: FloatArray, dcoef: FloatArray, dedge: FloatArray, p: int, row: int
 ) -> None:
     """Derivative of the map over the whole cell: d(F C) = dF C - F C dF(start) C, column by column."""
-    _, f0, _, g0 = ends(coef, row, 0)
-    _, f1, _, g1 = ends(coef, row, 1)
+    _, f0, _, g0 = ends(coef, row, ZERO)
+    _, f1, _, g1 = ends(coef, row, ONE)
     part = dcoef[p]
-    s0, e0, t0, h0 = ends(part, row, 0)
-    s1, e1, t1, h1 = ends(part, row, 1)
-    s2, e2, t2, h2 = ends(part, row, 2)
+    s0, e0, t0, h0 = ends(part, row, ZERO)
+    s1, e1, t1, h1 = ends(part, row, ONE)
+    s2, e2, t2, h2 = ends(part, row, TWO)
     for j in range(3):  # columns of A, then b
         a, b = (edge[row, 9 + j], edge[row, 11 + j]) if j < 2 else (edge[row, 13], edge[row, 14])
         forced = 1.0 if j == 2 else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import itertools
 import os
 import shutil
@@ -43,6 +44,17 @@ def oscillators(draw):
 
 
 states = st.tuples(unit, unit)
+
+
+@functools.cache
+def callable_helper(name):
+    """A helper of the kernels, which is compiled for kernels alone, made callable from here."""
+    import numba
+
+    from dynamics.kernels import roots
+
+    helper = getattr(roots, name)
+    return numba.njit(lambda *arguments: helper(*arguments))
 
 
 def size(image) -> float:
@@ -118,7 +130,7 @@ def test_degree_and_cells_do_not_matter(osc, state):
 )
 def test_first_exit_finds_the_first_root(roots, apart, end):
     """Polynomials with known real roots, one of them doubled at a small distance."""
-    from dynamics.kernels.roots import first_exit, poly
+    first_exit, poly = (callable_helper(name) for name in ("first_exit", "poly"))
 
     roots = sorted([*roots, roots[0] + apart])
     assume(all(abs(r) > 1e-3 and abs(r - end) > 1e-3 for r in roots))
@@ -146,12 +158,49 @@ def test_first_exit_finds_the_first_root(roots, apart, end):
 
 def test_first_exit_at_a_boundary_just_crossed():
     """Rounding of the slope's sign is not a second crossing; without that knowledge it is an exit at once."""
-    from dynamics.kernels.roots import first_exit
+    first_exit = callable_helper("first_exit")
 
     c = np.zeros(17)
     c[1:3] = -1e-18, 1.0
     assert first_exit(c, np.empty(17), 1.0, 1) == -1.0
     assert first_exit(c, np.empty(17), 1.0, 0) == 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(oscillators(), states, st.sampled_from([1e-4, 1e-6, 1e-8, 1e-10, 1e-12]))
+def test_a_stated_tolerance_is_kept(osc, state, tolerance):
+    image = period_map(tables(osc, tolerance=tolerance), state)
+    exact = period_map(tables(osc, refinement=3, degree=24), state)
+    # an impact that a graze makes or misses moves the state by the depth times its root: no more than the tolerance
+    np.testing.assert_allclose(image.state, exact.state, rtol=0, atol=tolerance * size(exact))
+
+
+def test_a_looser_tolerance_takes_fewer_terms(article):
+    lengths = [tables(article(), tolerance=t).coef.shape[2] for t in (1e-4, 1e-8, 1e-12, 1e-300)]
+    assert lengths == sorted(lengths)
+    assert lengths[0] < lengths[-1] == DEGREE + 1
+    with pytest.raises(DynamicsError, match="tolerance"):
+        tables(article(), degree=8, tolerance=1e-6)
+    with pytest.raises(DynamicsError, match="tolerance"):
+        tables(article(), tolerance=0.0)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.floats(-0.5, 0.4), st.lists(unit, min_size=4, max_size=4), st.floats(0.05, 0.95), st.booleans())
+def test_sole_root_of_a_monotone_polynomial(low, shape, share, rising):
+    """A slope of one sign leaves one root: what has the value there, to rounding, is it."""
+    sole_root = callable_helper("sole_root")
+
+    slope = np.polynomial.Polynomial([0.0, *shape]) ** 2 + 0.02  # positive throughout
+    rise = (slope if rising else -slope).integ()
+    start, end = rise(low), rise(0.5)
+    limit = start + share * (end - start)
+    b = np.zeros(15)
+    b[: len(rise.coef)] = rise.coef
+    at, there = sole_root(b, limit, low, start, rise.deriv()(low), end, rise.deriv()(0.5))
+    assert low <= at <= 0.5
+    assert abs(rise(at) - limit) <= 8 * EPS * np.sum(np.abs(b))
+    assert there == pytest.approx(rise.deriv()(at), rel=1e-12)
 
 
 def test_error_falls_with_the_degree_as_theory_says(article):

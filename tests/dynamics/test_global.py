@@ -14,6 +14,7 @@ from dynamics import (
     basins,
     find_orbit,
     lyapunov_exponents,
+    lyapunov_scan,
     period_map,
 )
 
@@ -63,6 +64,37 @@ def test_chaos(article):
     assert abs(other.exponents[0] - result.exponents[0]) < 5 * spread
 
 
+def test_scan_of_both_exponents(article):
+    values = np.linspace(0.95, 1.2, 11)
+    scan = lyapunov_scan(article(), "frequency", values, periods=600, transient=200)
+    assert scan.exponents.shape == scan.standard_errors.shape == (11, 2)
+    assert np.max(np.abs(scan.exponents.sum(axis=1) + 0.1)) <= 1e-13
+    assert scan.defect <= 1e-13
+    np.testing.assert_allclose(scan.standard_errors[:, 0], scan.standard_errors[:, 1], rtol=1e-6)
+    chaotic = scan.exponents[:, 0] > 3 * scan.standard_errors[:, 0]
+    assert np.any(chaotic)
+    assert not np.all(chaotic)
+    assert np.asarray(scan).shape == (11, 5)
+    # the same as one by one, the state handed on
+    state = None
+    for i in range(3):
+        one = lyapunov_exponents(article(frequency=values[i]), 600, state=state, transient=200)
+        assert one.exponents.tolist() == scan.exponents[i].tolist()
+        state = one.state
+    with pytest.raises(DynamicsError) as error:
+        lyapunov_scan(article(), "frequency", [], periods=3)
+    assert {f.where for f in error.value.faults} == {"values", "periods"}
+
+
+def test_scan_says_where_motion_is_lost():
+    osc = GearOscillator(FourierStiffness(1.0, (0.9,), (0.0,)), 0.0, 0.1, 0.2, 2.0, half_backlash=0.1)
+    scan = lyapunov_scan(osc, "damping_ratio", [0.0, 0.5], periods=2000, state=(1.0, 1.0), transient=3000)
+    assert np.isnan(scan.exponents[0, 0])
+    assert np.all(np.isfinite(scan.exponents[1]))
+    assert not scan.converged
+    assert "unbounded at 1" in scan.message
+
+
 def test_too_short_an_average_is_said(article):
     with pytest.raises(DynamicsError, match="periods"):
         lyapunov_exponents(article(), periods=5)
@@ -105,10 +137,33 @@ def test_basins_mirror(hysteresis):
     assert np.array_equal(mirrored[::-1, ::-1], names)
 
 
-def test_basins_with_chaos(article):
-    result = basins(article(frequency=1.11), x=(-1, 1, 12), v=(-1, 1, 12))
-    assert {a.label for a in result.attractors} == {"aperiodic", "6-4-4"}
-    assert all(a.orbit is None or a.orbit.stable for a in result.attractors)
+def test_chaos_beyond_its_crisis_is_a_transient(article):
+    """At omega 1.119741 the chaotic attractor meets the manifold of U3-3-1: below it every start comes to 6-4-4."""
+    transient, lasting = (basins(article(frequency=w), x=(-1, 1, 12), v=(-1, 1, 12)) for w in (1.11, 1.13))
+    assert [a.label for a in transient.attractors] == ["6-4-4"]
+    assert transient.converged
+    assert {a.label for a in lasting.attractors} == {"aperiodic", "6-4-4"}
+    assert lasting.converged
+    assert all(a.orbit is None or a.orbit.stable for a in lasting.attractors)
+
+
+def test_a_motion_that_has_not_settled_is_not_called_chaos():
+    """Next to no damping, so that 20 limits are over long before the motion is at rest on its orbit."""
+    osc = GearOscillator(FourierStiffness(1.0), 1e-5, 2.0, 0.1, 0.7, half_backlash=0.1)
+    result = basins(osc, x=(1.5, 3.0, 5), v=(-0.5, 0.5, 4), limit=5)
+    assert np.all(result.labels == -1)
+    assert result.attractors == ()
+    assert not result.converged
+    assert "unsettled: raise limit" in result.message
+    settled = basins(osc, x=(1.5, 3.0, 5), v=(-0.5, 0.5, 4), limit=100_000)
+    assert [a.label for a in settled.attractors] == ["1-0-0"]
+    assert settled.converged
+
+
+def test_motion_without_damping_is_aperiodic():
+    osc = GearOscillator(FourierStiffness(1.0), 0.0, 2.0, 0.1, np.sqrt(0.5), half_backlash=0.1)
+    result = basins(osc, x=(1.9, 2.3, 3), v=(-0.1, 0.1, 2), limit=50)
+    assert [a.label for a in result.attractors] == ["aperiodic"]
 
 
 def test_unbounded_starts():
