@@ -19,7 +19,10 @@ A, B, C = tableau.A[:STAGES, :STAGES].copy(), tableau.B.copy(), tableau.C[:STAGE
 E3, E5 = tableau.E3.copy(), tableau.E5.copy()
 
 
-@njit(error_model="numpy", inline="always")
+SAME = {"error_model": "numpy", "fastmath": {"contract"}}  # compiled with the options of the exact flow
+
+
+@njit(inline="always", **SAME)
 def acceleration(t, x, v, region, par):
     """X'' in a region; `par` holds kappa, zeta, F_m, eps, omega, D."""
     c = math.cos(par[4] * t)
@@ -27,7 +30,7 @@ def acceleration(t, x, v, region, par):
     return par[2] + par[3] * par[4] ** 2 * c - 2.0 * par[1] * v - (1.0 + par[0] * c) * f
 
 
-@njit(error_model="numpy")
+@njit(_nrt=False, **SAME)
 def one_step(t, x, v, h, region, par, k, a0):
     """One step of DOP853 from a known first stage; leaves the stages in `k`."""
     k[0, 0], k[0, 1] = v, a0
@@ -47,7 +50,7 @@ def one_step(t, x, v, h, region, par, k, a0):
     return x_new, v_new
 
 
-@njit(error_model="numpy")
+@njit(_nrt=False, **SAME)
 def outside(x, region, d):
     """Boundary that a region has been left through, 0 if none."""
     if region == 1:
@@ -57,7 +60,7 @@ def outside(x, region, d):
     return 1 if x > d else -1 if x < -d else 0
 
 
-@njit(error_model="numpy")
+@njit(**SAME)
 def compiled_dop853(x, v, periods, rtol, par):
     """State after whole periods."""
     d, length = par[5], 2.0 * math.pi / par[4]

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from dynamics.cost import Cost
 from dynamics.errors import Faults
+from dynamics.exponents import stretch_rate
 from dynamics.flow import Tables, period_map, tables
 from dynamics.oscillator import GearOscillator
-from dynamics.exponents import stretch_rate
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.sweeps import APERIODIC, creeping, repeat_after, settling_periods
 
@@ -106,9 +106,9 @@ def basins(
     Each start is followed until it is near a point of a known attractor and no farther from it one round later. A
     start that comes to none is followed on; if it repeats, Newton's method makes it a new attractor. One that does not
     repeat is aperiodic if it stays on a set where a motion of 20 limits has a positive Lyapunov exponent, by three
-    standard errors; else it is followed for 20 limits, and what then has not come to an orbit is unsettled: chaos may be
-    a transient, and a creeping motion is no chaos. (Without damping nothing settles: all that does not repeat is
-    aperiodic.)
+    standard errors; else it is followed for 20 limits, and what then has not come to an orbit is unsettled: chaos
+    may be a transient, and a creeping motion is no chaos. (Without damping nothing settles: all that does not repeat
+    is aperiodic.)
 
     Parameters
     ----------
@@ -187,7 +187,9 @@ def basins(
 class _Found:
     """Attractors found so far."""
 
-    def __init__(self, oscillator: GearOscillator, table: Tables, longest: int, near: float, limit: int) -> None:
+    def __init__(
+        self, oscillator: GearOscillator, table: Tables, longest: int, near: float, limit: int
+    ) -> None:
         self.oscillator, self.table, self.longest, self.near = oscillator, table, longest, near
         self.orbits: list[Orbit | None] = []
         self.points: list[FloatArray] = []

@@ -230,7 +230,9 @@ class _Walker:
         n = self.problem.periods
         states = period_map(self.problem.at(start.u), start.state, n).states
         value = np.full((n, 1), start.u[2])
-        phases: list[list[float]] = np.hstack([np.roll(states, 1, axis=0) / self.problem.scale, value]).tolist()
+        phases: list[list[float]] = np.hstack(
+            [np.roll(states, 1, axis=0) / self.problem.scale, value]
+        ).tolist()
         return phases
 
     def _closed(self, last: Point, new: Point) -> bool:

@@ -416,7 +416,9 @@ def correct(
     matrix, right = np.empty((3, 3)), np.empty(3)
     best, step, done = math.inf, math.inf, 0
     while True:
-        whole = step < NEARLY  # the error falls with the square of the step: this is likely to be the last time
+        whole = (
+            step < NEARLY
+        )  # the error falls with the square of the step: this is likely to be the last time
         flag, turned, size = look(
             origin, ways, order, cells, degree, u, scale, periods, state, lin,
             bend if whole else bend[:0], counts, turns if whole else turns[:0],
