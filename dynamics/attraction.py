@@ -297,7 +297,8 @@ class _Sieve:
 
     def _cells(self, states: FloatArray) -> IntArray:
         """Indices of the cells; what lies far outside comes to the margin, which stays closed."""
-        return np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0).astype(np.int64)
+        at = np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0)
+        return np.asarray(at, dtype=np.int64)
 
     def holds(self, states: FloatArray) -> bool:
         """Tell whether a motion has come to it: all of the later half of its states."""
