@@ -253,8 +253,10 @@ def lyapunov_exponents(
             raise DynamicsError((fault,))
         rates[i] = logs / (max(size, 1) * oscillator.period)
     weights = np.array(sizes[1:]) / n
-    exponents = np.sort((weights @ rates[1:])[:2])[::-1]
-    spread = float(np.std(rates[1:, 0], ddof=1)) / math.sqrt(BATCHES)
+    order = np.argsort((weights @ rates[1:])[:2])[::-1]
+    exponents = (weights @ rates[1:])[order]
+    spreads = np.std(rates[1:, order], axis=0, ddof=1) / math.sqrt(BATCHES)
+    spread = float(spreads[0])
     largest = float(np.max(np.abs(exponents)))
     sure = abs(exponents[0]) > 3.0 * spread
     message = "average more periods: the sign of the larger exponent is not certain"
@@ -262,4 +264,4 @@ def lyapunov_exponents(
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
     cost = Cost(time.perf_counter() - began, 0, 0, skip + n)
     error = spread / largest if largest > 0.0 else spread
-    return LyapunovResult(exponents, spread, error, y[:2].copy(), cost, bool(sure), message)
+    return LyapunovResult(exponents, spreads, error, y[:2].copy(), cost, bool(sure), message)

@@ -51,9 +51,9 @@ def callable_helper(name):
     """A helper of the kernels, which is compiled for kernels alone, made callable from here."""
     import numba
 
-    from dynamics.kernels import roots
+    from dynamics.kernels import flow, roots
 
-    helper = getattr(roots, name)
+    helper = getattr(roots if hasattr(roots, name) else flow, name)
     return numba.njit(lambda *arguments: helper(*arguments))
 
 
@@ -154,6 +154,37 @@ def test_first_exit_finds_the_first_root(roots, apart, end):
     assert abs(poly(c, 0, found)[0]) <= 4 * EPS * np.sum(np.abs(c) * found ** np.arange(17))
     near = abs(np.prod([inside[0] - r for r in roots if r != inside[0]]))  # the slope there
     assert found == pytest.approx(inside[0], rel=0, abs=1e-13 * np.sum(np.abs(c)) / near + 1e-15)
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.sampled_from([-1, 0, 1]),
+    st.floats(-0.06, 0.06),
+    st.lists(unit, min_size=5, max_size=5),
+    st.floats(-0.5, 0.4),
+    st.booleans(),
+)
+def test_sole_exit_is_never_wrong(region, place, shape, start, one_sided):
+    """Motions that waver at a boundary, against their values at many instants: one crossing, none, or left open."""
+    d = 0.2
+    assume(not (one_sided and region == -1))
+    slope = np.polynomial.Polynomial([0.05 * shape[0], 0.2 * shape[1], *shape[2:]])
+    rise = slope.integ()
+    sides = (1, -1) if region == 0 else (region,)
+    offset = place + (d if region == 0 and shape[0] > 0 else -d if region == 0 else 0.0)
+    y = rise - rise(start) + offset
+    margins = [(d - side * y) if region == 0 else side * y for side in sides if side == 1 or not one_sided]
+    assume(all(margin(start) > 1e-9 and abs(margin(0.5)) > 1e-9 for margin in margins))
+    jerk = float(np.max(np.abs(slope.deriv(2)(np.linspace(start, 0.5, 200))))) * (0.5 - start) ** 2 / 8
+    par = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, d, 1.0 if one_sided else 2.0])
+    told = callable_helper("sole_exit")(region, par, y(start), slope(start), y(0.5), slope(0.5), 1.01 * jerk)
+    times = np.linspace(start, 0.5, 2001)
+    crossings = [int(np.sum(np.diff(np.sign(margin(times))) != 0)) for margin in margins]
+    if told == 0:
+        assert sum(crossings) == 0
+    elif told != 2:
+        assert sum(crossings) == 1
+        assert crossings[sides.index(told)] == 1
 
 
 def test_first_exit_at_a_boundary_just_crossed():
