@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from dynamics.grazing import contact_orbit as contact_orbit
     from dynamics.inverse import Event as Event
     from dynamics.inverse import Identification as Identification
+    from dynamics.inverse import OneOf as OneOf
+    from dynamics.inverse import Ranged as Ranged
     from dynamics.inverse import identify as identify
     from dynamics.labelling import Stretch as Stretch
     from dynamics.labelling import stretches as stretches
@@ -103,6 +105,8 @@ _HOMES = {
     "special_sensitivities": "robustness",
     "Event": "inverse",
     "Identification": "inverse",
+    "OneOf": "inverse",
+    "Ranged": "inverse",
     "identify": "inverse",
     "BasinBoundary": "boundary",
     "basin_boundary": "boundary",

@@ -1,0 +1,233 @@
+"""What is given to the inverse problem: printed special points, and what may be assumed of each parameter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.continuation import KINDS
+from dynamics.errors import Faults
+from dynamics.oscillator import GearOscillator
+from dynamics.special import SpecialPoint
+
+__all__ = ["Event", "OneOf", "Problem", "Ranged", "Unknown"]
+
+MAX_TRIALS = 100_000  # combinations of trial values
+
+
+@dataclass(frozen=True)
+class Event:
+    """A special point that somebody reports.
+
+    Parameters
+    ----------
+    kind : str
+        "saddle-node", "period-doubling" or "grazing".
+    label : str
+        Motion n-p-q at the point; a star for what is not said, as in "2-*-*".
+    value : float
+        Parameter value as printed.
+    digits : int
+        Decimals printed.
+    fitted : bool
+        Whether it may be used to find parameters; the others are only scored.
+    trust : float
+        Weight, above 0 and up to 1.
+    branch : str
+        Events that name the same branch lie on one branch, in the order in which they are given, or all in the
+        opposite one. Empty: nothing is said.
+    """
+
+    kind: str
+    label: str
+    value: float
+    digits: int
+    fitted: bool = True
+    trust: float = 1.0
+    branch: str = ""
+
+    @property
+    def unit(self) -> float:
+        """One unit of the last decimal."""
+        return float(10.0**-self.digits)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Periods, exits from X > D, entries into X < -D, as written."""
+        return tuple(self.label.split("-"))
+
+    @property
+    def periods(self) -> int | None:
+        """Period of the orbit; None if it is not said."""
+        return None if self.fields[0] == "*" else int(self.fields[0])
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether the motion is said not to touch the back flank."""
+        return self.fields[2] == "0"
+
+    def fits(self, point: SpecialPoint) -> bool:
+        """Tell whether a special point is of this kind and label."""
+        return point.kind == self.kind and self.names(point.label)
+
+    def names(self, label: str) -> bool:
+        """Tell whether a label, stable or not, is the one meant."""
+        parts = label.removeprefix("U").split("-")
+        return all(mine in ("*", theirs) for mine, theirs in zip(self.fields, parts, strict=True))
+
+
+@dataclass(frozen=True)
+class Ranged:
+    """A parameter that lies in a range.
+
+    Parameters
+    ----------
+    low, high : float
+        The range.
+    trials : int
+        Values that are tried first: the middles of equal intervals, in equal ratios if both ends are positive.
+    """
+
+    low: float
+    high: float
+    trials: int = 4
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Values that are tried first."""
+        share = (np.arange(self.trials) + 0.5) / self.trials
+        if self.low > 0.0:
+            return tuple(float(x) for x in self.low * (self.high / self.low) ** share)
+        return tuple(float(x) for x in self.low + share * (self.high - self.low))
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """A parameter that has one of several values, round ones for instance.
+
+    Parameters
+    ----------
+    values : sequence of float
+        All are tried, and the result is one of them.
+    """
+
+    values: Sequence[float]
+
+    @property
+    def low(self) -> float:
+        """Least value."""
+        return float(min(self.values))
+
+    @property
+    def high(self) -> float:
+        """Greatest value."""
+        return float(max(self.values))
+
+
+Unknown = Ranged | OneOf
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Events in one parameter, the unknowns among the others, and the oscillator that holds the rest.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        Its values of `parameter` and of the unknowns are not used.
+    parameter : str
+        Parameter in which the events are given.
+    events : tuple of Event
+        The events.
+    unknowns : dict
+        Name to range or choice.
+    bounds : tuple of float
+        Range of the parameter.
+    """
+
+    oscillator: GearOscillator
+    parameter: str
+    events: tuple[Event, ...]
+    unknowns: dict[str, Unknown]
+    bounds: tuple[float, float]
+
+    @property
+    def width(self) -> float:
+        """Of the bounds."""
+        return self.bounds[1] - self.bounds[0]
+
+    @property
+    def fitted(self) -> tuple[int, ...]:
+        """Indices of the events that may be used."""
+        return tuple(i for i, event in enumerate(self.events) if event.fitted)
+
+
+def checked(
+    oscillator: GearOscillator, parameter: str, events: Sequence[Event], unknowns: Mapping[str, Unknown],
+    bounds: tuple[float, float],
+) -> Problem:  # fmt: skip
+    """Problem of the arguments.
+
+    Raises
+    ------
+    DynamicsError
+        With every fault found.
+    """
+    faults = Faults()
+    oscillator.get(parameter)
+    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    if not low < high:
+        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+    for i, event in enumerate(events):
+        _check_event(faults, f"events[{i}]", event, (low, high))
+    for name, unknown in unknowns.items():
+        oscillator.get(name)
+        if name == parameter:
+            faults.add(f"unknowns[{name!r}]", name, "not the parameter of the events", "leave it out")
+        _check_unknown(faults, f"unknowns[{name!r}]", unknown)
+    if not unknowns:
+        faults.add("unknowns", {}, "at least one", "name a parameter and its range")
+    faults.raise_if_any()
+    if math.prod(len(u.values) for u in unknowns.values()) > MAX_TRIALS:
+        faults.add("unknowns", "more combinations", f"{MAX_TRIALS} combinations", "give fewer trial values")
+    fitted = sum(e.fitted for e in events)
+    blind = "half_backlash" in unknowns and all(e.one_sided for e in events)
+    seen = len(unknowns) - blind
+    if fitted < seen or len(events) < seen + 1:
+        allowed = f"{seen} fitted ones or more, {seen + 1} in all"
+        faults.add("events", f"{fitted} fitted of {len(events)}", allowed, "give one more than unknowns")
+    faults.raise_if_any()
+    return Problem(oscillator, parameter, tuple(events), dict(unknowns), (low, high))
+
+
+def _check_event(faults: Faults, where: str, event: Event, bounds: tuple[float, float]) -> None:
+    if event.kind not in KINDS:
+        faults.add(f"{where}.kind", event.kind, ", ".join(KINDS), "name one of these")
+    parts = event.label.split("-")
+    if len(parts) != 3 or not all(p == "*" or p.isdecimal() for p in parts) or parts[0] == "0":
+        faults.add(
+            f"{where}.label", event.label, "n-p-q, a star for what is not known", 'write "1-1-0" or "2-*-*"'
+        )
+    faults.number(
+        f"{where}.trust", event.trust, "above 0, up to 1", "1 is full trust", lambda t: 0.0 < t <= 1.0
+    )
+    faults.whole(f"{where}.digits", event.digits, 0, 15, "give the decimals printed")
+    value = faults.number(f"{where}.value", event.value)
+    if not math.isnan(value) and not bounds[0] < value < bounds[1]:
+        faults.add(f"{where}.value", event.value, "within bounds", "widen the bounds")
+
+
+def _check_unknown(faults: Faults, where: str, unknown: Unknown) -> None:
+    if isinstance(unknown, OneOf):
+        if len(unknown.values) == 0:
+            faults.add(f"{where}.values", (), "at least one value", "give the values to try")
+        for i, value in enumerate(unknown.values):
+            faults.number(f"{where}.values[{i}]", value)
+        return
+    low, high = faults.number(f"{where}.low", unknown.low), faults.number(f"{where}.high", unknown.high)
+    if not low < high:
+        faults.add(where, (low, high), "the lower value first", "give Ranged(low, high)")
+    faults.whole(f"{where}.trials", unknown.trials, 1, 10_000, "4 is usual")

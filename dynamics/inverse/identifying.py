@@ -1,0 +1,163 @@
+"""The inverse problem from events to parameters: reduce, scan, refine, complete, round, report."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+from dynamics.cost import Cost
+from dynamics.errors import Faults
+from dynamics.inverse.catalogue import EVERY, Catalogue, Tally
+from dynamics.inverse.events import Event, Problem, Unknown, checked
+from dynamics.inverse.matching import loss
+from dynamics.inverse.reduction import PLAY, Reduction, reduced, scaled
+from dynamics.inverse.refinement import Fit, fit
+from dynamics.inverse.report import Identification
+from dynamics.inverse.scan import anchored, anchors, scan, solved_name
+from dynamics.inverse.solution import Solution, distinct, identification, solution
+from dynamics.inverse.tracking import marked
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["identify"]
+
+REFINED = 5  # best trials that are refined
+COMPLETED = 2  # best of these that all events are looked for with
+ANCHORS = 3  # events tried as the exact one: as many outliers as are tolerated, and one more
+ROUNDS = 4  # of matching and fitting
+
+
+def identify(
+    oscillator: GearOscillator,
+    parameter: str,
+    events: Sequence[Event],
+    unknowns: Mapping[str, Unknown],
+    bounds: tuple[float, float],
+    *,
+    solved: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Identification:
+    """Find parameters from special points that somebody reports.
+
+    What the events cannot see is left out first. For every combination of trial values one event is met exactly, by the
+    choice of one unknown more; the special points that the oscillator then has are matched with the events by kind,
+    label and order along the branch. The best trials are refined by Newton's method on all events at once, with exact
+    derivatives and weights that misprints lose. If the result is no better than chance, another event is taken as the
+    exact one. Then all branches are searched for the other events, everything is refined together, and values are made
+    round where that costs less than it is worth.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        Fixed parameters; its values of `parameter` and of the unknowns are not used.
+    parameter : str
+        Parameter in which the events are given.
+    events : sequence of Event
+        At least one fitted event more than unknowns that they can see.
+    unknowns : mapping
+        Parameter, named as in `GearOscillator.with_parameter`, to `Ranged` or `OneOf`.
+    bounds : tuple of float
+        Range of `parameter` within which branches are followed; with more than one event outside the usual motion in
+        contact, the shorter the better.
+    solved : str, optional
+        Unknown that is solved from one event. Left out: the mean force, or the first that has a range.
+    progress : callable, optional
+        Called with the number of combinations done and of all, anew for each exact event.
+
+    Returns
+    -------
+    Identification
+        Parameters, competitors, and how far chance would have gone.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range.
+    """
+    began = time.perf_counter()
+    problem = checked(oscillator, parameter, events, unknowns, bounds)
+    reduction = reduced(problem)
+    first = reduction.first
+    if solved is not None and solved not in first.unknowns:
+        faults = Faults()
+        faults.add("solved", solved, ", ".join(first.unknowns), "name an unknown that the events see")
+        faults.raise_if_any()
+    name = solved if solved is not None else solved_name(first)
+    catalogue = Catalogue(first, Tally())
+    trials = 0
+    found: list[Solution] = []
+    for anchor in anchors(first)[:ANCHORS]:
+        scanned = scan(catalogue, anchor, name, progress)
+        trials += len(scanned)
+        fits = sorted(
+            (_settled(catalogue, first, t.oscillator, t.depth) for t in scanned[:REFINED]),
+            key=lambda f: f.misfit,
+        )
+        starts = distinct([f.oscillator for f in fits], tuple(first.unknowns))
+        found += [_completed(catalogue, reduction, start, trials) for start in starts[:COMPLETED]]
+        found.sort(key=lambda s: s.fit.misfit)
+        if (found and found[0].good) or name is None:
+            break
+    tally = catalogue.tally
+    cost = Cost(time.perf_counter() - began, len(unknowns), tally.branches, tally.periods)
+    return identification(problem, reduction.message, found, trials, cost)
+
+
+def _settled(catalogue: Catalogue, problem: Problem, start: GearOscillator, depth: int) -> Fit:
+    """Match and fit in turn until the partners stay the same."""
+    names = tuple(problem.unknowns)
+    here, best = start, None
+    before: tuple[float | None, ...] = ()
+    for _ in range(ROUNDS):
+        _, partners = catalogue.partners(here, depth)
+        marks = [None if p is None else marked(here, problem.parameter, p) for p in partners]
+        found = fit(problem, names, here, marks)
+        if best is None or found.misfit < best.misfit:
+            best = found
+        now = tuple(None if m is None else round(m.value, 10) for m in found.marks)
+        if now == before:
+            break
+        here, before = found.oscillator, now
+    assert best is not None
+    return best
+
+
+def _completed(catalogue: Catalogue, reduction: Reduction, start: GearOscillator, trials: int) -> Solution:
+    """From the reduced problem to the whole: play, all branches, all events, all unknowns."""
+    here = start
+    if reduction.play is not None:
+        here = _with_play(catalogue, reduction, here)
+    here = reduction.whole(here)
+    names = reduction.names
+    problem = dataclasses.replace(
+        reduction.problem, oscillator=here, unknowns={n: reduction.problem.unknowns[n] for n in names}
+    )
+    whole = Catalogue(problem, catalogue.tally)
+    return solution(whole, _settled(whole, problem, here, EVERY), trials)
+
+
+def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator) -> GearOscillator:
+    """The play from the events that touch the back flank; the start if none of them can be met."""
+    assert reduction.play is not None
+    whole = reduction.problem
+    events = tuple(e for e in whole.events if e.fitted and not e.one_sided)
+    here = dataclasses.replace(start, one_sided=False)
+    problem = Problem(here, whole.parameter, events, {PLAY: reduction.play}, whole.bounds)
+    search = Catalogue(problem, catalogue.tally)
+    best: tuple[float, GearOscillator] | None = None
+    for anchor in anchors(problem)[:ANCHORS]:
+        for there in anchored(search, here, events[anchor], PLAY):
+            _, partners = search.partners(there, EVERY)
+            misfit = math.fsum(
+                loss(e, math.nan if p is None else p.parameter, problem.width)
+                for e, p in zip(events, partners, strict=True)
+            )
+            if best is None or misfit < best[0]:
+                best = misfit, there
+        if best is not None and len(events) == 1:
+            break
+    found = here if best is None else best[1]
+    return (
+        scaled(found, whole.oscillator.half_backlash / found.half_backlash) if reduction.rescaled else found
+    )

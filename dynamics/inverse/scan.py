@@ -1,0 +1,154 @@
+"""Trials: one parameter from one event, exactly; the others tried."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue
+from dynamics.inverse.events import Event, OneOf, Problem, Ranged
+from dynamics.inverse.matching import loss
+from dynamics.inverse.reduction import FORCE
+from dynamics.oscillator import GearOscillator
+from dynamics.shooting import find_orbit
+from dynamics.sweeps import rest_state
+
+__all__ = ["Trial", "anchored", "anchors", "scan", "solved_name"]
+
+ORDER = ("saddle-node", "period-doubling", "grazing")  # grazings are often printed late: they come last
+GRID = 8  # values of the solved parameter at which orbits of the anchor's label are searched for
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """Parameters that meet one event exactly.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The parameters.
+    misfit : float
+        Sum of the losses of the events that were looked at.
+    depth : int
+        How far branches were followed.
+    """
+
+    oscillator: GearOscillator
+    misfit: float
+    depth: int
+
+
+def solved_name(problem: Problem) -> str | None:
+    """Unknown that is solved from an event: the mean force, or the first that has a range; None if all are chosen."""
+    ranged = [name for name, unknown in problem.unknowns.items() if isinstance(unknown, Ranged)]
+    return FORCE if FORCE in ranged else ranged[0] if ranged else None
+
+
+def anchors(problem: Problem) -> list[int]:
+    """Fitted events, those first that are trusted, of short period, and no grazings."""
+    events = problem.events
+    return sorted(
+        problem.fitted,
+        key=lambda i: (-events[i].trust, events[i].periods or math.inf, ORDER.index(events[i].kind), i),
+    )
+
+
+def anchored(catalogue: Catalogue, here: GearOscillator, event: Event, name: str) -> list[GearOscillator]:
+    """Oscillators that have an event exactly at its value, by the choice of one parameter.
+
+    At the event's value that parameter is what a branch is followed in: the branch of the motion in contact at
+    either end of the range, or else those of orbits with the event's label.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        Follows branches.
+    here : GearOscillator
+        All other parameters.
+    event : Event
+        The event.
+    name : str
+        The parameter.
+    """
+    problem = catalogue.problem
+    unknown = problem.unknowns[name]
+    span = (unknown.low, unknown.high)
+    start = here.with_parameter(problem.parameter, event.value)
+    found: list[float] = []
+    if event.periods in (1, None):
+        for end in (span[1], span[0]):
+            there = start.with_parameter(name, end)
+            branch = catalogue.follow(find_orbit(there, rest_state(there)), name, span)
+            found += [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
+            if found:
+                break
+    if not found and event.periods != 1:
+        for value in Ranged(*span, trials=GRID).values:
+            for orbit in catalogue.orbits_of(start.with_parameter(name, value), event, event.value):
+                branch = catalogue.follow(orbit, name, span)
+                found += [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
+    distinct: list[float] = []
+    for value in found:
+        if not any(abs(value - other) <= 1e-9 * (span[1] - span[0]) for other in distinct):
+            distinct.append(value)
+    return [here.with_parameter(name, value) for value in distinct]
+
+
+def scan(
+    catalogue: Catalogue, anchor: int, name: str | None, progress: Callable[[int, int], None] | None = None
+) -> list[Trial]:
+    """All combinations of trial values, each completed by the anchor, the better first.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        Its problem says what is tried.
+    anchor : int
+        Event that is met exactly.
+    name : str or None
+        Parameter that is solved from it.
+    progress : callable, optional
+        Called with the number of combinations done and of all.
+    """
+    problem = catalogue.problem
+    tried = [n for n in problem.unknowns if n != name]
+    combinations = list(itertools.product(*(_values(problem, n) for n in tried)))
+    depth, looked_at = _depth(problem, anchor)
+    found: list[Trial] = []
+    for done, values in enumerate(combinations, start=1):
+        here = problem.oscillator
+        for n, value in zip(tried, values, strict=True):
+            here = here.with_parameter(n, float(value))
+        event = problem.events[anchor]
+        for there in [here] if name is None else anchored(catalogue, here, event, name):
+            _, partners = catalogue.partners(there, depth)
+            misfit = math.fsum(
+                loss(
+                    problem.events[i], math.nan if (p := partners[i]) is None else p.parameter, problem.width
+                )
+                for i in looked_at
+            )
+            found.append(Trial(there, misfit, depth))
+        if progress is not None:
+            progress(done, len(combinations))
+    return sorted(found, key=lambda trial: trial.misfit)
+
+
+def _values(problem: Problem, name: str) -> tuple[float, ...]:
+    unknown = problem.unknowns[name]
+    return tuple(unknown.values) if isinstance(unknown, OneOf) else unknown.values
+
+
+def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:
+    """How far branches are followed in every trial, and the events that may lie there.
+
+    As far as gives as many events beside the anchor as unknowns, or all.
+    """
+    wanted = min(len(problem.unknowns), len(problem.fitted) - 1)
+    for depth, periods in ((CONTACT, (1,)), (DOUBLED, (1, 2, 4))):
+        rows = [i for i in problem.fitted if problem.events[i].periods in periods and i != anchor]
+        if len(rows) >= wanted:
+            return depth, rows
+    return EVERY, [i for i in problem.fitted if i != anchor]

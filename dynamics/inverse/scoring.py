@@ -1,0 +1,147 @@
+"""What a fit is worth: matches expected by chance, what the data leave open, what they cannot see, events left out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.inverse.events import Problem
+from dynamics.inverse.matching import Line
+from dynamics.inverse.refinement import Fit, difference, refit, sensitivity
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["Direction", "by_chance", "directions", "left_out", "probabilities", "spread", "unseen"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction in the space of the unknowns, and how well the events see it.
+
+    Parameters
+    ----------
+    strength : float
+        Singular value of the sensitivity: units of the last decimals by which all events together move when the
+        unknowns change along the direction by their own size (phases by 1 rad).
+    parts : dict
+        Unknown to its part of the direction; the squares add up to one.
+    """
+
+    strength: float
+    parts: dict[str, float]
+
+    @property
+    def seen(self) -> bool:
+        """Whether such a change moves the events by a unit."""
+        return self.strength >= 1.0
+
+    def __str__(self) -> str:
+        """Unknowns that take part, the largest part first."""
+        most = max(abs(p) for p in self.parts.values())
+        names = sorted(self.parts, key=lambda n: -abs(self.parts[n]))
+        return " with ".join(n for n in names if abs(self.parts[n]) > 0.1 * most)
+
+
+def probabilities(problem: Problem, lines: Sequence[Line], off: Sequence[float]) -> FloatArray:
+    r"""Probability that a point of the kind and label lies as near to each event by chance.
+
+    :math:`\min(1, 2 n |\mu - \mu_e| / w)` for n such points in a range of width w; at least half a unit counts.
+
+    Parameters
+    ----------
+    problem : Problem
+        Events.
+    lines : sequence of sequences of SpecialPoint
+        All points known.
+    off : sequence of float
+        Differences in units; nan where there is no partner.
+    """
+    chance = np.ones(len(problem.events))
+    for i, (event, distance) in enumerate(zip(problem.events, off, strict=True)):
+        if math.isfinite(distance):
+            number = sum(event.fits(p) for line in lines for p in line)
+            near = max(abs(distance), 0.5) * event.unit
+            chance[i] = min(1.0, 2.0 * max(number, 1) * near / problem.width)
+    return chance
+
+
+def by_chance(problem: Problem, chance: FloatArray, unknowns: int, trials: int) -> float:
+    r"""Trials expected to match as well if the events lay at random.
+
+    As many events as unknowns can always be met: the best fitted ones are set aside, in
+    :math:`\binom{m}{k}` ways. The product x of the other n probabilities, those of events that were not fitted among
+    them, is as small in :math:`x \sum_{j<n} (-\ln x)^j / j!` of all cases (R. A. Fisher's way to combine tests).
+
+    Parameters
+    ----------
+    problem : Problem
+        Events.
+    chance : ndarray, shape (events,)
+        Of `probabilities`.
+    unknowns, trials : int
+        Their numbers.
+    """
+    fitted = sorted(problem.fitted, key=lambda i: float(chance[i]))
+    spare = [i for i in range(len(chance)) if i not in fitted[:unknowns]]
+    ways = math.comb(len(fitted), unknowns)
+    if not spare:
+        return float(trials * ways)
+    log = float(np.sum(np.log(chance[spare])))
+    tail = math.fsum((-log) ** j / math.factorial(j) for j in range(len(spare)))
+    return float(trials * ways * min(1.0, math.exp(log) * tail))
+
+
+def spread(problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]) -> dict[str, float]:
+    """What one unit of the last decimal of each of these events leaves open of each unknown, to first order."""
+    if len(rows) < len(names):
+        return dict.fromkeys(names, math.nan)
+    matrix = sensitivity(problem, names, found.marks, rows)
+    if not np.all(np.isfinite(matrix)):
+        return dict.fromkeys(names, math.nan)
+    size = sizes(found.oscillator, names)
+    open_ = size * np.sum(np.abs(np.linalg.pinv(matrix * size, rcond=1e-14)), axis=1)
+    return dict(zip(names, open_.tolist(), strict=True))
+
+
+def directions(
+    problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]
+) -> tuple[Direction, ...]:
+    """Singular directions of the sensitivity of these events to these parameters, the best seen first."""
+    matrix = sensitivity(problem, names, found.marks, rows)
+    matrix = matrix[np.all(np.isfinite(matrix), axis=1)] * sizes(found.oscillator, names)
+    matrix = np.vstack([matrix, np.zeros((len(names), len(names)))])
+    _, strengths, ways = np.linalg.svd(matrix, full_matrices=False)
+    return tuple(
+        Direction(float(s), dict(zip(names, way.tolist(), strict=True)))
+        for s, way in zip(strengths, ways, strict=True)
+    )
+
+
+def unseen(problem: Problem, found: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
+    """Directions that the events do not see, and known parameters on which none of them depends."""
+    known = [n for n in found.oscillator.parameters if n not in problem.unknowns and n != problem.parameter]
+    matrix = sensitivity(problem, known, found.marks, rows) * sizes(found.oscillator, known)
+    idle = [n for n, column in zip(known, matrix.T, strict=True) if np.all(np.abs(column) < 1e-6)]
+    return (*(str(d) for d in seen if not d.seen), *(idle if len(rows) else ()))
+
+
+def left_out(problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]) -> tuple[float, ...]:
+    """Difference of each event from what the others say of it, in units; nan where they are too few."""
+    off = [math.nan] * len(problem.events)
+    for i in range(len(problem.events)):
+        if i not in rows:
+            off[i] = difference(problem, found.marks, i)
+        elif len(rows) > len(names):
+            others = refit(problem, names, found, [j for j in rows if j != i], limit=8)
+            off[i] = difference(problem, others.marks, i)
+    return tuple(off)
+
+
+def sizes(here: GearOscillator, names: Sequence[str]) -> FloatArray:
+    """What a change is measured by: the value itself, 1 rad for phases."""
+    return np.array([1.0 if "phase" in n else max(abs(here.get(n)), 1e-3) for n in names])

@@ -1,0 +1,111 @@
+"""Special points followed as parameters change, without their branches: Newton's method on the event itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.conditions import Condition, special_orbit
+from dynamics.corrector import OrbitProblem, Point
+from dynamics.oscillator import GearOscillator
+from dynamics.special import SpecialPoint
+
+__all__ = ["Mark", "marked"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """A special point at certain parameters.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The parameters.
+    parameter : str
+        In which the point lies.
+    condition : Condition
+        What singles it out.
+    periods : int
+        Of its orbit.
+    place : ndarray, shape (3,)
+        X, V and the parameter.
+    """
+
+    oscillator: GearOscillator
+    parameter: str
+    condition: Condition
+    periods: int
+    place: FloatArray
+
+    @property
+    def value(self) -> float:
+        """The parameter."""
+        return float(self.place[2])
+
+    def slopes(self, names: Sequence[str]) -> FloatArray:
+        r"""Change of X, V and the parameter with others, shape (3, names): :math:`-A^{-1} b`, all entries exact.
+
+        nan where the system is singular or the point cannot be evaluated.
+        """
+        here = self.oscillator.with_parameter(self.parameter, self.value)
+        low = np.array([self.value, *(here.get(n) for n in names)])
+        problem = OrbitProblem(
+            here, (self.parameter, *names), self.periods, low, low + 1.0, _scale(here, self.place)
+        )
+        at = problem.evaluate(problem.unknowns(self.place[:2], low))
+        lost = np.full((3, len(names)), math.nan)
+        if at is None or (self.condition.kind == "grazing" and self.condition.nearest(at) < 0):
+            return lost
+        rows = np.array([*(at.derivative - np.eye(2, len(low) + 2)), self.condition.gradient(problem, at)])
+        if not np.all(np.isfinite(rows)):
+            return lost
+        try:
+            change = -np.linalg.solve(rows[:, :3], rows[:, 3:])
+        except np.linalg.LinAlgError:
+            return lost
+        change[:2] *= problem.scale
+        return np.asarray(change)
+
+    def moved(self, there: GearOscillator, change: FloatArray) -> Mark | None:
+        """The point at other parameters, `change` the expected change of X, V and the parameter; None if it is lost.
+
+        Newton's method on the orbit and its condition together, from that guess.
+        """
+        guess = self.place + change
+        if not (np.all(np.isfinite(guess)) and (self.parameter != "frequency" or guess[2] > 0.0)):
+            return None
+        scale = _scale(there, self.place)
+        problem = OrbitProblem(
+            there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[2]), 1e-3)]), scale
+        )
+        found = special_orbit(problem, self.condition, problem.unknowns(guess[:2], guess[2:]))
+        if found is None:
+            return None
+        return Mark(
+            there, self.parameter, self._refreshed(found), self.periods, np.append(found.state, found.value)
+        )
+
+    def _refreshed(self, point: Point) -> Condition:
+        """Condition with the phase of the extremum as it is now."""
+        if self.condition.kind != "grazing":
+            return self.condition
+        return replace(self.condition, phase=float(point.extrema[self.condition.nearest(point), 0]))
+
+
+def marked(here: GearOscillator, parameter: str, point: SpecialPoint) -> Mark:
+    """Mark of a special point of a branch."""
+    period = here.with_parameter(parameter, point.parameter).period
+    phase = 0.0 if math.isnan(point.tau) else (point.tau / (point.periods * period)) % 1.0
+    kindred = 0 if point.kind != "grazing" else int(np.sign(point.acceleration))
+    condition = Condition(point.kind, point.boundary, kindred, phase)
+    return Mark(here, parameter, condition, point.periods, np.append(point.state, point.parameter))
+
+
+def _scale(here: GearOscillator, place: FloatArray) -> float:
+    return max(float(np.max(np.abs(place[:2]))), here.half_backlash, 1e-300)
