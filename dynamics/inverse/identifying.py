@@ -9,13 +9,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 from dynamics.cost import Cost
 from dynamics.errors import Faults
-from dynamics.inverse.catalogue import EVERY, Catalogue, Tally
+from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import Event, Problem, Unknown, checked
 from dynamics.inverse.matching import loss
 from dynamics.inverse.reduction import PLAY, Reduction, reduced, scaled
-from dynamics.inverse.refinement import Fit, fit
+from dynamics.inverse.refinement import Fit, difference, fit
 from dynamics.inverse.report import Identification
-from dynamics.inverse.scan import anchored, anchors, scan, solved_name
+from dynamics.inverse.scan import Trial, anchored, ranked, scan, solved_name
+from dynamics.inverse.scoring import by_chance, probabilities
 from dynamics.inverse.solution import Solution, distinct, identification, solution
 from dynamics.inverse.tracking import marked
 from dynamics.oscillator import GearOscillator
@@ -23,8 +24,9 @@ from dynamics.oscillator import GearOscillator
 __all__ = ["identify"]
 
 REFINED = 5  # best trials that are refined
+CLEAR = 1e-9  # trials expected by chance below which nothing else is looked at
 COMPLETED = 2  # best of these that all events are looked for with
-ANCHORS = 3  # events tried as the exact one: as many outliers as are tolerated, and one more
+PLAYS = 3  # events that touch the back flank tried as the exact one, for the play
 ROUNDS = 4  # of matching and fitting
 
 
@@ -36,6 +38,7 @@ def identify(
     bounds: tuple[float, float],
     *,
     solved: str | None = None,
+    anchors: int = 3,
     progress: Callable[[int, int], None] | None = None,
 ) -> Identification:
     """Find parameters from special points that somebody reports.
@@ -62,6 +65,9 @@ def identify(
         contact, the shorter the better.
     solved : str, optional
         Unknown that is solved from one event. Left out: the mean force, or the first that has a range.
+    anchors : int
+        Events tried one after another as the exact one while the result is no better than chance: as many as may be
+        wrong, and one more.
     progress : callable, optional
         Called with the number of combinations done and of all, anew for each exact event.
 
@@ -79,23 +85,24 @@ def identify(
     problem = checked(oscillator, parameter, events, unknowns, bounds)
     reduction = reduced(problem)
     first = reduction.first
+    faults = Faults()
     if solved is not None and solved not in first.unknowns:
-        faults = Faults()
         faults.add("solved", solved, ", ".join(first.unknowns), "name an unknown that the events see")
-        faults.raise_if_any()
+    most = faults.whole("anchors", anchors, 1, 1000, "one more than events that may be wrong")
+    faults.raise_if_any()
     name = solved if solved is not None else solved_name(first)
     catalogue = Catalogue(first, Tally())
     trials = 0
     found: list[Solution] = []
-    for anchor in anchors(first)[:ANCHORS]:
+    for anchor in ranked(first)[:most]:
         scanned = scan(catalogue, anchor, name, progress)
         trials += len(scanned)
-        fits = sorted(
-            (_settled(catalogue, first, t.oscillator, t.depth) for t in scanned[:REFINED]),
-            key=lambda f: f.misfit,
-        )
+        fits = _refined(catalogue, scanned, trials)
         starts = distinct([f.oscillator for f in fits], tuple(first.unknowns))
-        found += [_completed(catalogue, reduction, start, trials) for start in starts[:COMPLETED]]
+        for start in starts[:COMPLETED]:
+            found.append(_completed(catalogue, reduction, start, trials))
+            if found[-1].candidate.by_chance < CLEAR:
+                break
         found.sort(key=lambda s: s.fit.misfit)
         if (found and found[0].good) or name is None:
             break
@@ -104,8 +111,25 @@ def identify(
     return identification(problem, reduction.message, found, trials, cost)
 
 
-def _settled(catalogue: Catalogue, problem: Problem, start: GearOscillator, depth: int) -> Fit:
+def _refined(catalogue: Catalogue, scanned: Sequence[Trial], trials: int) -> list[Fit]:
+    """Fits of the best trials, the better first; no more are made once one is beyond doubt."""
+    problem = catalogue.problem
+    periods = {problem.events[i].periods for i in problem.fitted}
+    depth = CONTACT if periods == {1} else DOUBLED
+    fits: list[Fit] = []
+    for trial in scanned[:REFINED]:
+        fits.append(_settled(catalogue, trial.oscillator, depth))
+        chance = probabilities(
+            problem, [], [difference(problem, fits[-1].marks, i) for i in range(len(problem.events))]
+        )
+        if by_chance(problem, chance, len(problem.unknowns), trials) < CLEAR:
+            break
+    return sorted(fits, key=lambda f: f.misfit)
+
+
+def _settled(catalogue: Catalogue, start: GearOscillator, depth: int) -> Fit:
     """Match and fit in turn until the partners stay the same."""
+    problem = catalogue.problem
     names = tuple(problem.unknowns)
     here, best = start, None
     before: tuple[float | None, ...] = ()
@@ -134,7 +158,7 @@ def _completed(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
         reduction.problem, oscillator=here, unknowns={n: reduction.problem.unknowns[n] for n in names}
     )
     whole = Catalogue(problem, catalogue.tally)
-    return solution(whole, _settled(whole, problem, here, EVERY), trials)
+    return solution(whole, _settled(whole, here, EVERY), trials)
 
 
 def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator) -> GearOscillator:
@@ -146,7 +170,7 @@ def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
     problem = Problem(here, whole.parameter, events, {PLAY: reduction.play}, whole.bounds)
     search = Catalogue(problem, catalogue.tally)
     best: tuple[float, GearOscillator] | None = None
-    for anchor in anchors(problem)[:ANCHORS]:
+    for anchor in ranked(problem)[:PLAYS]:
         for there in anchored(search, here, events[anchor], PLAY):
             _, partners = search.partners(there, EVERY)
             misfit = math.fsum(

@@ -19,6 +19,7 @@ __all__ = ["OUTLIER", "Fit", "agreement", "difference", "fit", "misfit", "moved"
 
 FloatArray = npt.NDArray[np.float64]
 LEFT_OUT = 2  # events that are left out together when a fit of all is no good
+TRIED = 6  # such choices that are followed up
 CLOSE = 10.0  # units of the last decimal within which an event is met
 OUTLIER = 0.1  # weight below which an event counts as an outlier: three times the scale of the differences
 LONGEST = 0.3  # largest step, over the size of each parameter
@@ -49,10 +50,10 @@ class Fit:
 def fit(problem: Problem, names: Sequence[str], start: GearOscillator, marks: Sequence[Mark | None]) -> Fit:
     r"""Fit parameters to the fitted events that have a mark.
 
-    Least squares of the differences in units of the last decimal by Gauss and Newton, then with the weights of
-    Cauchy's distribution, :math:`t / (1 + (r / s)^2)` with :math:`s` from the median of :math:`|r|` and at least one
-    unit. If more than `CLOSE` units are left anywhere, it is repeated without each event, then without each pair, as
-    long as one event more than unknowns is left; the least misfit of all events wins.
+    Least squares of the differences in units of the last decimal by Gauss and Newton, then reweighted (`refit`). If
+    more than `CLOSE` units are left anywhere, it is repeated without one event or two, as long as one event more than
+    unknowns is left; those first without which the linearised equations of the first fit have the least misfit. The
+    least misfit of all events wins.
 
     Parameters
     ----------
@@ -66,28 +67,53 @@ def fit(problem: Problem, names: Sequence[str], start: GearOscillator, marks: Se
         Points of the events there.
     """
     rows = [i for i in problem.fitted if marks[i] is not None]
-    trust = np.array([e.trust for e in problem.events])
     first = Fit(start, tuple(marks), np.zeros(len(marks)), misfit(problem, marks))
-    if len(rows) < len(names):
+    if len(rows) < len(names) or not names:
         return first
-    best = first
-    most = max(0, min(LEFT_OUT, len(rows) - len(names) - 1))
-    for number in range(most + 1):
-        leave = sorted(itertools.combinations(rows, number), key=lambda c: float(np.sum(trust[list(c)])))
-        for out in leave:
-            kept = [i for i in rows if i not in out]
-            weights = np.zeros(len(marks))
-            weights[kept] = trust[kept]
-            found = refit(problem, names, _least_squares(problem, names, first, weights), rows)
-            if found.misfit < best.misfit:
-                best = found
-            if all(abs(difference(problem, found.marks, i)) <= CLOSE for i in kept):
-                return found
+    middle = _least_squares(problem, names, first, rows)
+    best = min((first, refit(problem, names, middle, rows)), key=lambda f: f.misfit)
+    if _met(problem, best, rows):
+        return best
+    for out in _suspects(problem, names, middle, rows)[:TRIED]:
+        kept = [i for i in rows if i not in out]
+        trimmed = _least_squares(problem, names, middle, kept)
+        if trimmed.misfit >= best.misfit and not _met(problem, trimmed, kept):
+            continue
+        found = refit(problem, names, trimmed, rows)
+        if found.misfit < best.misfit:
+            best = found
+        if _met(problem, found, kept):
+            break
     return best
+
+
+def _met(problem: Problem, found: Fit, rows: Sequence[int]) -> bool:
+    return all(abs(difference(problem, found.marks, i)) <= CLOSE for i in rows)
+
+
+def _suspects(problem: Problem, names: Sequence[str], now: Fit, rows: Sequence[int]) -> list[tuple[int, ...]]:
+    """Events and pairs of them, in the order of the misfit that the linearised equations have without them."""
+    matrix = sensitivity(problem, names, now.marks, rows)
+    size = np.maximum(np.abs([now.oscillator.get(n) for n in names]), 1e-3)
+    off = np.array([difference(problem, now.marks, i) for i in rows])
+    usable = np.all(np.isfinite(matrix), axis=1) & np.isfinite(off)
+    trust = np.array([problem.events[i].trust for i in rows])
+    ranked = []
+    for number in range(1, min(LEFT_OUT, int(np.sum(usable)) - len(names) - 1) + 1):
+        for out in itertools.combinations(np.flatnonzero(usable).tolist(), number):
+            kept = usable.copy()
+            kept[list(out)] = False
+            step = np.linalg.lstsq(matrix[kept] * size, -off[kept], rcond=1e-12)[0]
+            rest = np.abs(off + (matrix * size) @ step)[usable]
+            ranked.append((float(trust[usable] @ np.log1p(rest)), tuple(rows[i] for i in out)))
+    return [out for _, out in sorted(ranked)]
 
 
 def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int], limit: int = 15) -> Fit:
     """Reweighted least squares on some events, from a fit that is near.
+
+    First with Cauchy's weights, whose scale is that of the differences, then with those of the loss itself, by which
+    the events that agree come to decide alone.
 
     Parameters
     ----------
@@ -98,21 +124,25 @@ def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int
     rows : sequence of int
         Events that are used; those without a mark are left out.
     limit : int
-        Steps.
+        Steps of each kind.
     """
-    now = start
-    for _ in range(limit):
-        used = [i for i in rows if now.marks[i] is not None]
-        if len(used) < len(names):
-            break
-        weights = agreement(problem, now.marks, used) * [e.trust for e in problem.events]
-        after, size = _step(problem, names, now, weights, patient=False)
-        if after is None:
-            break
-        now = after
-        if size < 1e-12:
-            break
-    return now
+    trust = np.array([e.trust for e in problem.events])
+    now = best = start
+    for weigh in (agreement, _sharp):
+        for _ in range(limit):
+            used = [i for i in rows if now.marks[i] is not None]
+            if len(used) < len(names):
+                return best
+            after, size = _step(problem, names, now, trust * weigh(problem, now.marks, used), patient=False)
+            if after is None:
+                break
+            now = after
+            if size < 1e-12:
+                break
+        if misfit(problem, now.marks, rows) < misfit(problem, best.marks, rows):
+            best = now
+        now = best
+    return best
 
 
 def moved(problem: Problem, names: Sequence[str], now: Fit, values: FloatArray) -> Fit | None:
@@ -148,14 +178,25 @@ def sensitivity(
     return matrix
 
 
-def _least_squares(problem: Problem, names: Sequence[str], start: Fit, weights: FloatArray) -> Fit:
+def _sharp(problem: Problem, marks: Sequence[Mark | None], rows: Sequence[int]) -> FloatArray:
+    """Weights under which least squares lowers the sum of ln(1 + |r|): 1 / (|r| (1 + |r|)), flat below one unit."""
+    weights = np.zeros(len(marks))
+    off = np.abs([difference(problem, marks, i) for i in rows])
+    weights[list(rows)] = 1.0 / (np.maximum(off, 1.0) * (1.0 + off))
+    return weights
+
+
+def _least_squares(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int]) -> Fit:
+    """Gauss and Newton's method on these events, weighted by their trust."""
+    weights = np.zeros(len(start.marks))
+    weights[list(rows)] = [problem.events[i].trust for i in rows]
     now = start
     for _ in range(12):
         after, size = _step(problem, names, now, weights, patient=True)
         if after is None:
             break
         now = after
-        if size < 1e-10:
+        if size < 1e-8:
             break
     return now
 
@@ -231,10 +272,10 @@ def _placed(here: GearOscillator, names: Sequence[str], values: FloatArray) -> G
     return here
 
 
-def misfit(problem: Problem, marks: Sequence[Mark | None]) -> float:
-    """Sum of the losses of the fitted events."""
+def misfit(problem: Problem, marks: Sequence[Mark | None], rows: Sequence[int] | None = None) -> float:
+    """Sum of the losses of these events, of the fitted ones if none are named."""
     total = 0.0
-    for i in problem.fitted:
+    for i in problem.fitted if rows is None else rows:
         mark = marks[i]
         total += loss(problem.events[i], math.nan if mark is None else mark.value, problem.width)
     return total

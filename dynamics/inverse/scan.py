@@ -15,7 +15,7 @@ from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit
 from dynamics.sweeps import rest_state
 
-__all__ = ["Trial", "anchored", "anchors", "scan", "solved_name"]
+__all__ = ["Trial", "anchored", "ranked", "scan", "solved_name"]
 
 ORDER = ("saddle-node", "period-doubling", "grazing")  # grazings are often printed late: they come last
 GRID = 8  # values of the solved parameter at which orbits of the anchor's label are searched for
@@ -31,13 +31,10 @@ class Trial:
         The parameters.
     misfit : float
         Sum of the losses of the events that were looked at.
-    depth : int
-        How far branches were followed.
     """
 
     oscillator: GearOscillator
     misfit: float
-    depth: int
 
 
 def solved_name(problem: Problem) -> str | None:
@@ -46,7 +43,7 @@ def solved_name(problem: Problem) -> str | None:
     return FORCE if FORCE in ranged else ranged[0] if ranged else None
 
 
-def anchors(problem: Problem) -> list[int]:
+def ranked(problem: Problem) -> list[int]:
     """Fitted events, those first that are trusted, of short period, and no grazings."""
     events = problem.events
     return sorted(
@@ -130,7 +127,7 @@ def scan(
                 )
                 for i in looked_at
             )
-            found.append(Trial(there, misfit, depth))
+            found.append(Trial(there, misfit))
         if progress is not None:
             progress(done, len(combinations))
     return sorted(found, key=lambda trial: trial.misfit)
@@ -144,9 +141,9 @@ def _values(problem: Problem, name: str) -> tuple[float, ...]:
 def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:
     """How far branches are followed in every trial, and the events that may lie there.
 
-    As far as gives as many events beside the anchor as unknowns, or all.
+    As far as gives one event for every unknown, the anchor among them: trials need only be told apart.
     """
-    wanted = min(len(problem.unknowns), len(problem.fitted) - 1)
+    wanted = len(problem.unknowns) - 1
     for depth, periods in ((CONTACT, (1,)), (DOUBLED, (1, 2, 4))):
         rows = [i for i in problem.fitted if problem.events[i].periods in periods and i != anchor]
         if len(rows) >= wanted:

@@ -1,0 +1,424 @@
+"""The inverse problem, part by part: what would prove each wrong."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from dynamics import (
+    DynamicsError,
+    Event,
+    FourierStiffness,
+    GearOscillator,
+    OneOf,
+    Ranged,
+    SpecialPoint,
+    continue_branch,
+    find_orbit,
+    find_orbits,
+    identify,
+)
+from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
+from dynamics.inverse.events import Problem
+from dynamics.inverse.matching import match
+from dynamics.inverse.reduction import reduced, scaled
+from dynamics.inverse.refinement import fit, misfit
+from dynamics.inverse.rounding import rounded
+from dynamics.inverse.scan import anchored, ranked, scan
+from dynamics.inverse.scoring import by_chance, directions, left_out, probabilities, unseen
+from dynamics.inverse.tracking import marked
+from dynamics.sweeps import rest_state
+
+ZETA, KAPPA, FORCE = "damping_ratio", "stiffness.amplitudes[0]", "mean_force"
+BOUNDS = (0.3, 2.0)
+TRUE = GearOscillator(FourierStiffness(1.0, (0.123457,), (0.0,)), 0.0234568, 0.0765433, 0.2, 0.4, 0.8)
+SIDED = dataclasses.replace(TRUE, one_sided=True)
+RANGES = {ZETA: Ranged(0.01, 0.08), KAPPA: Ranged(0.05, 0.3), FORCE: Ranged(0.02, 0.3)}
+
+
+def contact_branch(here, bounds=BOUNDS):
+    start = here.with_parameter("frequency", bounds[0])
+    return continue_branch(find_orbit(start, rest_state(start)), "frequency", bounds, max_step=0.05)
+
+
+@pytest.fixture(scope="module")
+def points():
+    """Special points of the motion in contact with the true parameters, one-sided."""
+    return contact_branch(SIDED).points
+
+
+def printed(points, digits=8):
+    return [Event(p.kind, p.label.removeprefix("U"), round(p.parameter, digits), digits) for p in points]
+
+
+def problem_of(here, events, unknowns=None, bounds=BOUNDS):
+    return Problem(here, "frequency", tuple(events), RANGES if unknowns is None else unknowns, bounds)
+
+
+def point(kind, label, value):
+    return SpecialPoint(kind, value, np.zeros(2), np.zeros(2), label, 0.0)
+
+
+# ---- events
+
+
+def test_labels_with_stars_fit_what_they_leave_open():
+    event = Event("saddle-node", "2-*-1", 1.0, 3)
+    fits = [event.names(label) for label in ("2-1-1", "U2-3-1", "2-1-0", "1-1-1")]
+    assert fits == [True, True, False, False]
+
+
+def test_all_faults_of_the_input_are_named():
+    events = (Event("fold", "1-1", 3.0, 20, trust=0.0),)
+    with pytest.raises(DynamicsError) as raised:
+        identify(TRUE, "frequency", events, {FORCE: Ranged(0.4, 0.2), "frequency": OneOf(())}, BOUNDS)
+    text = str(raised.value)
+    for where in (
+        "kind",
+        "label",
+        "trust",
+        "digits",
+        "value",
+        "unknowns['mean_force']",
+        "['frequency']",
+        "].values",
+    ):
+        assert where in text
+
+
+def test_fewer_events_than_unknowns_are_refused(points):
+    with pytest.raises(DynamicsError, match="fitted"):
+        identify(TRUE, "frequency", printed(points[:3]), RANGES, BOUNDS)
+
+
+# ---- matching
+
+
+def test_events_of_a_branch_keep_their_order_against_the_nearest_number():
+    """Folds along a branch at 1.0, .5, .9: .91, .52, 1.02 is that order read backwards, 1.0, .9, .5 is neither."""
+    line = [point("saddle-node", "1-1-0", x) for x in (1.0, 0.5, 0.9)]
+    forward = match([line], [Event("saddle-node", "1-1-0", x, 2, branch="b") for x in (0.98, 0.55)], 1.0)
+    assert [p.parameter for p in forward] == [1.0, 0.5]
+    backward = match(
+        [line], [Event("saddle-node", "1-1-0", x, 2, branch="b") for x in (0.91, 0.52, 1.02)], 1.0
+    )
+    assert [p.parameter for p in backward] == [0.9, 0.5, 1.0]
+    crossed = match([line], [Event("saddle-node", "1-1-0", x, 2, branch="b") for x in (1.0, 0.9, 0.5)], 1.0)
+    found = [p if p is None else p.parameter for p in crossed]
+    assert found != [1.0, 0.9, 0.5]  # not an order along the branch
+    assert sum(x is None for x in found) == 1
+
+
+def test_order_holds_on_one_branch_not_across_two():
+    lines = [[point("grazing", "1-0-0", 0.5)], [point("grazing", "1-0-0", 0.8)]]
+    found = match(lines, [Event("grazing", "1-0-0", x, 2, branch="b") for x in (0.5, 0.8)], 1.0)
+    assert sum(p is None for p in found) == 1
+    free = match(lines, [Event("grazing", "1-0-0", x, 2) for x in (0.5, 0.8)], 1.0)
+    assert [p.parameter for p in free] == [0.5, 0.8]
+
+
+def test_no_point_is_taken_twice_and_kind_and_label_decide():
+    line = [
+        point("saddle-node", "1-1-0", 0.5),
+        point("saddle-node", "U1-1-0", 0.6),
+        point("grazing", "1-1-0", 0.51),
+    ]
+    events = [Event("saddle-node", "1-1-0", x, 3) for x in (0.501, 0.502)]
+    found = [p.parameter for p in match([line], events, 1.0)]
+    assert sorted(found) == [0.5, 0.6]
+    other = match(
+        [line], [Event("period-doubling", "1-1-0", 0.5, 3), Event("saddle-node", "2-1-0", 0.5, 3)], 1.0
+    )
+    assert other == (None, None)
+
+
+# ---- reduction
+
+
+def test_one_sided_points_do_not_see_the_play_and_only_the_ratio_of_force_and_error(points):
+    """Exact invariance of the computed points themselves, D by a factor of ten, both amplitudes by three."""
+    other = dataclasses.replace(SIDED, half_backlash=8.0, mean_force=3 * TRUE.mean_force, error_amplitude=0.6)
+    again = contact_branch(other).points
+    assert [p.label for p in again] == [p.label for p in points]
+    assert [p.parameter for p in again] == pytest.approx([p.parameter for p in points], rel=1e-11)
+
+
+def test_scaled_oscillators_have_the_same_points_with_back_flank():
+    a, b = contact_branch(TRUE), contact_branch(scaled(TRUE, 2.5))
+    assert [p.parameter for p in b.points] == pytest.approx([p.parameter for p in a.points], rel=1e-11)
+
+
+def test_what_is_left_out_at_first(points):
+    open_side = printed(points)[:6]
+    closed = Event("saddle-node", "3-1-1", 1.7, 4)
+    both = {**RANGES, "half_backlash": Ranged(0.1, 2.0), "error_amplitude": Ranged(0.1, 0.4)}
+    whole = reduced(problem_of(TRUE, [*open_side, closed], both))
+    assert whole.first.oscillator.one_sided
+    assert tuple(whole.first.unknowns) == (ZETA, KAPPA, FORCE)
+    assert len(whole.first.events) == 6
+    assert whole.held == ("error_amplitude",)
+    assert whole.play is both["half_backlash"]
+    blind = reduced(problem_of(TRUE, open_side, {**RANGES, "half_backlash": Ranged(0.1, 2.0)}))
+    assert blind.held == ("half_backlash",)
+    assert blind.play is None
+    size = reduced(problem_of(TRUE, [*open_side, closed], {**RANGES, "error_amplitude": Ranged(0.1, 0.4)}))
+    assert size.rescaled
+    assert size.held == ()
+    assert (size.play.low, size.play.high) == pytest.approx((0.8 * 0.2 / 0.4, 0.8 * 0.2 / 0.1))
+    plain = reduced(problem_of(TRUE, [*open_side, closed]))
+    assert plain.first.oscillator == TRUE
+
+
+# ---- one parameter from one event
+
+
+@pytest.mark.parametrize("index", [0, 1, 4])
+def test_the_exact_event_gives_the_parameter_back(points, index):
+    """Force unknown, all else right: one of the oscillators found is the true one, to the digits of the event."""
+    event = dataclasses.replace(printed(points)[index], value=points[index].parameter)
+    catalogue = Catalogue(problem_of(SIDED, [event]), Tally())
+    found = anchored(catalogue, SIDED.with_parameter(FORCE, 0.2), event, FORCE)
+    assert min(abs(here.mean_force / TRUE.mean_force - 1.0) for here in found) < 1e-11
+
+
+def test_grazings_and_distrusted_events_are_the_last_choice(points):
+    events = [
+        Event("grazing", "1-0-0", 0.5, 4),
+        Event("saddle-node", "3-1-1", 0.6, 4),
+        Event("saddle-node", "1-1-0", 0.7, 4),
+        Event("period-doubling", "1-1-0", 0.8, 4, trust=0.5),
+        Event("saddle-node", "1-1-0", 0.9, 4, fitted=False),
+    ]
+    assert ranked(problem_of(TRUE, events)) == [2, 0, 1, 3]
+
+
+# ---- other branches
+
+
+def test_a_motion_of_three_periods_takes_part():
+    """Starved scan: its 3-1-1 lies on an isola that no branch in contact leads to; its fold is met and gives D."""
+    here = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 2.4, 1.0)
+    fold = Event("saddle-node", "3-1-1", 2.478570588355, 12)
+    catalogue = Catalogue(
+        Problem(here, "frequency", (fold,), {"half_backlash": Ranged(0.3, 3.0)}, (1.8, 2.6)), Tally()
+    )
+    assert catalogue.partners(here, DOUBLED)[1] == (None,)
+    partner = catalogue.partners(here, EVERY)[1][0]
+    assert partner.parameter == pytest.approx(fold.value, abs=2e-12)
+    orbits = find_orbits(here.with_parameter("frequency", 2.4), (3,)).orbits
+    assert "3-1-1" in [o.label for o in orbits]
+    play = [
+        o.half_backlash
+        for o in anchored(catalogue, here.with_parameter("half_backlash", 0.5), fold, "half_backlash")
+    ]
+    assert min(abs(d - 1.0) for d in play) < 1e-9
+
+
+# ---- tracking
+
+
+def test_points_are_followed_to_other_parameters_without_their_branch(points):
+    """Against the points of a new branch, and the derivative against that difference."""
+    names = (ZETA, KAPPA, FORCE)
+    change = np.array([2e-5, -4e-5, 1e-5])
+    there = SIDED
+    for name, d in zip(names, change, strict=True):
+        there = there.with_parameter(name, there.get(name) + d)
+    new = contact_branch(there).points
+    assert [p.kind for p in new] == [p.kind for p in points]
+    for old, other in zip(points, new, strict=True):
+        mark = marked(SIDED, "frequency", old)
+        slopes = mark.slopes(names)
+        moved = mark.moved(there, slopes @ change)
+        assert moved.value == pytest.approx(other.parameter, abs=1e-12)
+        first_order = slopes[2] @ change
+        assert other.parameter - old.parameter == pytest.approx(first_order, rel=5e-2, abs=1e-7)
+
+
+# ---- refinement and what it says
+
+
+@pytest.fixture(scope="module")
+def eight(points):
+    """Eight events of six decimals, and a start 2 % beside the truth with their points there."""
+    chosen = [p for p in points if p.kind != "grazing"][:8]
+    events = printed(chosen, 6)
+    start = SIDED
+    for name, factor in ((ZETA, 1.02), (KAPPA, 0.98), (FORCE, 1.005)):
+        start = start.with_parameter(name, factor * SIDED.get(name))
+    return events, start
+
+
+def marks_of(problem, here):
+    _, partners = Catalogue(problem, Tally()).partners(here, CONTACT)
+    return [None if p is None else marked(here, "frequency", p) for p in partners]
+
+
+def off_by(found):
+    return max(abs(found.oscillator.get(n) / SIDED.get(n) - 1.0) for n in RANGES)
+
+
+def test_least_squares_arrives_from_beside(eight):
+    events, start = eight
+    problem = problem_of(SIDED, events)
+    found = fit(problem, tuple(RANGES), start, marks_of(problem, start))
+    assert off_by(found) < 1e-4
+    assert misfit(problem, found.marks) < len(events) * math.log1p(1.0)
+
+
+@pytest.mark.parametrize("wrong", [(0,), (3,), (1, 4), (2, 5)])
+def test_misprints_lose_their_weight(eight, wrong):
+    """One or two of eight printed 2e-3 and more off: the parameters stay those of the others."""
+    events, start = eight
+    bad = [
+        dataclasses.replace(e, value=e.value + 2e-3 * (1 + i)) if i in wrong else e
+        for i, e in enumerate(events)
+    ]
+    problem = problem_of(SIDED, bad)
+    found = fit(problem, tuple(RANGES), start, marks_of(problem, start))
+    assert off_by(found) < 2e-4
+    off = [abs(m.value - e.value) / e.unit for m, e in zip(found.marks, bad, strict=True)]
+    assert all((off[i] > 1e3) == (i in wrong) for i in range(len(bad)))
+
+
+def test_an_event_left_out_is_foretold_by_the_others(eight):
+    """A misprint is as far from what the others say as it was moved; the others are within a few units."""
+    events, start = eight
+    bad = [dataclasses.replace(events[0], value=events[0].value + 5e-4), *events[1:]]
+    problem = problem_of(SIDED, bad)
+    found = fit(problem, tuple(RANGES), start, marks_of(problem, start))
+    rows = range(len(bad))
+    off = left_out(problem, tuple(RANGES), found, rows)
+    assert off[0] == pytest.approx(-500.0, abs=30.0)
+    assert max(abs(x) for x in off[1:]) < 30.0
+
+
+def test_round_values_are_taken_where_they_are_worth_it_and_only_there(points):
+    """Force .08 and kappa .12 are round, zeta .0234568 is not; the events have nine decimals."""
+    here = SIDED.with_parameter(FORCE, 0.08).with_parameter(KAPPA, 0.12)
+    chosen = [p for p in contact_branch(here).points if p.kind != "grazing"][:7]
+    events = printed(chosen, 9)
+    problem = problem_of(here, events)
+    start = (
+        here.with_parameter(FORCE, 0.0800004).with_parameter(KAPPA, 0.1199997).with_parameter(ZETA, 0.0234577)
+    )
+    found = fit(problem, tuple(RANGES), start, marks_of(problem, start))
+    final, steps = rounded(problem, tuple(RANGES), found, dict.fromkeys(RANGES, 1e-7), range(len(events)))
+    taken = {s.parameter: (s.after, s.digits) for s in steps}
+    assert taken[FORCE] == (0.08, 1)
+    assert taken[KAPPA] == (0.12, 2)
+    assert ZETA not in taken
+    assert final.oscillator.damping_ratio == pytest.approx(TRUE.damping_ratio, rel=1e-5)
+    assert all(s.cost < s.worth for s in steps)
+
+
+def test_one_of_several_is_taken_whatever_it_costs(eight):
+    events, start = eight
+    problem = problem_of(SIDED, events, {**RANGES, KAPPA: OneOf((0.1, 0.13))})
+    found = fit(problem, tuple(RANGES), start, marks_of(problem, start))
+    final, steps = rounded(problem, tuple(RANGES), found, dict.fromkeys(RANGES, 1e-6), range(len(events)))
+    assert final.oscillator.get(KAPPA) == 0.13
+    assert steps[0].cost > 10.0
+
+
+# ---- chance and sight
+
+
+def test_chance_is_that_of_events_at_random():
+    """Monte Carlo: events spread evenly, the nearest of three points each, the two best of seven set aside."""
+    rng = np.random.default_rng(5)
+    where = np.array([0.2, 0.5, 0.8])
+    events = [Event("saddle-node", "1-1-0", 0.5, 9) for _ in range(7)]
+    problem = Problem(TRUE, "frequency", tuple(events), {}, (0.0, 1.0))
+    line = [point("saddle-node", "1-1-0", x) for x in where]
+    # five that count, none set aside: the product's distribution is exact for small distances
+    five = Problem(TRUE, "frequency", tuple(events[:5]), {}, (0.0, 1.0))
+    values = rng.uniform(0.0, 1.0, (4000, 5))
+    off = np.min(np.abs(values[:, :, None] - where), axis=2) / 1e-9
+    tails = np.array([by_chance(five, probabilities(five, [line], row), 0, 1) for row in off])
+    for level in (0.5, 0.2, 0.05, 0.01):
+        share = float(np.mean(tails < level))
+        assert share <= level + 4.0 * math.sqrt(level / 4000)
+        assert share >= 0.3 * level
+    values = rng.uniform(0.0, 1.0, (2000, 7))
+    off = np.min(np.abs(values[:, :, None] - where), axis=2) / 1e-9
+    bound = np.array([by_chance(problem, probabilities(problem, [line], row), 2, 1) for row in off])
+    assert float(np.mean(bound < 0.05)) <= 0.05  # an upper bound: each way to set two aside counts
+
+
+def test_chance_grows_with_trials_and_a_missing_event_does_not_help():
+    events = tuple(Event("saddle-node", "1-1-0", 0.5, 6) for _ in range(4))
+    problem = Problem(TRUE, "frequency", events, {}, (0.0, 1.0))
+    good = by_chance(problem, np.array([1e-6, 1e-6, 1e-5, 1e-5]), 2, 10)
+    assert by_chance(problem, np.array([1e-6, 1e-6, 1e-5, 1e-5]), 2, 1000) == pytest.approx(100 * good)
+    assert by_chance(problem, np.array([1e-6, 1e-6, 1e-5, 1.0]), 2, 10) > 1e3 * good
+
+
+def test_the_scale_of_a_one_sided_motion_is_a_direction_nobody_sees(points):
+    events = printed(points[:6])
+    unknowns = {FORCE: Ranged(0.02, 0.3), "error_amplitude": Ranged(0.1, 0.4), KAPPA: Ranged(0.05, 0.3)}
+    problem = problem_of(SIDED, events, unknowns)
+    marks = tuple(marked(SIDED, "frequency", p) for p in points[:6])
+    found = fit(problem, (), SIDED, marks)
+    seen = directions(problem, tuple(unknowns), found, range(6))
+    assert [d.seen for d in seen] == [True, True, False]
+    assert str(seen[2]) in ("mean_force with error_amplitude", "error_amplitude with mean_force")
+    assert seen[2].parts[FORCE] == pytest.approx(seen[2].parts["error_amplitude"], rel=1e-6)
+    assert "half_backlash" in unseen(problem, found, range(6), seen)
+
+
+# ---- the whole
+
+
+def test_parameters_are_found_from_eight_points_two_of_them_misprinted():
+    """The true values are no trial values; the first choice as the exact event is a misprint too."""
+    bounds = (0.35, 1.1)
+    points = [p for p in contact_branch(TRUE, bounds).points if p.kind != "grazing"]
+    events = printed(points, 6)[:8]
+    assert len(events) == 8
+    exact = ranked(problem_of(TRUE, events))[0]
+    wrong = (exact, 5)
+    for i, by in zip(wrong, (0.03, -0.001), strict=True):
+        events[i] = dataclasses.replace(events[i], value=events[i].value + by)
+    ranges = {
+        ZETA: Ranged(0.015, 0.04, trials=2),
+        KAPPA: Ranged(0.08, 0.2, trials=2),
+        FORCE: Ranged(0.03, 0.2),
+    }
+    found = identify(TRUE, "frequency", events, ranges, bounds)
+    assert found.converged
+    assert found.by_chance < 1e-6
+    assert set(found.best.outliers) == set(wrong)
+    for name in ranges:
+        assert found.best.values[name] == pytest.approx(TRUE.get(name), rel=3e-4)
+
+
+def test_numbers_that_no_oscillator_has_are_not_identified(points):
+    """Labels of a real scan with values at random: whatever is found is within reach of chance, and said so."""
+    rng = np.random.default_rng(1)
+    plain = [e for e in printed(points, 6) if e.kind != "grazing" and e.periods == 1]
+    events = [dataclasses.replace(e, value=round(float(rng.uniform(0.36, 0.74)), 6)) for e in plain[:5]]
+    ranges = {
+        ZETA: Ranged(0.015, 0.04, trials=1),
+        KAPPA: Ranged(0.08, 0.2, trials=2),
+        FORCE: Ranged(0.03, 0.2),
+    }
+    found = identify(TRUE, "frequency", events, ranges, (0.35, 0.75), anchors=1)
+    assert not found.converged
+    assert found.by_chance > 0.01
+    assert "not identified" in found.message
+
+
+def test_trials_are_counted(points):
+    events = printed([p for p in points if p.kind == "saddle-node"], 8)
+    catalogue = Catalogue(
+        problem_of(SIDED, events, {ZETA: Ranged(0.01, 0.08, trials=2), FORCE: RANGES[FORCE]}), Tally()
+    )
+    done = []
+    found = scan(catalogue, 0, FORCE, lambda k, n: done.append((k, n)))
+    assert done == [(1, 2), (2, 2)]
+    assert len(found) >= 2
+    assert found[0].misfit <= found[-1].misfit
