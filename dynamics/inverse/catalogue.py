@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.continuation import Branch, continue_branch
 from dynamics.finding import find_orbits
+from dynamics.flow import period_map
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.oscillator import GearOscillator
@@ -24,7 +25,7 @@ STEP = 0.05  # largest step along a branch
 CAPTURE = (
     0.02  # of the range: within it a point of the kind and label makes a search around the event needless
 )
-BESIDE = (0.001, 0.006, 0.03)  # of the range: how far beside an event its orbit is searched for
+BESIDE = (0.002, 0.015)  # of the range: how far beside an event its orbit is searched for
 LONGEST = 4  # period searched for where an event does not say
 CONTACT, DOUBLED, EVERY = 0, 1, 2
 
@@ -65,19 +66,17 @@ class Catalogue:
             partner near it, also the branches of the orbits of its label that a search around it finds.
         """
         bounds, events = self.problem.bounds, self.problem.events
-        found = [self.follow(self._settled(here, bounds[0], 0))]
+        found = self._new(self._settled(here, bounds[0], 0), [])
         if depth >= DOUBLED:
-            found.append(self.follow(self._settled(here, bounds[1], SETTLED)))
+            found += self._new(self._settled(here, bounds[1], SETTLED), found)
             longest = max((e.periods or LONGEST for e in events), default=1)
-            found += self._doubled(here, [b for b in found if b is not None], longest)
-        lines = _distinct([b for b in found if b is not None], self.problem.width)
-        if depth < EVERY:
-            return lines
-        for event in events:
-            if any(self._near(p, event) for line in lines for p in line):
-                continue
-            for branch in self._around(here, event):
-                lines = _added(lines, branch, self.problem.width)
+            found += self._doubled(here, found, longest)
+        for event in events if depth == EVERY else ():
+            if not any(self._near(p, event) for branch in found for p in branch.points):
+                found += self._around(here, event, found)
+        lines: list[Line] = []
+        for branch in found:
+            lines = _added(lines, branch, self.problem.width)
         return lines
 
     def partners(
@@ -112,6 +111,29 @@ class Catalogue:
         self.tally.periods += found.cost.periods
         return [orbit for orbit in found.orbits if event.names(orbit.label)]
 
+    def _new(self, orbit: Orbit, known: list[Branch]) -> list[Branch]:
+        """Branch through an orbit, if it lies on none of those known."""
+        if not orbit.converged or any(self._holds(branch, orbit) for branch in known):
+            return []
+        branch = self.follow(orbit)
+        return [] if branch is None else [branch]
+
+    def _holds(self, branch: Branch, orbit: Orbit) -> bool:
+        """Tell whether a branch passes through an orbit: where it passes the value, Newton's method is started."""
+        if branch.periods != orbit.periods:
+            return False
+        value = orbit.oscillator.get(self.problem.parameter)
+        states = period_map(orbit.oscillator, orbit.state, orbit.periods).states
+        scale = max(float(np.max(np.abs(states))), 1e-300)
+        off = branch.values - value
+        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
+            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
+            guess = branch.states[i] + share * (branch.states[i + 1] - branch.states[i])
+            there = find_orbit(orbit.oscillator, guess, periods=branch.periods, max_iterations=12)
+            if there.converged and float(np.min(np.max(np.abs(states - there.state), axis=1))) < 1e-7 * scale:
+                return True
+        return False
+
     def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
         start = here.with_parameter(self.problem.parameter, value)
         return find_orbit(start, rest_state(start), transient=transient)
@@ -131,18 +153,18 @@ class Catalogue:
                     waiting.append(branch)
         return found
 
-    def _around(self, here: GearOscillator, event: Event) -> list[Branch]:
-        """Branches of the orbits of an event's label, to either side of it; the nearest that have such a point."""
+    def _around(self, here: GearOscillator, event: Event, known: list[Branch]) -> list[Branch]:
+        """Branches not yet known of the orbits of an event's label to either side of it, until one has such a point."""
         low, high = self.problem.bounds
+        found: list[Branch] = []
         for beside in BESIDE:
-            branches = []
             for value in (event.value - beside * (high - low), event.value + beside * (high - low)):
                 if low < value < high:
-                    branches += [self.follow(o) for o in self.orbits_of(here, event, value)]
-            found = [b for b in branches if b is not None and any(self._near(p, event) for p in b.points)]
-            if found:
-                return found
-        return []
+                    for orbit in self.orbits_of(here, event, value):
+                        found += self._new(orbit, [*known, *found])
+            if any(self._near(p, event) for branch in found for p in branch.points):
+                break
+        return found
 
     def _near(self, point: SpecialPoint, event: Event) -> bool:
         return event.fits(point) and abs(point.parameter - event.value) < CAPTURE * self.problem.width
@@ -161,10 +183,3 @@ def _added(lines: list[Line], branch: Branch, width: float) -> list[Line]:
     known = [p for line in lines for p in line]
     new = [p for p in branch.points if not any(_same(p, q, width) for q in known)]
     return [*lines, tuple(new)] if new else lines
-
-
-def _distinct(branches: list[Branch], width: float) -> list[Line]:
-    lines: list[Line] = []
-    for branch in branches:
-        lines = _added(lines, branch, width)
-    return lines

@@ -396,6 +396,7 @@ def test_parameters_are_found_from_eight_points_two_of_them_misprinted():
         assert found.best.values[name] == pytest.approx(TRUE.get(name), rel=3e-4)
 
 
+@pytest.mark.slow
 def test_numbers_that_no_oscillator_has_are_not_identified(points):
     """Labels of a real scan with values at random: whatever is found is within reach of chance, and said so."""
     rng = np.random.default_rng(1)
