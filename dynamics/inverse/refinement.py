@@ -109,11 +109,8 @@ def _suspects(problem: Problem, names: Sequence[str], now: Fit, rows: Sequence[i
     return [out for _, out in sorted(ranked)]
 
 
-def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int], limit: int = 15) -> Fit:
-    """Reweighted least squares on some events, from a fit that is near.
-
-    First with Cauchy's weights, whose scale is that of the differences, then with those of the loss itself, by which
-    the events that agree come to decide alone.
+def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int], limit: int = 20) -> Fit:
+    """Reweighted least squares on some events, from a fit that is near: the events that agree come to decide alone.
 
     Parameters
     ----------
@@ -124,24 +121,22 @@ def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int
     rows : sequence of int
         Events that are used; those without a mark are left out.
     limit : int
-        Steps of each kind.
+        Steps.
     """
     trust = np.array([e.trust for e in problem.events])
     now = best = start
-    for weigh in (agreement, _sharp):
-        for _ in range(limit):
-            used = [i for i in rows if now.marks[i] is not None]
-            if len(used) < len(names):
-                return best
-            after, size = _step(problem, names, now, trust * weigh(problem, now.marks, used), patient=False)
-            if after is None:
-                break
-            now = after
-            if size < 1e-12:
-                break
+    for _ in range(limit):
+        used = [i for i in rows if now.marks[i] is not None]
+        if len(used) < len(names):
+            break
+        after, size = _step(problem, names, now, trust * _sharp(problem, now.marks, used), patient=False)
+        if after is None:
+            break
+        now = after
         if misfit(problem, now.marks, rows) < misfit(problem, best.marks, rows):
             best = now
-        now = best
+        if size < 1e-12:
+            break
     return best
 
 
