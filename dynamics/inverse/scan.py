@@ -141,9 +141,9 @@ def _values(problem: Problem, name: str) -> tuple[float, ...]:
 def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:
     """How far branches are followed in every trial, and the events that may lie there.
 
-    As far as gives one event for every unknown, the anchor among them: trials need only be told apart.
+    As far as gives one event for every unknown, the anchor among them, or three: trials need only be told apart.
     """
-    wanted = len(problem.unknowns) - 1
+    wanted = min(len(problem.unknowns) - 1, 2)
     for depth, periods in ((CONTACT, (1,)), (DOUBLED, (1, 2, 4))):
         rows = [i for i in problem.fitted if problem.events[i].periods in periods and i != anchor]
         if len(rows) >= wanted:
