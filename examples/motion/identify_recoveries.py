@@ -1,10 +1,10 @@
 """How often `identify` finds parameters back from eight of their special points, up to two of them misprinted.
 
-Damping, stiffness and force are drawn at random (equal ratios, seeds 0 to 9), eight special points of the motion in
+Damping, stiffness and force are drawn at random (equal ratios, seeds 0, 1, ...), eight special points of the motion in
 contact and of its doubled branches are chosen at random and printed with six decimals; a misprint changes the second,
 third or fourth. A case counts as found if every parameter is within a thousandth.
 
-    python examples/motion/identify_recoveries.py            # all thirty, about fifteen minutes
+    python examples/motion/identify_recoveries.py            # ten oscillators, five minutes
     python examples/motion/identify_recoveries.py --cases 1
 """
 
