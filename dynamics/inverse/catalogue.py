@@ -68,7 +68,8 @@ class Catalogue:
         bounds, events = self.problem.bounds, self.problem.events
         found = self._new(self._settled(here, bounds[0], 0), [])
         if depth >= DOUBLED:
-            found += self._new(self._settled(here, bounds[1], SETTLED), found)
+            for orbit in self._upper(here, bounds[1]):
+                found += self._new(orbit, found)
             longest = max((e.periods or LONGEST for e in events), default=1)
             found += self._doubled(here, found, longest)
         for event in events if depth == EVERY else ():
@@ -137,6 +138,15 @@ class Catalogue:
     def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
         start = here.with_parameter(self.problem.parameter, value)
         return find_orbit(start, rest_state(start), transient=transient)
+
+    def _upper(self, here: GearOscillator, value: float) -> list[Orbit]:
+        """Motion at the upper bound; where that is chaos, from which Newton's method may go anywhere, all orbits."""
+        settled = self._settled(here, value, SETTLED)
+        if settled.converged:
+            return [settled]
+        found = find_orbits(settled.oscillator, (1,))
+        self.tally.periods += found.cost.periods
+        return list(found.orbits)
 
     def _doubled(self, here: GearOscillator, branches: list[Branch], longest: int) -> list[Branch]:
         waiting, found = list(branches), []
