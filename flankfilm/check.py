@@ -6,12 +6,15 @@ import warnings
 
 from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
+from flankfilm.cache import Cache
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.decide import Plan
+from flankfilm.stages.engine import Engine
 
 
 def check_scene(scene: Scene) -> list[str]:
-    """Check what only the built geometry and the oil's laws can tell, and say what a run would compute.
+    """Check what only the built geometry and the oil's laws can tell, and say what a run would decide and compute.
 
     Returns
     -------
@@ -41,5 +44,9 @@ def check_scene(scene: Scene) -> list[str]:
             f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
         told += [f"Warning: {warning.message}" for warning in caught]
-    told.append("A run computes: " + ", ".join(STAGES[name].title for name in goals(scene)) + ".")
+    if "dry cycle" in (wanted := goals(scene)) or (scene.stiffness.model != "given" and "fourier" in wanted):
+        plan: Plan = Engine(scene, STAGES, Cache(None))["plan"]
+        told += [decision.line for decision in plan.decisions]
+        told.append(plan.line)
+    told.append("A run computes: " + ", ".join(STAGES[name].title for name in wanted) + ".")
     return told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write
 from flankfilm.diagram_outputs import diagram_quantities, diagram_tables
 from flankfilm.load_outputs import load_outputs
 from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.stages.decisions import decisions
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
@@ -160,7 +162,8 @@ def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Pa
     if (diagram := values.get("diagram")) is not None:
         quantities |= diagram_quantities(diagram)
         tables |= diagram_tables(diagram)
-    attributes = {"title": scene.title, **provenance(scene.model_dump_json())}
+    decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
+    attributes = {"title": scene.title, **decided, **provenance(scene.model_dump_json())}
     write_netcdf(folder / "results.nc", to_dataset(quantities, attributes))
     for name, columns in tables.items():
         write_csv(folder / "csv" / f"{name}.csv", columns)

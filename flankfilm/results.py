@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flankfilm.scene import Scene
+from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import StageRun
+
+if TYPE_CHECKING:
+    from flankfilm.stages.decide import Plan
+    from flankfilm.stages.decisions import Decision
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,16 @@ class Results:
     runs: Mapping[str, StageRun]
     files: tuple[Path, ...]
     seconds: float
+
+    @property
+    def plan(self) -> Plan | None:
+        """Models and shares of the tolerance; None for a scene without teeth."""
+        return self.values.get("plan")
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """What the run decided by itself, and what the scene had decided."""
+        return decisions(self.values)
 
     def _repr_html_(self) -> str:
         """Headline figures, for notebooks."""

@@ -12,7 +12,6 @@ from flankfilm.report import diagram_parts, film_parts, load_parts, mesh_parts, 
 from flankfilm.report.page import Headline, Part, render
 from flankfilm.report.run_parts import CostRow
 from flankfilm.report.text import percent
-from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
     from flankfilm.results import Results
@@ -54,6 +53,9 @@ def headlines(results: Results) -> list[Headline]:
 def summary(results: Results) -> list[str]:
     """Lines for the terminal: headline figures with errors, and the files."""
     told = [f"{h.name}: {h.text}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    told += [decision.line for decision in results.decisions]
+    if results.plan is not None:
+        told.append(results.plan.line)
     return [*told, f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s"]
 
 
@@ -111,24 +113,16 @@ def _result_parts(results: Results) -> list[Part | None]:
 
 
 def _model_note(results: Results) -> str:
-    decision = results.values.get("film model")
-    return f"Film: {decision.reason}." if decision is not None else ""
+    plan = results.values.get("plan")
+    return f"Film: {plan.film.reason}." if plan is not None else ""
 
 
 def _run_parts(results: Results) -> list[Part | None]:
     scene = results.scene
-    split = ToleranceSplit.of(scene.tolerance)
-    notes = []
-    if "compliance" in results.values:
-        notes.append(
-            f"The tolerance of {percent(scene.tolerance)} is split: {percent(split.compliance)} for the tooth "
-            f"compliance, {percent(split.sampling)} for the sampling of the mesh cycle, {percent(split.film)} "
-            "for film thicknesses."
-        )
     made = provenance(scene.model_dump_json())
     return [
         run_parts.costs(_cost_rows(results), results.seconds, scene.tolerance),
-        run_parts.decisions(notes, results.runs),
+        run_parts.decisions(results.decisions, results.plan, results.runs),
         run_parts.inputs(
             json.dumps(scene.model_dump(exclude_none=True), indent=2, ensure_ascii=False),
             json.loads(made["versions_json"]),
@@ -138,19 +132,19 @@ def _run_parts(results: Results) -> list[Part | None]:
 
 def _cost_rows(results: Results) -> list[CostRow]:
     """Error and work of each stage that ran, in the order of the house."""
-    split = ToleranceSplit.of(results.scene.tolerance)
+    plan = results.plan
     scene_tolerance = results.scene.tolerance
     rows = []
     for name, run in results.runs.items():
         value: Any = results.values.get(name)
         figure, allowed, error, note = "", None, None, ""
         if name == "bodies":
-            figure, allowed, error = "tooth compliance", split.compliance, value.error
+            figure, allowed, error = "tooth compliance", results.values["plan"].compliance, value.error
             note = f"{value.cost.unknowns:,} unknowns"
         elif name == "dry cycle":
             figure, allowed, error = (
                 "mean stiffness, from sampling",
-                split.sampling,
+                results.values["plan"].sampling,
                 sampling_error(value.secant),
             )
             note = f"{value.phase.size} positions"
@@ -158,10 +152,11 @@ def _cost_rows(results: Results) -> list[CostRow]:
             figure, allowed, error = "greatest root stress per load", scene_tolerance, value.error
             note = f"{value.cost.unknowns:,} unknowns"
         elif name == "film" and value.model == "ehl":
-            figure, allowed, error = "film thickness", split.film, value.error
+            figure, allowed, error = "film thickness", results.values["plan"].film_tolerance, value.error
             note = f"{value.rho1.size} films of up to {value.unknowns} unknowns, {value.rounds} rounds"
         elif name == "fourier" and value.fit is not None:
             figure, error = "what the series leaves out", value.fit.remainder_rms
+            allowed = None if plan is None else plan.series
             note = f"order {len(value.stiffness.amplitudes)}"
         elif name == "sweep":
             figure, error = "settled motions", value.error

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from flankfilm.report.page import Part, Table
 from flankfilm.report.text import percent, seconds
 from flankfilm.stages.engine import StageRun
+
+if TYPE_CHECKING:
+    from flankfilm.stages.decide import Plan
+    from flankfilm.stages.decisions import Decision
 
 
 @dataclass(frozen=True)
@@ -60,11 +65,40 @@ def costs(rows: Sequence[CostRow], total: float, tolerance: float) -> Part:
     return Part("costs", "Error and cost", (text,), tables=(Table(heads, cells),))
 
 
-def decisions(notes: Sequence[str], runs: Mapping[str, StageRun]) -> Part | None:
-    """What was decided and warned of."""
-    warned = [f"{run.title}: {text}" for run in runs.values() for text in run.warnings]
-    lines = [*notes, *warned]
-    return Part("decisions", "Decisions and warnings", notes=tuple(lines)) if lines else None
+def decisions(decided: Sequence[Decision], plan: Plan | None, runs: Mapping[str, StageRun]) -> Part | None:
+    """What was decided, how the tolerance was split, and what was warned of."""
+    warned = tuple(f"{run.title}: {text}" for run in runs.values() for text in run.warnings)
+    tables = (_decided(decided),) if decided else ()
+    if plan is not None and len(plan.shares):
+        tables = (*tables, _shares(plan))
+    if not tables and not warned:
+        return None
+    return Part("decisions", "Decisions and warnings", tables=tables, notes=warned)
+
+
+def _decided(decided: Sequence[Decision]) -> Table:
+    heads = ("decision", "choice", "effect, at most", "allowed", "cost foreseen", "why")
+    rows = tuple(
+        (
+            d.subject,
+            d.choice,
+            "" if d.effect is None else percent(d.effect),
+            "" if d.share is None else percent(d.share),
+            "" if d.seconds is None else seconds(d.seconds),
+            d.reason,
+        )
+        for d in decided
+    )
+    return Table(heads, rows)
+
+
+def _shares(plan: Plan) -> Table:
+    heads = ("share of the tolerance", "error allowed in the mean stiffness", "cost foreseen")
+    rows = tuple(
+        (law.name, percent(error), seconds(law.cost(error)))
+        for law, error in zip(plan.shares.laws, plan.shares.errors, strict=True)
+    )
+    return Table(heads, rows)
 
 
 def inputs(scene_text: str, versions: Mapping[str, str]) -> Part:

@@ -132,23 +132,29 @@ def _by_finite_elements(
     raw: Mapping[str, Any], listed: set[str], stiffness: Mapping[str, Any]
 ) -> list[Fault]:
     """Faults of outputs and keys that only the coupled finite elements know."""
-    operating, pair = _table(raw, "operating"), _table(raw, "pair")
-    asked = [f"the wanted {want}" for want in sorted(listed & BY_FINITE_ELEMENTS)]
-    asked += ["operating.friction"] if operating.get("friction") else []
-    for gear in ("pinion", "wheel"):
-        keys = _table(pair, gear)
-        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations", "hub") if keys.get(key)]
+    asked = needs_of_finite_elements(raw, listed)
     if not asked:
         return []
     model, pairs = stiffness.get("model", "fem"), stiffness.get("pairs", "coupled")
     told = " and ".join(asked)
-    if model != "fem":
+    if model not in ("fem", "auto"):
         remedy = "Closed forms and given stiffnesses do not know it; or drop it"
         return [Fault("stiffness.model", shorten(model), f'must be "fem" for {told}', remedy)]
     if pairs != "coupled":
         remedy = "Independent pairs have no common field, nor one contact; or drop it"
         return [Fault("stiffness.pairs", shorten(pairs), f'must be "coupled" for {told}', remedy)]
     return []
+
+
+def needs_of_finite_elements(raw: Mapping[str, Any], listed: set[str]) -> list[str]:
+    """Name the outputs and keys of a scene that only the coupled finite elements know."""
+    operating, pair = _table(raw, "operating"), _table(raw, "pair")
+    asked = [f"the wanted {want}" for want in sorted(listed & BY_FINITE_ELEMENTS)]
+    asked += ["operating.friction"] if operating.get("friction") else []
+    for gear in ("pinion", "wheel"):
+        keys = _table(pair, gear)
+        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations", "hub") if keys.get(key)]
+    return asked
 
 
 def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

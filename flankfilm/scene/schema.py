@@ -174,7 +174,7 @@ class OperatingSection(Section):
 class StiffnessSection(Section):
     """Where the mesh stiffness comes from."""
 
-    model: Literal["fem", "ishikawa", "weber-banaschek", "potential-energy", "given"] = "fem"
+    model: Literal["fem", "ishikawa", "weber-banaschek", "potential-energy", "given", "auto"] = "fem"
     pairs: Literal["coupled", "independent"] = "coupled"
     plane: Literal["strain", "stress"] = "strain"
     contact_beyond_path: bool = True
@@ -237,7 +237,7 @@ class DiagramSection(SpeedRange):
 class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
-    fourier_order: int = Field(default=1, ge=1, le=50)
+    fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = 1
     damping_ratio: float = Field(default=0.05, ge=0, le=5)
     stiffness: Literal["secant", "tangent"] = "secant"
     error_amplitude_um: float | None = Field(default=None, ge=0, le=10_000)
@@ -284,7 +284,7 @@ class Scene(Section):
 
     title: str = Field(default="", max_length=200)
     wants: Annotated[tuple[Want, ...], Field(strict=False, min_length=1, max_length=20)]
-    tolerance: float = Field(default=0.005, ge=1e-5, le=0.1)
+    tolerance: float = Field(default=0.005, ge=1e-5, le=0.4)
     pair: PairSection | None = None
     material: MaterialSection | None = None
     operating: OperatingSection | None = None

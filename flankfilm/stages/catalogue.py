@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from flankfilm.scene import Scene
@@ -12,6 +12,7 @@ from flankfilm.stages import (
     diagram,
     fields,
     film,
+    film_choice,
     loads,
     motion,
     roots,
@@ -19,7 +20,7 @@ from flankfilm.stages import (
     sweep,
     teeth,
 )
-from flankfilm.stages.engine import Stage
+from flankfilm.stages.engine import Engine, Stage
 from flankfilm.verify import compare
 
 
@@ -36,9 +37,15 @@ def _sections(*names: str) -> Any:
     return pick
 
 
-_TEETH = _sections(
-    "stiffness.model", "stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance"
-)
+_TEETH = _sections("stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance")
+
+
+def _decided(what: Callable[[decide.Plan], Mapping[str, Any]]) -> Callable[[Engine], Mapping[str, Any]]:
+    """Settings from the plan; a scene with a given stiffness has none."""
+    return lambda engine: {} if engine.scene.stiffness.model == "given" else what(engine["plan"])
+
+
+_TEETH_DECIDED = _decided(lambda plan: {"stiffness model": plan.stiffness.choice, "sampling": plan.sampling})
 
 STAGES: Mapping[str, Stage] = {
     stage.name: stage
@@ -50,19 +57,38 @@ STAGES: Mapping[str, Stage] = {
             "closed forms",
             "closed forms",
             lambda e: closed_forms.closed_forms(e),
-            _sections("operating", "stiffness.model", "wants"),
+            _sections("operating", "wants"),
             needs=("pair", "compliance"),
             packages=("gears",),
+            settings=_TEETH_DECIDED,
+        ),
+        Stage(
+            "film foreseen",
+            "what the film will change",
+            lambda e: film_choice.foreseen_change(e),
+            _sections("operating", "lubricant", "stiffness.pairs"),
+            needs=("pair",),
+            packages=("gears", "ehl", "flankfilm"),
+            kept=True,
+        ),
+        Stage(
+            "plan",
+            "choice of models, split of the tolerance",
+            lambda e: decide.plan(e),
+            _sections(
+                "stiffness", "film", "lubricant", "roughness", "operating", "dynamics", "wants", "tolerance"
+            ),
+            needs=("pair", "film foreseen"),
+            packages=("flankfilm",),
         ),
         Stage(
             "bodies",
             "tooth compliance by finite elements",
             lambda e: teeth.bodies(e),
-            lambda scene: _sections("pair", "material", "stiffness.plane", "tolerance")(
-                teeth.plain_flanks(scene)
-            ),
+            lambda scene: _sections("pair", "material", "stiffness.plane")(teeth.plain_flanks(scene)),
             packages=("gears", "meshes", "fem"),
             kept=True,
+            settings=_decided(lambda plan: {"compliance": plan.compliance}),
         ),
         Stage(
             "compliance",
@@ -86,6 +112,7 @@ STAGES: Mapping[str, Stage] = {
             lambda e: teeth.dry_cycle(e),
             _TEETH,
             needs=("compliance",),
+            settings=_TEETH_DECIDED,
         ),
         Stage(
             "torques",
@@ -127,28 +154,22 @@ STAGES: Mapping[str, Stage] = {
             packages=("gears",),
         ),
         Stage(
-            "film model",
-            "choice of the film model",
-            lambda e: decide.film_model(e),
-            _sections("film", "wants", "lubricant", "roughness", "operating", "tolerance"),
-            needs=("dry cycle",),
-            packages=("ehl",),
-        ),
-        Stage(
             "film",
             "oil film in series with the teeth",
             lambda e: film.film(e),
             _sections("film", "lubricant", "roughness", "operating", "tolerance"),
-            needs=("dry cycle", "film model"),
+            needs=("dry cycle",),
             packages=("gears", "meshes", "fem", "ehl", "flankfilm"),
             kept=True,
+            settings=_decided(lambda plan: {"model": plan.film.choice, "film": plan.film_tolerance}),
         ),
         Stage(
             "mesh",
             "mesh stiffness of the motion",
             lambda e: motion.mesh(e),
             _sections(),
-            needs=("dry cycle", "film model", "film"),
+            needs=("dry cycle", "film"),
+            settings=_decided(lambda plan: {"model": plan.film.choice}),
         ),
         Stage(
             "fourier",
@@ -157,6 +178,7 @@ STAGES: Mapping[str, Stage] = {
             _sections("stiffness", "dynamics"),
             needs=("mesh",),
             packages=("dynamics",),
+            settings=_decided(lambda plan: {"series": plan.series}),
         ),
         Stage(
             "scaling",
@@ -200,7 +222,7 @@ def goals(scene: Scene) -> tuple[str, ...]:
     if wants & {"closed-forms"} or ("report" in wants and "stiffness" in wants and not given):
         found.append("closed forms")
     if wants & {"stiffness", "film"} and not given:
-        found += ["dry cycle", "film model"]
+        found += ["plan", "dry cycle"]
         if "closed-forms" in wants or "report" in wants:
             found.append("other cycles")
         if scene.film.model != "none" or "film" in wants:

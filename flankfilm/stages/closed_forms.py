@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from flankfilm.build import pinion_torque
 
 if TYPE_CHECKING:
-    from flankfilm.scene import Scene
     from flankfilm.stages.engine import Engine
     from gears import GearPair
 
@@ -59,9 +58,9 @@ def closed_form(model: str, pair: GearPair, path: Any, force: float) -> Any:
     return functions[model]()
 
 
-def compares_with_finite_elements(scene: Scene) -> bool:
+def compares_with_finite_elements(engine: Engine) -> bool:
     """Tell whether finite elements are at hand anyway, to stand beside the closed forms."""
-    return scene.stiffness.model == "fem" and "stiffness" in scene.wants
+    return "stiffness" in engine.scene.wants and engine["plan"].stiffness.choice == "fem"
 
 
 def closed_forms(engine: Engine, n: int = 81) -> SinglePairs:
@@ -72,7 +71,7 @@ def closed_forms(engine: Engine, n: int = 81) -> SinglePairs:
     path = pair.path_of_contact(n=n)
     force = pair.normal_force(pinion_torque(engine.scene))
     curves = {label: np.asarray(closed_form(name, pair, path, force)) for name, label in CLOSED_FORMS.items()}
-    if compares_with_finite_elements(engine.scene):
+    if compares_with_finite_elements(engine):
         import fem
 
         k = fem.single_pair_stiffness(pair, force=force, rho1=path.rho1, compliance=engine["compliance"])

@@ -1,74 +1,201 @@
-"""Which film model a scene gets: the one it names, or the cheapest that its tolerance needs."""
+"""Which models a scene gets, and how its tolerance is split: the cheapest of all combinations that meet it.
+
+The error of the mean stiffness is at most the sum of what the models' simplifications change and of what meshes,
+positions, films and a cut series leave. Each pair of a stiffness and a film model leaves another part of the
+tolerance to the stages it has, which split it for the least cost (`flankfilm.tolerance`); the cheapest pair is taken.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
 
-from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import lubricant
-from flankfilm.stages.engine import Engine
+from flankfilm.faults import SolverError
+from flankfilm.stages import film_choice, stiffness_choice
+from flankfilm.stages.decisions import Candidate, Decision, per_cent
+from flankfilm.tolerance import CostLaw, Shares, split, step_below
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flankfilm.scene import Scene
+    from flankfilm.stages.engine import Engine
+
+SERIES = CostLaw("Fourier series", coarsest=0.05, seconds=0.1, power=2 / 3)
+"""Root mean square that a series of order n leaves, about n^-3/2, against the time of a sweep, about n."""
+
+MOTION = {"fourier", "sweep", "diagram"}
 
 
 @dataclass(frozen=True)
-class FilmDecision:
-    """Film model of a run.
+class Plan:
+    """Models of a run and the shares of its tolerance.
 
     Attributes
     ----------
-    model : str
-        ``"ehl"``, ``"dowson"`` or ``"none"``.
-    reason : str
-        Why, with its numbers, for the report.
+    tolerance : float
+        Of the scene.
+    stiffness, film : Decision
+    shares : Shares
+        Of the stages' numerical errors in the mean stiffness, by name.
+    film_change : float
+        What the film is assumed to change of it, relative; 0 without films that are solved.
+    film_tolerance : float
+        Relative, of the film thickness.
     """
 
-    model: str
-    reason: str
+    tolerance: float
+    stiffness: Decision
+    film: Decision
+    shares: Shares
+    film_change: float
+    film_tolerance: float
+
+    @property
+    def compliance(self) -> float:
+        """Tolerance of the compliance by finite elements."""
+        name = stiffness_choice.COMPLIANCE.name
+        # figures beside the mesh stiffness, such as fields, have it by finite elements all the same
+        return step_below(min(self.shares.get(name, self.tolerance), stiffness_choice.COMPLIANCE.coarsest))
+
+    @property
+    def sampling(self) -> float:
+        """Tolerance of the mean over the mesh cycle, from the number of positions."""
+        return step_below(self.shares[stiffness_choice.CLOSED_SAMPLING.name])
+
+    @property
+    def series(self) -> float | None:
+        """What a Fourier series may leave out; None unless its order is to be found."""
+        return self.shares.get(SERIES.name)
+
+    @property
+    def coupling(self) -> float:
+        """Of the load share when film and teeth are iterated."""
+        return 0.02 * self.tolerance
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """All decisions."""
+        return self.stiffness, self.film
+
+    @property
+    def line(self) -> str:
+        """The split in one line."""
+        simple = [
+            (f"{d.subject} by a simpler model", d.effect)
+            for d in self.decisions
+            if d.effect is not None and d.effect > 0
+        ]
+        parts = [f"{per_cent(e)} {name}" for name, e in (*simple, *self.shares.items())]
+        return f"tolerance of {per_cent(self.tolerance)}, split by cost: {', '.join(parts)}"
 
 
-def film_model(engine: Engine) -> FilmDecision:
-    """Decide the film model.
-
-    For ``auto`` the film's share is estimated at the pitch point with one pair carrying all: a tooth
-    stiffness k and a film stiffness 10 F/h_c (Dowson and Toyoda) in series lower k by about the
-    quotient of the two.
-    """
+def plan(engine: Engine) -> Plan:
+    """Choose the models and split the tolerance."""
     scene = engine.scene
-    asked = scene.film.model
-    # a scene without [film] has "none", and may still want the film; one that says "none" may not
-    if "film" in scene.wants and asked in ("auto", "none"):
-        return FilmDecision("ehl", "the film itself is wanted")
-    if asked != "auto":
-        return FilmDecision(asked, f'the scene asks for film.model = "{asked}"')
-    if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
-        return FilmDecision("none", "the scene has no lubricant or no speed")
-    if scene.film.starved or scene.roughness is not None:
-        what = f'film.supply = "{scene.film.supply}"' if scene.film.starved else "[roughness]"
-        return FilmDecision("ehl", f"the formula that would estimate its part does not know {what}")
-    if scene.film.grid != "graded":
-        return FilmDecision("ehl", "the scene names a grid")
-    if scene.lubricant.constant_viscosity:
-        return FilmDecision(
-            "ehl", "the formula that would estimate its part does not know a constant viscosity"
-        )
-    from ehl import LineContact, dowson
-
-    pair = engine["pair"]
-    path = pair.path_at(pair.points.C)
-    force = pair.normal_force(pinion_torque(scene))
-    contact = LineContact(
-        load=force / pair.face_width,
-        entrainment=float(path.entrainment(pinion_speed(scene))[0]),
-        radius=float(path.radius[0]),
-        reduced_modulus=pair.reduced_modulus,
-        lubricant=lubricant(scene),
+    teeth, why = stiffness_choice.options(scene, engine["pair"])
+    oil = film_choice.foresee(engine)
+    further = (SERIES,) if _series_to_find(scene) else ()
+    weighed = [
+        w
+        for both in product(teeth, oil.options)
+        if (w := _weigh(scene.tolerance, *both, further)) is not None
+    ]
+    if not weighed:
+        raise SolverError(f"no resolution meets a tolerance of {scene.tolerance:g}; raise it")
+    best = min(weighed, key=lambda w: w.seconds)
+    change = best.film.change if best.film.law is not None else 0.0
+    return Plan(
+        scene.tolerance,
+        _stiffness_decision(scene, best, weighed, teeth, why),
+        _film_decision(scene, best, weighed, oil),
+        best.shares,
+        change,
+        _film_tolerance(scene, best),
     )
-    film = pair.face_width * dowson(contact).stiffness("dowson-central")
-    tooth = float(engine["dry cycle"].secant.mean())
-    change = tooth / (tooth + film)
-    if change < scene.tolerance:
-        told = (
-            f"it would lower the mean stiffness by about {change:.2%}, less than the tolerance of "
-            f"{scene.tolerance:.2%}"
+
+
+@dataclass(frozen=True)
+class _Weighed:
+    """A pair of models with the shares that they leave to their stages."""
+
+    teeth: stiffness_choice.Option
+    film: film_choice.Option
+    shares: Shares
+    seconds: float
+
+
+def _series_to_find(scene: Scene) -> bool:
+    asked = scene.dynamics is not None and scene.dynamics.fourier_order == "auto"
+    return asked and bool(MOTION & set(scene.wants))
+
+
+def _weigh(
+    tolerance: float, teeth: stiffness_choice.Option, film: film_choice.Option, further: Sequence[CostLaw]
+) -> _Weighed | None:
+    """Shares of a pair of models; None where their simplifications leave nothing."""
+    left = tolerance - (teeth.effect or 0.0) - (film.effect or 0.0)
+    laws = (*teeth.laws, *((film.law,) if film.law else ()), *further)
+    shares = split(left, laws) if left > 0 else None
+    return None if shares is None else _Weighed(teeth, film, shares, shares.seconds + film.seconds)
+
+
+def _film_tolerance(scene: Scene, best: _Weighed) -> float:
+    if best.film.law is None:
+        return film_choice.COARSEST
+    wanted = scene.tolerance if "film" in scene.wants else film_choice.COARSEST
+    return min(wanted, step_below(best.shares[best.film.law.name] / best.film.change))
+
+
+def _stiffness_decision(
+    scene: Scene,
+    best: _Weighed,
+    weighed: Sequence[_Weighed],
+    teeth: Sequence[stiffness_choice.Option],
+    why: str,
+) -> Decision:
+    name, effect = best.teeth.name, best.teeth.effect
+    candidates = tuple(_candidate(option, [w for w in weighed if w.teeth is option]) for option in teeth)
+    known = [o for o in teeth if o.effect is not None and o.name != "fem"]
+    if not why and name != "fem":
+        others = ", finite elements cost more" if name != "fem" else ""
+        why = (
+            f"{best.teeth.told}, at most {per_cent(effect or 0.0)} off over ordinary pairs, within the tolerance of "
+            f"{per_cent(scene.tolerance)}{others}"
         )
-        return FilmDecision("none", f"left out: {told}")
-    return FilmDecision("ehl", f"it lowers the mean stiffness by about {change:.2%}, more than the tolerance")
+    elif not why:
+        nearest = min(known, key=lambda option: option.effect or 0.0)
+        why = (
+            f"finite elements; the nearest {nearest.told} is up to {per_cent(nearest.effect or 0.0)} off over ordinary "
+            f"pairs, above what the tolerance of {per_cent(scene.tolerance)} leaves"
+        )
+    share = scene.tolerance if known else None
+    asked = scene.stiffness.model != "auto"
+    return Decision("stiffness", name, asked, why, effect, share, best.seconds, candidates)
+
+
+def _film_decision(
+    scene: Scene, best: _Weighed, weighed: Sequence[_Weighed], oil: film_choice.Foreseen
+) -> Decision:
+    name, asked = best.film.name, scene.film.model != "auto"
+    candidates = tuple(_candidate(option, [w for w in weighed if w.film is option]) for option in oil.options)
+    if oil.why or oil.change is None:
+        return Decision("film", name, asked, oil.why, best.film.effect, None, best.seconds, candidates)
+    told = f"{'-' if oil.change <= 0 else '+'}{per_cent(abs(oil.change))} foreseen"
+    limit = f"the tolerance of {per_cent(scene.tolerance)}"
+    if name == "none":
+        why = f"{told} (at most {per_cent(best.film.effect or 0.0)}), below {limit}, left out"
+    elif name == "dowson":
+        why = f"{told}, by Dowson's formula, which is at most {per_cent(best.film.effect or 0.0)} off, below {limit}"
+    else:
+        out = oil.options[0]
+        above = "" if any(w.film is out for w in weighed) else f"above what {limit} leaves, "
+        why = f"{told} (up to {per_cent(out.effect or 0.0)}), {above}solved"
+    share = scene.tolerance - (best.teeth.effect or 0.0)
+    return Decision("film", name, asked, why, best.film.effect, share, best.seconds, candidates)
+
+
+def _candidate(option: stiffness_choice.Option | film_choice.Option, found: Sequence[_Weighed]) -> Candidate:
+    """Describe an option, with the cost of the cheapest pair of models that it is part of."""
+    return Candidate(option.name, option.effect, min((w.seconds for w in found), default=None))

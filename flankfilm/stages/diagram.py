@@ -174,7 +174,7 @@ def _jump(engine: Engine, oscillator: GearOscillator, stretch: Stretch, point: S
 
 def _film_error(engine: Engine, kind: str) -> float:
     """Relative error of the stiffness from that of the films: in proportion to what the films change it by."""
-    if engine["film model"].model == "none":
+    if engine["plan"].film.choice == "none":
         return 0.0
     film = engine["film"]
     change: float = film.change_secant if kind == "secant" else film.change_tangent

@@ -37,6 +37,10 @@ class Stage:
         Packages whose code decides the result.
     kept : bool
         Whether the result is worth a place in the cache.
+    settings : callable
+        What decisions of other stages tell this one, as plain values; in the cache's key like `inputs`. Of a
+        stage that is decided on it has no more than what was decided, so that a change elsewhere in the scene
+        which leaves the decision as it was leaves the result in the cache.
     """
 
     name: str
@@ -46,6 +50,7 @@ class Stage:
     needs: tuple[str, ...] = ()
     packages: tuple[str, ...] = ()
     kept: bool = False
+    settings: Callable[[Engine], Mapping[str, Any]] = lambda engine: {}
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,8 @@ class Engine:
     def inputs(self, name: str) -> dict[str, Any]:
         """Everything that decides a stage's result, down to the scene's keys."""
         stage = self.stages[name]
-        return {name: dict(stage.inputs(self.scene)), **{n: self.inputs(n) for n in stage.needs}}
+        own = {**stage.inputs(self.scene), **stage.settings(self)}
+        return {name: own, **{n: self.inputs(n) for n in stage.needs}}
 
     def packages(self, name: str) -> tuple[str, ...]:
         """Packages whose code decides a stage's result."""

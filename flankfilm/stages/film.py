@@ -24,10 +24,10 @@ from flankfilm.stages.film_path import (
     law_of,
 )
 from flankfilm.stages.teeth import cycle_at
-from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
     from ehl import Film, StiffnessRow
+    from flankfilm.stages.decide import Plan
 
 Array = NDArray[np.float64]
 
@@ -119,13 +119,12 @@ def film(engine: Engine) -> FilmStage:
     Films change slowly along the path, and the mesh stiffness by a small part: they need fewer positions than
     the cycle itself, whose steps and cusps decide.
     """
-    split = ToleranceSplit.of(engine.scene.tolerance)
     dry: MeshStiffness = engine["dry cycle"]
     start = time.perf_counter()
-    agreed = _agree(engine, min(FILM_POSITIONS, dry.phase.size), split)
+    agreed = _agree(engine, min(FILM_POSITIONS, dry.phase.size))
     seconds = time.perf_counter() - start - agreed.in_contact_solver
     cycle = _with_film(engine, agreed.law, f"{dry.label} with film")
-    return _gather(engine, cycle, agreed, seconds, _otherwise(engine, agreed, split))
+    return _gather(engine, cycle, agreed, seconds, _otherwise(engine, agreed))
 
 
 @dataclass(frozen=True)
@@ -140,20 +139,21 @@ class _Agreement:
     in_contact_solver: float
 
 
-def _agree(engine: Engine, positions: int, split: ToleranceSplit) -> _Agreement:
+def _agree(engine: Engine, positions: int) -> _Agreement:
     """Iterate films and load share until both agree."""
-    definition = engine.scene.film.definition(engine["film model"].model)
+    plan: Plan = engine["plan"]
+    definition = engine.scene.film.definition(plan.film.choice)
     in_contact_solver, mismatch, rounds = 0.0, np.inf, 0
     cycle = cycle_at(engine, positions)
     path: PathFilms | None = None
-    while mismatch > split.coupling:
+    while mismatch > plan.coupling:
         if rounds == MOST_ROUNDS:
             raise SolverError(
                 f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by "
                 f"{mismatch:.1e} of the whole); raise the tolerance, or take the film by Dowson's formula"
             )
         rounds += 1
-        path = films_of(engine, *contacts_of(engine, cycle), path, split.film)
+        path = films_of(engine, *contacts_of(engine, cycle), path, plan.film_tolerance)
         law = law_of(path, engine["pair"].face_width, definition)
         before, shared = cycle, time.perf_counter()
         cycle = cycle_at(engine, positions, law)
@@ -185,7 +185,7 @@ def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
     return np.asarray(cycle.secant * cycle.transmission_error / (cycle.transmission_error + added))
 
 
-def _otherwise(engine: Engine, agreed: _Agreement, split: ToleranceSplit) -> dict[str, MeshStiffness]:
+def _otherwise(engine: Engine, agreed: _Agreement) -> dict[str, MeshStiffness]:
     """Give the mesh with the films that a starved one has to be compared with."""
     scene = engine.scene
     if not scene.film.starved:
@@ -193,7 +193,7 @@ def _otherwise(engine: Engine, agreed: _Agreement, split: ToleranceSplit) -> dic
     width, definition = engine["pair"].face_width, scene.film.definition("ehl")
     path = agreed.path
     flooded = PathFilms(path.rho1, path.flooded)
-    other = held_the_other_way(engine, path, split.film)
+    other = held_the_other_way(engine, path, engine["plan"].film_tolerance)
     held = "meniscus" if scene.film.supply == "oil-layer" else "oil layer"
     laws = {"smooth and flooded": flooded, f"same film, {held} held": other}
     return {label: _with_film(engine, law_of(p, width, definition), label) for label, p in laws.items()}
@@ -206,7 +206,7 @@ def _gather(
     seconds: float,
     otherwise: Mapping[str, MeshStiffness],
 ) -> FilmStage:
-    model, dry = engine["film model"].model, engine["dry cycle"]
+    model, dry = engine["plan"].film.choice, engine["dry cycle"]
     width, solved = engine["pair"].face_width, model == "ehl"
     path, films = agreed.path, agreed.path.films
     inside = [film_inside(film) for film in films] if solved else []

@@ -77,7 +77,7 @@ def films_of(
     from ehl import dowson
 
     scene = engine.scene
-    if engine["film model"].model == "dowson":
+    if engine["plan"].film.choice == "dowson":
         return PathFilms(rho1, tuple(dowson(contact) for contact in contacts))
     old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
     flooded: tuple[Film, ...] = ()

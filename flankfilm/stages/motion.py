@@ -6,13 +6,19 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flankfilm.build import pinion_torque
 from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.stages.series_choice import asked_order, choose_order, left_out
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from dynamics import FourierFit, FourierStiffness, GearOscillator, Scaling
     from flankfilm.scene.schema import DynamicsSection
+    from flankfilm.stages.decisions import Decision
     from flankfilm.stages.engine import Engine
 
 MEAN_FORCE = 0.1
@@ -35,6 +41,8 @@ class FourierStage:
         Label of the mesh stiffness.
     other : FourierFit or None
         Fit of the kind that was not chosen, to compare.
+    decision : Decision or None
+        Order of the series and what it leaves out; None for a given stiffness.
     """
 
     stiffness: FourierStiffness
@@ -42,6 +50,7 @@ class FourierStage:
     kind: str
     source: str
     other: FourierFit | None
+    decision: Decision | None = None
 
 
 @dataclass(frozen=True)
@@ -104,7 +113,7 @@ class ScalingStage:
 
 def mesh(engine: Engine) -> MeshStiffness:
     """Mesh stiffness that the motion uses: with the film where there is one."""
-    if engine["film model"].model == "none":
+    if engine["plan"].film.choice == "none":
         dry: MeshStiffness = engine["dry cycle"]
         return dry
     lubricated: MeshStiffness = engine["film"].cycle
@@ -124,17 +133,55 @@ def fourier(engine: Engine) -> FourierStage:
             mean, tuple(mean * k for k in kappa), tuple(math.radians(p) for p in phases)
         )
         return FourierStage(series, None, "given", "given in the scene", None)
-    order = scene.dynamics.fourier_order if scene.dynamics else 1
-    kind = scene.dynamics.stiffness if scene.dynamics else "secant"
+    section = scene.dynamics
+    kind = section.stiffness if section else "secant"
     cycle: MeshStiffness = engine["mesh"]
+    first = fit_fourier(cycle.stiffness(kind), order=1)
+    beyond = left_out(
+        np.array(first.harmonics),
+        _range(engine, first.stiffness.mean),
+        section.damping_ratio if section else 0.0,
+    )
+    if section is not None and section.fourier_order == "auto":
+        share = engine["plan"].series
+        order, decision = choose_order(beyond, share if share is not None else scene.tolerance)
+    else:
+        order = int(section.fourier_order) if section else 1
+        decision = asked_order(beyond, order)
     fit = fit_fourier(cycle.stiffness(kind), order=order)
     other = fit_fourier(cycle.stiffness("tangent" if kind == "secant" else "secant"), order=order)
-    return FourierStage(fit.stiffness, fit, kind, cycle.label, other)
+    return FourierStage(fit.stiffness, fit, kind, cycle.label, other, decision)
+
+
+def _range(engine: Engine, mean: float) -> tuple[float, float] | None:
+    """Range of the mesh frequency over the natural one that sweep and diagram cover; None without either."""
+    section, wants = engine.scene.dynamics, engine.scene.wants
+    asked = [r for r in (section.sweep, section.diagram) if r is not None] if section else []
+    if section is None or not asked or not {"sweep", "diagram"} & set(wants):
+        return None
+    if section.dimensionless:
+        return _hull([r.frequency for r in asked if r.frequency is not None])
+    scales = _scales(engine, section, mean)
+    return _hull(
+        [
+            (scales.frequency_from_rpm(r.speed_rpm[0]), scales.frequency_from_rpm(r.speed_rpm[1]))
+            if r.speed_rpm is not None
+            else r.frequency
+            for r in asked
+            if r.speed_rpm is not None or r.frequency is not None
+        ]
+    )
+
+
+def _hull(ranges: Sequence[tuple[float, float] | None]) -> tuple[float, float]:
+    """Least and largest of all bounds."""
+    ends = [end for both in ranges if both is not None for end in both]
+    return min(ends), max(ends)
 
 
 def scaling(engine: Engine) -> ScalingStage:
     """Build the oscillator."""
-    from dynamics import GearOscillator, Scaling
+    from dynamics import GearOscillator
 
     scene, series = engine.scene, engine["fourier"].stiffness
     section = _section(engine)
@@ -158,18 +205,7 @@ def scaling(engine: Engine) -> ScalingStage:
         return ScalingStage(oscillator, None)
     pair = engine["pair"]
     force = pair.normal_force(pinion_torque(scene))
-    extra = section.extra_inertia_kg_m2
-    inertias = tuple(j + e for j, e in zip(pair.moments_of_inertia, (extra.pinion, extra.wheel), strict=True))
-    scale = section.length_scale_um
-    scales = Scaling.from_inertias(
-        inertias=(inertias[0], inertias[1]),
-        base_radii=pair.base_radii,
-        mean_stiffness=series.mean,
-        cycles_per_revolution=pair.pinion.teeth,
-        length=None if scale is None else 1e-6 * scale,
-        force=force if scale is None else None,
-        mean_force=MEAN_FORCE if scale is None else None,
-    )
+    scales = _scales(engine, section, series.mean)
     error = 1e-6 * (section.error_amplitude_um or 0.0)
     rpm = scene.operating.pinion_speed_rpm if scene.operating else None
     if rpm is None:
@@ -185,7 +221,29 @@ def scaling(engine: Engine) -> ScalingStage:
         error_phase=phase,
     )
     oscillator = replace(oscillator, one_sided=section.one_sided)
-    return ScalingStage(oscillator, scales, force, error, pair.backlash, (inertias[0], inertias[1]))
+    return ScalingStage(oscillator, scales, force, error, pair.backlash, _inertias(engine, section))
+
+
+def _inertias(engine: Engine, section: DynamicsSection) -> tuple[float, float]:
+    """Moments of inertia of pinion and wheel with what turns with them [kg m2]."""
+    (first, second), extra = engine["pair"].moments_of_inertia, section.extra_inertia_kg_m2
+    return first + extra.pinion, second + extra.wheel
+
+
+def _scales(engine: Engine, section: DynamicsSection, mean: float) -> Scaling:
+    """Scales of the oscillator for a mean stiffness [N/m]."""
+    from dynamics import Scaling
+
+    pair, scale = engine["pair"], section.length_scale_um
+    return Scaling.from_inertias(
+        inertias=_inertias(engine, section),
+        base_radii=pair.base_radii,
+        mean_stiffness=mean,
+        cycles_per_revolution=pair.pinion.teeth,
+        length=None if scale is None else 1e-6 * scale,
+        force=pair.normal_force(pinion_torque(engine.scene)) if scale is None else None,
+        mean_force=MEAN_FORCE if scale is None else None,
+    )
 
 
 def _section(engine: Engine) -> DynamicsSection:

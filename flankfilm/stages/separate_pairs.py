@@ -63,8 +63,9 @@ def single_pair_stiffness(engine: Engine, model: str, rho1: Array) -> Array:
 def other_cycles(engine: Engine) -> tuple[MeshStiffness, ...]:
     """Mesh cycles by the models that the scene did not choose: independent pairs added, without film."""
     scene, positions = engine.scene, engine["dry cycle"].phase.size
-    chosen = (scene.stiffness.model, scene.stiffness.pairs)
-    models = [*CLOSED_FORMS, *(["fem"] if scene.stiffness.model == "fem" else [])]
+    model = engine["plan"].stiffness.choice
+    chosen = (model, scene.stiffness.pairs)
+    models = [*CLOSED_FORMS, *(["fem"] if model == "fem" else [])]
     return tuple(
         separate_pairs_cycle(engine, model, "independent", positions)
         for model in models

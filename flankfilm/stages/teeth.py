@@ -9,7 +9,6 @@ from flankfilm.build import deviations, gear_pair, pinion_torque, supports, tip_
 from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness, peak_to_peak_error, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
-from flankfilm.tolerance import ToleranceSplit
 
 if TYPE_CHECKING:
     from fem import Compliance, MeshCycle
@@ -31,10 +30,9 @@ def bodies(engine: Engine) -> Compliance:
     import fem
 
     scene = engine.scene
-    split = ToleranceSplit.of(scene.tolerance)
     found = fem.compliance(
         gear_pair(plain_flanks(scene)),
-        tolerance=split.compliance,
+        tolerance=engine["plan"].compliance,
         plane=scene.stiffness.plane,
         supports=supports(scene),
     )
@@ -103,10 +101,10 @@ def from_fem(cycle: MeshCycle, label: str) -> MeshStiffness:
 
 def dry_cycle(engine: Engine) -> MeshStiffness:
     """Mesh stiffness without film, at as few positions as mean stiffness and transmission error need."""
-    split = ToleranceSplit.of(engine.scene.tolerance)
+    allowed = engine["plan"].sampling
     cycle = cycle_at(engine, POSITIONS[0])
     for positions in POSITIONS[1:]:
-        enough = sampling_error(cycle.secant) <= split.sampling
+        enough = sampling_error(cycle.secant) <= allowed
         if enough and peak_to_peak_error(cycle.transmission_error) <= engine.scene.tolerance:
             break
         cycle = cycle_at(engine, positions)
@@ -115,10 +113,10 @@ def dry_cycle(engine: Engine) -> MeshStiffness:
 
 def cycle_at(engine: Engine, positions: int, film: Any = None) -> MeshStiffness:
     """Mesh stiffness by the scene's model at a number of positions, with a film law or dry."""
-    scene = engine.scene
-    if scene.stiffness.model == "fem" and scene.stiffness.pairs == "coupled":
+    model, pairs = engine["plan"].stiffness.choice, engine.scene.stiffness.pairs
+    if (model, pairs) == ("fem", "coupled"):
         cycle = fem_cycle(engine, positions, film)
         if not cycle.converged:
             raise SolverError(f"loaded tooth contact: {cycle.message}")
         return from_fem(cycle, "finite elements")
-    return separate_pairs_cycle(engine, scene.stiffness.model, scene.stiffness.pairs, positions, film)
+    return separate_pairs_cycle(engine, model, pairs, positions, film)

@@ -105,7 +105,7 @@ def test_needs_of_all_stages_exist_and_have_no_cycle():
     ("wants", "asked"),
     [
         ('["geometry"]', {"pair"}),
-        ('["stiffness"]', {"dry cycle", "film model", "mesh"}),
+        ('["stiffness"]', {"dry cycle", "plan", "mesh"}),
         ('["sweep"]', {"fourier", "scaling", "sweep"}),
     ],
 )

@@ -171,7 +171,7 @@ def test_auto_solves_what_no_formula_knows(film: str, monkeypatch):
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        model = Engine(parse_scene(text), STAGES, Cache(None))["film model"].model
+        model = Engine(parse_scene(text), STAGES, Cache(None))["plan"].film.choice
     assert model == ("ehl" if film else "none")
 
 
@@ -180,4 +180,4 @@ def test_a_wanted_film_is_solved_without_a_film_section():
 
     text = template()
     scene = parse_scene(f"{text[: text.index('[film]')]}{text[text.index('[dynamics]') :]}")
-    assert Engine(scene, STAGES, Cache(None))["film model"].model == "ehl"
+    assert Engine(scene, STAGES, Cache(None))["plan"].film.choice == "ehl"

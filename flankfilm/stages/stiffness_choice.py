@@ -1,0 +1,113 @@
+"""Which stiffness model a scene may have: what each leaves out, and what each costs.
+
+A closed form has no error bound of its own. What is known of it is how far it was from finite elements over many
+pairs (``python benchmarks/closed_form_scatter.py``); inside the ranges of that comparison the largest difference
+found stands for its error. A comparison for the pair at hand, as ``flankfilm verify`` makes it, needs the same mesh
+and factors as the finite elements themselves: 0.35 s of which the loaded contact is the smallest part, so that
+nothing could be saved after it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flankfilm.build import pinion_torque
+from flankfilm.scene.needs import needs_of_finite_elements
+from flankfilm.tolerance import CostLaw
+
+if TYPE_CHECKING:
+    from flankfilm.scene import Scene
+    from gears import GearPair
+
+LARGEST_DIFFERENCE = {
+    ("potential-energy", "coupled"): 0.36,
+    ("potential-energy", "independent"): 0.17,
+    ("ishikawa", "coupled"): 1.58,
+    ("ishikawa", "independent"): 0.88,
+    ("weber-banaschek", "coupled"): 1.53,
+    ("weber-banaschek", "independent"): 0.84,
+}
+"""Root mean square of the difference from finite elements over the mesh cycle, over the mean; largest of 200 pairs."""
+
+RANGES = {
+    "teeth": (17, 150),
+    "profile shift": (-0.5, 0.5),
+    "bore over root radius": (0.2, 0.7),
+    "force over face width, module and Young's modulus": (20e6 / 206e9, 300e6 / 206e9),
+    "Poisson's ratio": (0.25, 0.35),
+}
+"""Where the comparison holds: gears of one material, cut by the rack ISO 53 A, with plain tips, in plane strain."""
+
+COMPLIANCE = CostLaw("tooth compliance", coarsest=5e-4, seconds=0.3, power=1.0, finest=3e-6)
+"""Meshing, factors and loads of both gears by finite elements."""
+
+SAMPLING = {
+    ("fem", "coupled"): CostLaw("sampling of the mesh cycle", coarsest=4e-4, seconds=0.03, power=2 / 3),
+    ("fem", "independent"): CostLaw("sampling of the mesh cycle", coarsest=2e-3, seconds=0.03, power=1.0),
+}
+"""From 120 positions on; independent pairs make the curve step."""
+
+CLOSED_SAMPLING = CostLaw("sampling of the mesh cycle", coarsest=2e-3, seconds=0.02, power=1.0)
+
+
+@dataclass(frozen=True)
+class Option:
+    """A model, the error of its simplification (None: unknown, and not counted), and its stages."""
+
+    name: str
+    effect: float | None
+    laws: tuple[CostLaw, ...]
+    told: str
+
+
+def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
+    """Models that a scene may have, and why there are no more of them; the last is what all are compared with."""
+    asked, pairs = scene.stiffness.model, scene.stiffness.pairs
+    elements = Option("fem", 0.0, (COMPLIANCE, SAMPLING["fem", pairs]), "finite elements")
+    if asked == "fem":
+        return (elements,), 'the scene asks for stiffness.model = "fem"'
+    if asked != "auto":
+        told = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
+        return (Option(asked, None, (CLOSED_SAMPLING,), asked),), told
+    if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
+        return (elements,), f"finite elements, which {' and '.join(needed)} needs"
+    if outside := _outside(scene, pair):
+        return (elements,), f"finite elements; closed forms were not compared where {outside}"
+    closed = tuple(
+        Option(model, effect, (CLOSED_SAMPLING,), f"closed form ({model})")
+        for (model, kind), effect in LARGEST_DIFFERENCE.items()
+        if kind == pairs
+    )
+    return (*closed, elements), ""
+
+
+def _outside(scene: Scene, pair: GearPair) -> str:
+    """Tell where a scene lies outside the comparison; empty where it does not."""
+    modulus = min(m.youngs_modulus for m in pair.materials)
+    force = pair.normal_force(pinion_torque(scene))
+    of_gears: dict[str, list[float]] = {
+        "teeth": [gear.teeth for gear in (pair.pinion, pair.wheel)],
+        "profile shift": [gear.profile_shift for gear in (pair.pinion, pair.wheel)],
+        "bore over root radius": [b / r for b, r in zip(pair.bore_radii, pair.root_radii, strict=True)],
+        "force over face width, module and Young's modulus": [
+            force / (pair.face_width * pair.module * modulus)
+        ],
+        "Poisson's ratio": [m.poisson_ratio for m in pair.materials],
+    }
+    for name, values in of_gears.items():
+        low, high = RANGES[name]
+        astray = [value for value in values if not low <= value <= high]
+        if astray:
+            return f"{name} is {astray[0]:.3g}, outside {low:.3g} to {high:.3g}"
+    assert scene.pair is not None
+    sections = (scene.pair.pinion, scene.pair.wheel)
+    if scene.pair.rack != "ISO 53 A":
+        return 'the rack is not "ISO 53 A"'
+    if any(s.tip_relief is not None or s.tip_alteration or s.tip_chamfer_mm for s in sections):
+        return "tips are relieved, altered or chamfered"
+    if pair.materials[0] != pair.materials[1]:
+        return "the gears are of two materials"
+    if scene.stiffness.plane != "strain":
+        return "the stress is plane"
+    return ""
