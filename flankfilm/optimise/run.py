@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.cache import code_digest
-from flankfilm.dataset import write_text
-from flankfilm.faults import Fault, InputError, SolverError
+from flankfilm.faults import SolverError
 from flankfilm.folder import claim
 from flankfilm.optimise.search import FAILED, front, search
 from flankfilm.optimise.task import Task
 from flankfilm.study.executors import Kind, default_workers
+from flankfilm.study.kept import take_up
 from flankfilm.study.plan import Value
 from flankfilm.study.row import Row, RowResult
-from flankfilm.study.run import PACKAGES, Told
-from flankfilm.study.table import ROWS, Columns, append, locked, read_rows
+from flankfilm.study.run import Told
+from flankfilm.study.table import ROWS, Columns, Line, append, locked
 from flankfilm.study.workers import Workers
 
 Array = NDArray[np.float64]
-
-NOTE = "optimisation.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +142,10 @@ def optimise(
     claim(folder)
     columns = Columns(("tolerance", *task.keys), task.outputs)
     with locked(folder):
-        held = _take_up(task, folder, columns, resume)
+        lines = take_up(
+            folder, "optimisation", task.title, {"task": _plain(task), "scene": task.scene}, columns, resume
+        )
+        held = dict(_points(task, lines))
         with Workers(kind, workers or default_workers()) as staff:
             evaluator = _Evaluator(task, folder / ROWS, columns, staff, use_cache, told, held)
             search(task, evaluator)
@@ -167,31 +166,6 @@ def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
     return found[:1] if len(task.objectives) == 1 else found
 
 
-def _take_up(
-    task: Task, folder: Path, columns: Columns, resume: bool
-) -> dict[tuple[float, tuple[Value, ...]], RowResult]:
-    identity = {
-        "task": json.loads(json.dumps([_plain(task), task.scene])),
-        "code_sha256": code_digest(PACKAGES),
-    }
-    note, path = folder / NOTE, folder / ROWS
-    if not note.exists():
-        if path.exists():
-            raise InputError(
-                [Fault(str(folder), "", f"holds {ROWS} of something else", "Name another --out")]
-            )
-        write_text(note, json.dumps(identity, indent=1))
-        return {}
-    if json.loads(note.read_text(encoding="utf-8")) != identity:
-        told = "holds another optimisation, or this one by other code"
-        raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
-    rows = dict(_points(task, path, columns))
-    if rows and not resume:
-        told = f"holds {len(rows)} evaluations of this optimisation"
-        raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
-    return rows
-
-
 def _plain(task: Task) -> list[object]:
     ranges = {key: span.model_dump() for key, span in task.ranges.items()}
     follow = {key: rule.model_dump() for key, rule in task.follow.items()}
@@ -199,21 +173,13 @@ def _plain(task: Task) -> list[object]:
     return [task.objectives, task.signs, task.limits, ranges, follow, numbers]
 
 
-def _points(
-    task: Task, path: Path, columns: Columns
-) -> Iterator[tuple[tuple[float, tuple[Value, ...]], RowResult]]:
+def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[tuple[float, tuple[Value, ...]], RowResult]]:
     """Points of the table with their results."""
-    import csv
-
-    results = read_rows(path, columns)
-    if not results:
-        return
     whole = [span.whole for span in task.ranges.values()] + [
         task.ranges[rule.of].whole and rule.times.is_integer() and rule.plus.is_integer()
         for rule in task.follow.values()
     ]
-    with path.open(newline="", encoding="utf-8") as file:
-        for line in list(csv.reader(file))[1:]:
-            texts = line[2 : 2 + len(whole)]
-            values = tuple(int(t) if w else float(t) for t, w in zip(texts, whole, strict=True))
-            yield (float(line[1]), values), results[int(line[0])]
+    for line in lines:
+        tolerance, *texts = line.values
+        values = tuple(int(t) if w else float(t) for t, w in zip(texts, whole, strict=True))
+        yield (float(tolerance), values), line.result

@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from flankfilm.cache import code_digest
-from flankfilm.dataset import write_text
-from flankfilm.faults import Fault, InputError
 from flankfilm.folder import claim
 from flankfilm.study.executors import Kind, default_workers
+from flankfilm.study.kept import take_up
 from flankfilm.study.plan import Plan
 from flankfilm.study.row import Row, RowResult
-from flankfilm.study.table import ROWS, Columns, append, locked, read_rows
+from flankfilm.study.table import ROWS, Columns, append, locked
 from flankfilm.study.workers import Workers
 
 Told = Callable[[int, int], None]
 """Called with the rows done and the rows in all, each time that a row arrives."""
-
-PLAN = "study.json"
-
-PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 
 
 @dataclass(frozen=True)
@@ -97,15 +90,16 @@ def run_study(
     """
     start = time.perf_counter()
     claim(folder)
+    columns = Columns(plan.keys, plan.outputs)
     with locked(folder):
-        done = _take_up(plan, folder, resume)
+        held = take_up(folder, "study", plan.title, plan.identity(), columns, resume)
+        done = {line.result.index: line.result for line in held}
         missing = [
             Row(index, plan.raw_scene(index), plan.outputs, use_cache)
             for index in range(len(plan.rows))
             if index not in done
         ]
         told(len(done), len(plan.rows))
-        columns = Columns(plan.keys, plan.outputs)
         with Workers(kind, workers or default_workers()) as staff:
             for result in staff.computed(missing):
                 append(folder / ROWS, columns, plan.rows[result.index], result)
@@ -113,28 +107,3 @@ def run_study(
                 told(len(done), len(plan.rows))
     ordered = tuple(done[index] for index in range(len(plan.rows)))
     return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
-
-
-def _take_up(plan: Plan, folder: Path, resume: bool) -> dict[int, RowResult]:
-    """Rows that the folder holds of this study; note the study in a folder that holds none."""
-    identity = {"study": plan.identity(), "code_sha256": code_digest(PACKAGES)}
-    note = folder / PLAN
-    if not note.exists():
-        if (folder / ROWS).exists():
-            told = f"holds {ROWS} without its {PLAN}"
-            raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
-        write_text(note, json.dumps({"title": plan.title, **identity}, indent=1))
-        return {}
-    held = json.loads(note.read_text(encoding="utf-8"))
-    if held.get("study") != identity["study"]:
-        told = "holds another study, or this one with other keys, rows or outputs"
-        raise InputError([Fault(str(folder), "", told, "Name another folder with --out")])
-    rows = read_rows(folder / ROWS, Columns(plan.keys, plan.outputs))
-    if rows and not resume:
-        told = f"holds {len(rows)} of {len(plan.rows)} rows of this study"
-        raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
-    if rows and held.get("code_sha256") != identity["code_sha256"]:
-        told = "holds rows that other code or libraries computed"
-        raise InputError([Fault(str(folder), "", told, "Name another folder with --out to start anew")])
-    write_text(note, json.dumps({"title": plan.title, **identity}, indent=1))
-    return rows

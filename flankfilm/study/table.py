@@ -39,7 +39,20 @@ class Columns:
         return ["row", *self.keys, *self.outputs, "seconds", "fault"]
 
 
+@dataclass(frozen=True)
+class Line:
+    """A row as it stands in the table: its result, and the values of its keys as text."""
+
+    result: RowResult
+    values: tuple[str, ...]
+
+
 def read_rows(path: Path, columns: Columns) -> dict[int, RowResult]:
+    """Read the results that are there, by row; see `read_lines`."""
+    return {line.result.index: line.result for line in read_lines(path, columns)}
+
+
+def read_lines(path: Path, columns: Columns) -> list[Line]:
     """Read the rows that are there, and cut off a last line without its end.
 
     Raises
@@ -48,7 +61,7 @@ def read_rows(path: Path, columns: Columns) -> dict[int, RowResult]:
         Where the file holds something else.
     """
     if not path.exists():
-        return {}
+        return []
     data = path.read_bytes()
     whole = data[: data.rfind(b"\n") + 1]
     if len(whole) < len(data):
@@ -59,10 +72,11 @@ def read_rows(path: Path, columns: Columns) -> dict[int, RowResult]:
         allowed = "must hold the columns of this study"
         raise InputError([Fault(str(path), "", allowed, "Name another folder with --out")])
     first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
-    found = {}
+    found = []
     for line in lines[1:]:
         values = tuple(float(text) for text in line[first:last])
-        found[int(line[0])] = RowResult(int(line[0]), values, float(line[last]), line[last + 1])
+        result = RowResult(int(line[0]), values, float(line[last]), line[last + 1])
+        found.append(Line(result, tuple(line[1:first])))
     return found
 
 

@@ -205,7 +205,7 @@ class TestFolder:
     def test_rows_of_other_code_are_not_mixed_in(self, tmp_path, monkeypatch):
         plan = read_plan(study_file(tmp_path, SHIFTS))
         run_study(plan, tmp_path / "out", workers=1)
-        monkeypatch.setattr("flankfilm.study.run.code_digest", lambda packages: "other")
+        monkeypatch.setattr("flankfilm.study.kept.code_digest", lambda packages: "other")
         with pytest.raises(InputError, match="other code"):
             run_study(plan, tmp_path / "out", workers=1, resume=True)
 
