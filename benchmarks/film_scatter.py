@@ -48,7 +48,7 @@ def main(count: int, seed: int) -> None:
         try:
             solved, formula = engine(raw, "ehl"), engine(raw, "dowson")
             began = time.process_time()
-            foreseen = foreseen_change(solved)
+            foreseen = foreseen_change(solved).mean
             middle = time.process_time()
             solved["dry cycle"], formula["dry cycle"]
             start = time.process_time()

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from flankfilm.faults import SolverError
 from flankfilm.stages import film_choice, stiffness_choice
-from flankfilm.stages.decisions import Candidate, Decision, per_cent
+from flankfilm.stages.decisions import Candidate, Decision, per_cent, signed
 from flankfilm.tolerance import CostLaw, Shares, split, step_below
 
 if TYPE_CHECKING:
@@ -182,10 +182,11 @@ def _film_decision(
     candidates = tuple(_candidate(option, [w for w in weighed if w.film is option]) for option in oil.options)
     if oil.why or oil.change is None:
         return Decision("film", name, asked, oil.why, best.film.effect, None, best.seconds, candidates)
-    told = f"{'-' if oil.change <= 0 else '+'}{per_cent(abs(oil.change))} foreseen"
+    told = f"{signed(oil.change.mean)} foreseen"
     limit = f"the tolerance of {per_cent(scene.tolerance)}"
     if name == "none":
         why = f"{told} (at most {per_cent(best.film.effect or 0.0)}), below {limit}, left out"
+        why += f"; the transmission error, peak to peak, would change by about {signed(oil.change.transmission_error)}"
     elif name == "dowson":
         why = f"{told}, by Dowson's formula, which is at most {per_cent(best.film.effect or 0.0)} off, below {limit}"
     else:

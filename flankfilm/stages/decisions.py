@@ -80,3 +80,8 @@ def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     plan, fourier = values.get("plan"), values.get("fourier")
     series = None if fourier is None else fourier.decision
     return (*(() if plan is None else plan.decisions), *(() if series is None else (series,)))
+
+
+def signed(value: float) -> str:
+    """Write a relative change in per cent with its sign."""
+    return f"{'-' if value < 0 else '+'}{per_cent(abs(value))}"

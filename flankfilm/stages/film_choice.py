@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flankfilm.cache import Cache
 from flankfilm.tolerance import CostLaw
 
@@ -37,6 +39,22 @@ COARSEST = 0.1
 
 FINE = 3e-3
 """Tolerance from which on all stages are at their coarsest, whatever the film changes."""
+
+
+@dataclass(frozen=True)
+class FilmChange:
+    """What the cheapest models say that a film changes, relative.
+
+    Attributes
+    ----------
+    mean : float
+        Of the mean secant stiffness; negative.
+    transmission_error : float
+        Of the transmission error, peak to peak: no sum of errors, but the figure that a film left out changes most.
+    """
+
+    mean: float
+    transmission_error: float
 
 
 @dataclass(frozen=True)
@@ -69,7 +87,7 @@ class Foreseen:
 
     options: tuple[Option, ...]
     why: str
-    change: float | None
+    change: FilmChange | None
 
 
 def foresee(engine: Engine) -> Foreseen:
@@ -89,16 +107,16 @@ def foresee(engine: Engine) -> Foreseen:
         if "film" in scene.wants or unknown or tolerance >= FINE:
             return _only(_solved(ASSUMED, tolerance if "film" in scene.wants else 1.0), told)
         change = engine["film foreseen"]
-        return Foreseen((_solved(MOST_OF_FORESEEN * abs(change)),), told, change)
+        return Foreseen((_solved(MOST_OF_FORESEEN * abs(change.mean)),), told, change)
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
         return _only(_LEFT_OUT, "left out; the scene has no lubricant or no speed")
     if unknown:
         told = f"solved; the formula that would foresee its part does not know {unknown}"
         return _only(_solved(ASSUMED), told)
     change = engine["film foreseen"]
-    left_out = replace(_LEFT_OUT, effect=MOST_OF_FORESEEN * abs(change))
-    formula = replace(_BY_FORMULA, effect=FORMULA_OFF * abs(change))
-    solved = _solved(MOST_OF_FORESEEN * abs(change))
+    left_out = replace(_LEFT_OUT, effect=MOST_OF_FORESEEN * abs(change.mean))
+    formula = replace(_BY_FORMULA, effect=FORMULA_OFF * abs(change.mean))
+    solved = _solved(MOST_OF_FORESEEN * abs(change.mean))
     # a definition of film stiffness that the formula has not leaves the solver alone
     return Foreseen((left_out, *((formula,) if scene.film.stiffness is None else ()), solved), "", change)
 
@@ -132,13 +150,15 @@ def _unknown_to_formulas(scene: Scene) -> str:
     return ""
 
 
-def foreseen_change(engine: Engine) -> float:
-    """Relative change of the mean stiffness by the film, by the cheapest models; negative."""
+def foreseen_change(engine: Engine) -> FilmChange:
+    """What the film changes by the cheapest models."""
     scene = engine.scene
     teeth = scene.stiffness.model_copy(update={"model": "potential-energy"})
     film = scene.film.model_copy(update={"model": "dowson", "stiffness": None})
     cheap = scene.model_copy(
         update={"wants": ("stiffness",), "tolerance": COARSEST, "stiffness": teeth, "film": film}
     )
-    change: float = type(engine)(cheap, engine.stages, Cache(None))["film"].change_secant
-    return change
+    rough = type(engine)(cheap, engine.stages, Cache(None))
+    film, dry = rough["film"], rough["dry cycle"]
+    uneven = float(np.ptp(film.cycle.transmission_error) / np.ptp(dry.transmission_error) - 1)
+    return FilmChange(float(film.change_secant), uneven)

@@ -17,7 +17,7 @@ from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.decide import Plan
 from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.film_choice import FORMULA_OFF, MOST_OF_FORESEEN
+from flankfilm.stages.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
 from flankfilm.stages.series_choice import choose_order, left_out
 from flankfilm.stages.stiffness_choice import LARGEST_DIFFERENCE
 
@@ -46,7 +46,7 @@ def scene(tolerance: float = 0.005, **changes) -> Scene:
 
 def plan(of: Scene, film_change: float = -0.003) -> Plan:
     """Plan of a scene whose film is foreseen to change the stiffness by so much."""
-    foreseen = replace(STAGES["film foreseen"], compute=lambda engine: film_change)
+    foreseen = replace(STAGES["film foreseen"], compute=lambda engine: FilmChange(film_change, 0.02))
     found: Plan = Engine(of, {**STAGES, "film foreseen": foreseen}, Cache(None))["plan"]
     return found
 
