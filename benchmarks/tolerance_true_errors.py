@@ -2,12 +2,13 @@
 
 Scenes with ``model = "auto"`` for stiffness and film and an order of the series to be found, at tolerances from 5 % to
 0.1 %; references by finite elements and solved films at a twentieth of the least tolerance. Run with
-``python benchmarks/tolerance_true_errors.py``.
+``python benchmarks/tolerance_true_errors.py [part of a scene's name]``.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 import time
 import warnings
 
@@ -77,7 +78,7 @@ def run(raw: dict, tolerance: float, stiffness: str, film: str, order: object) -
     return engine, time.process_time() - began
 
 
-def main() -> None:
+def main(part: str) -> None:
     keep_compiled_code()
     run(ARTICLE, 0.05, "fem", "ehl", 1)
     heads = (
@@ -92,6 +93,8 @@ def main() -> None:
         "seconds",
     )
     for name, raw in SCENES.items():
+        if part not in name:
+            continue
         finest, seconds = run(raw, min(TOLERANCES) / 20, "fem", "ehl", 50)
         true = finest["mesh"]
         print(f"\n{name}: reference {seconds:.1f} s, film {100 * finest['film'].change_secant:+.3f} %")
@@ -116,4 +119,4 @@ if __name__ == "__main__":
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        main()
+        main(sys.argv[1] if len(sys.argv) > 1 else "")

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm.cache import Cache
+from flankfilm.faults import SolverError
+from flankfilm.stages.teeth import plain_flanks
 from flankfilm.tolerance import CostLaw
 
 if TYPE_CHECKING:
@@ -106,14 +108,20 @@ def foresee(engine: Engine) -> Foreseen:
         told = 'solved; the scene asks for film.model = "ehl"'
         if "film" in scene.wants or unknown or tolerance >= FINE:
             return _only(_solved(ASSUMED, tolerance if "film" in scene.wants else 1.0), told)
-        change = engine["film foreseen"]
-        return Foreseen((_solved(MOST_OF_FORESEEN * abs(change.mean)),), told, change)
+        known: FilmChange | None = engine["film foreseen"]
+        if known is None:
+            return _only(_solved(ASSUMED), told)
+        return Foreseen((_solved(MOST_OF_FORESEEN * abs(known.mean)),), told, known)
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
         return _only(_LEFT_OUT, "left out; the scene has no lubricant or no speed")
     if unknown:
         told = f"solved; the formula that would foresee its part does not know {unknown}"
         return _only(_solved(ASSUMED), told)
-    change = engine["film foreseen"]
+    change: FilmChange | None = engine["film foreseen"]
+    if change is None:
+        return _only(
+            _solved(ASSUMED), "solved; the cheapest models, which would foresee its part, found no load share"
+        )
     left_out = replace(_LEFT_OUT, effect=MOST_OF_FORESEEN * abs(change.mean))
     formula = replace(_BY_FORMULA, effect=FORMULA_OFF * abs(change.mean))
     solved = _solved(MOST_OF_FORESEEN * abs(change.mean))
@@ -150,15 +158,23 @@ def _unknown_to_formulas(scene: Scene) -> str:
     return ""
 
 
-def foreseen_change(engine: Engine) -> FilmChange:
-    """What the film changes by the cheapest models."""
-    scene = engine.scene
+def foreseen_change(engine: Engine) -> FilmChange | None:
+    """What the film changes by the cheapest models; None where these find no load share.
+
+    The flanks are taken as plain: relief decides who carries, and hardly what a film changes of the mean.
+    """
+    from gears import LoadSharingError
+
+    scene = plain_flanks(engine.scene)
     teeth = scene.stiffness.model_copy(update={"model": "potential-energy"})
     film = scene.film.model_copy(update={"model": "dowson", "stiffness": None})
     cheap = scene.model_copy(
         update={"wants": ("stiffness",), "tolerance": COARSEST, "stiffness": teeth, "film": film}
     )
     rough = type(engine)(cheap, engine.stages, Cache(None))
-    film, dry = rough["film"], rough["dry cycle"]
+    try:
+        film, dry = rough["film"], rough["dry cycle"]
+    except (LoadSharingError, SolverError):
+        return None
     uneven = float(np.ptp(film.cycle.transmission_error) / np.ptp(dry.transmission_error) - 1)
     return FilmChange(float(film.change_secant), uneven)

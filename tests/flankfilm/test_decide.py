@@ -11,6 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from flankfilm.cache import Cache
+from flankfilm.faults import SolverError
 from flankfilm.scene import Scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import STAGES
@@ -230,3 +231,22 @@ def test_a_run_says_what_it_decided():
     assert told[-1].choice == str(order)
     assert engine["fourier"].fit.remainder_rms <= engine["plan"].series
     assert json.loads(json.dumps([d.plain() for d in told]))[0]["choice"] == "ishikawa"
+
+
+def test_a_film_whose_part_cannot_be_foreseen_is_solved():
+    def fails(engine: Engine):
+        raise SolverError("no agreement")
+
+    stages = {**STAGES, "film": replace(STAGES["film"], compute=fails)}
+    found: Plan = Engine(scene(0.05), stages, Cache(None))["plan"]
+    assert found.film.choice == "ehl"
+    assert "no load share" in found.film.reason
+
+
+def test_relief_does_not_hinder_the_foreseeing():
+    relief = {"amount_um": 20.0, "length_mm": 2.0}
+    raw = scene(0.05).model_dump(exclude_none=True)
+    raw["pair"]["pinion"] |= {"teeth": 17, "profile_shift": 0.4, "bore_mm": 12.0, "tip_relief": relief}
+    raw["pair"]["wheel"] |= {"teeth": 60, "profile_shift": 0.1, "tip_relief": relief}
+    change = Engine(validated(raw), STAGES, Cache(None))["film foreseen"]
+    assert -0.05 < change.mean < 0.0
