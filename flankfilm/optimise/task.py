@@ -22,6 +22,10 @@ COARSENING = 5.0
 """The tolerance of the first phase, in tolerances of the scene."""
 
 
+COARSEST = 0.05
+"""Of the first phase, unless the scene's own tolerance is wider."""
+
+
 class Limit(Section):
     """Bounds of an output."""
 
@@ -159,7 +163,9 @@ def read_task(path: Path) -> Task:
         evaluations=asked.evaluations,
         population=asked.population,
         seed=asked.seed,
-        tolerances=(min(COARSENING * fine, 0.05) if isinstance(fine, float) else 0.05, fine),
+        tolerances=(max(fine, min(COARSENING * fine, COARSEST)), fine)
+        if isinstance(fine, float)
+        else (COARSEST, fine),
     )
     for end in (0.0, 1.0):
         validated(task.raw_scene(task.values([end] * len(task.ranges)), fine))

@@ -120,7 +120,7 @@ def foresee(engine: Engine) -> Foreseen:
     change: FilmChange | None = engine["film foreseen"]
     if change is None:
         return _only(
-            _solved(ASSUMED), "solved; the cheapest models, which would foresee its part, found no load share"
+            _solved(ASSUMED), "solved; the cheapest models, which would foresee its part, have no answer"
         )
     left_out = replace(_LEFT_OUT, effect=MOST_OF_FORESEEN * abs(change.mean))
     formula = replace(_BY_FORMULA, effect=FORMULA_OFF * abs(change.mean))
@@ -159,11 +159,11 @@ def _unknown_to_formulas(scene: Scene) -> str:
 
 
 def foreseen_change(engine: Engine) -> FilmChange | None:
-    """What the film changes by the cheapest models; None where these find no load share.
+    """What the film changes by the cheapest models; None where these have no answer.
 
     The flanks are taken as plain: relief decides who carries, and hardly what a film changes of the mean.
     """
-    from gears import LoadSharingError
+    from gears import GearsError
 
     scene = plain_flanks(engine.scene)
     teeth = scene.stiffness.model_copy(update={"model": "potential-energy"})
@@ -174,7 +174,7 @@ def foreseen_change(engine: Engine) -> FilmChange | None:
     rough = type(engine)(cheap, engine.stages, Cache(None))
     try:
         film, dry = rough["film"], rough["dry cycle"]
-    except (LoadSharingError, SolverError):
+    except (GearsError, SolverError):
         return None
     uneven = float(np.ptp(film.cycle.transmission_error) / np.ptp(dry.transmission_error) - 1)
     return FilmChange(float(film.change_secant), uneven)

@@ -5,18 +5,23 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from html import unescape
+from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 
 from flankfilm.cache import Cache
+from flankfilm.check import check_scene
 from flankfilm.faults import SolverError
-from flankfilm.scene import Scene
+from flankfilm.report.contents import summary
+from flankfilm.run import run_scene
+from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.decide import Plan
-from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
 from flankfilm.stages.series_choice import choose_order, left_out
@@ -219,18 +224,37 @@ def test_the_least_order_is_found_and_said():
     assert decision.effect > 1e-6
 
 
-def test_a_run_says_what_it_decided():
-    dynamics = {"fourier_order": "auto", "damping_ratio": 0.05}
+def test_a_run_says_what_it_decided(tmp_path):
+    """On the terminal, in the results' file and in the report."""
     wanted = scene(
-        0.02, wants=["fourier"], dynamics=dynamics, stiffness={"model": "ishikawa"}, film={"model": "none"}
+        0.02,
+        wants=["fourier", "report"],
+        dynamics={"fourier_order": "auto", "damping_ratio": 0.05},
+        stiffness={"model": "ishikawa"},
+        film={"model": "none"},
     )
-    engine = Engine(wanted, STAGES, Cache(None))
-    order = len(engine["fourier"].stiffness.amplitudes)
-    told = decisions(engine.results())
-    assert [d.subject for d in told] == ["stiffness", "film", "Fourier order"]
-    assert told[-1].choice == str(order)
-    assert engine["fourier"].fit.remainder_rms <= engine["plan"].series
-    assert json.loads(json.dumps([d.plain() for d in told]))[0]["choice"] == "ishikawa"
+    results = run_scene(wanted, tmp_path, use_cache=False)
+    fourier, plan = results.values["fourier"], results.plan
+    assert plan is not None
+    assert [d.subject for d in results.decisions] == ["stiffness", "film", "Fourier order"]
+    assert results.decisions[-1].choice == str(len(fourier.stiffness.amplitudes))
+    assert fourier.fit.remainder_rms <= plan.series
+    lines = [*(d.line for d in results.decisions), plan.line]
+    assert set(lines) <= set(summary(results))
+    with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as held:
+        assert json.loads(held.attrs["decisions_json"]) == [
+            d.plain() | {"candidates": [c.__dict__ for c in d.candidates]} for d in results.decisions
+        ]
+    page = unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert [d.reason for d in results.decisions if d.reason not in page] == []
+
+
+def test_check_says_what_a_run_would_decide():
+    path = Path(__file__).parents[2] / "examples" / "auto.toml"
+    told = check_scene(read_scene(path))
+    found = Engine(read_scene(path), STAGES, Cache(None))["plan"]
+    assert {found.stiffness.line, found.film.line, found.line} <= set(told)
+    assert "split by cost" in found.line
 
 
 def test_a_film_whose_part_cannot_be_foreseen_is_solved():
@@ -240,7 +264,7 @@ def test_a_film_whose_part_cannot_be_foreseen_is_solved():
     stages = {**STAGES, "film": replace(STAGES["film"], compute=fails)}
     found: Plan = Engine(scene(0.05), stages, Cache(None))["plan"]
     assert found.film.choice == "ehl"
-    assert "no load share" in found.film.reason
+    assert "no answer" in found.film.reason
 
 
 def test_relief_does_not_hinder_the_foreseeing():

@@ -14,11 +14,13 @@ from scipy.optimize import brentq
 
 from flankfilm.build import gear_pair
 from flankfilm.faults import InputError, SolverError
-from flankfilm.optimise.run import optimise
+from flankfilm.optimise.files import phases
+from flankfilm.optimise.run import Evaluation, Optimum, optimise
 from flankfilm.optimise.search import front
 from flankfilm.optimise.task import read_task
 from flankfilm.scene import read_scene
 from flankfilm.scene.reader import validated
+from flankfilm.study.row import RowResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -131,6 +133,25 @@ def test_taken_up_again_it_ends_with_the_same_points(tmp_path):
         assert again.computed == whole.computed - (len(cut) - 1)
         indices = pd.read_csv(folder / "rows.csv")["row"]
         assert indices.is_unique
+
+
+def test_it_is_said_what_the_coarse_phase_saved(tmp_path):
+    task = read_task(task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 60'))
+    coarse, fine = task.tolerances
+    assert coarse == 5 * fine
+    costs = [(coarse, 1.0, "")] * 6 + [(fine, 3.0, "")] * 4 + [(fine, 0.1, "pointed")] * 5
+    points = tuple(
+        Evaluation(tolerance, (float(i),), RowResult(i, (1.0,), seconds, fault))
+        for i, (tolerance, seconds, fault) in enumerate(costs)
+    )
+    found = Optimum(task, points, np.array([6]), 15, 20.0)
+    assert phases(found) == pytest.approx((1.0, 3.0, 1 - 18 / 30))
+    assert phases(Optimum(task, points[6:], np.array([0]), 9, 20.0)) is None
+
+
+def test_a_wide_tolerance_is_not_narrowed_far_away(tmp_path):
+    wide = SHIFT + '[set]\n"tolerance" = 0.2\n'
+    assert read_task(task_file(tmp_path, 'minimise = ["specific_sliding"]', wide)).tolerances == (0.2, 0.2)
 
 
 def test_the_command_writes_a_scene_that_runs(tmp_path):
