@@ -99,8 +99,9 @@ class FilmLaw:
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
         """Prop [m] and its slope [m/N] at given places and forces.
 
-        A force below a hundredth of a solved one is taken as that hundredth: the power law would grow
-        without bound where the pair lets go. Places beyond the films have the nearest one.
+        Below a hundredth of a solved force the law goes on along its tangent: the power law would grow
+        without bound where the pair lets go, and a slope that jumps has Newton's method of the load sharing
+        step to and fro across it. Places beyond the films have the nearest one.
 
         Parameters
         ----------
@@ -139,12 +140,13 @@ class FilmLaw:
         """Prop and slope by one film each, taken as solved at the given forces."""
         exponent = self.exponent[film]
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
+        below = np.minimum(forces - ratio * solved, 0.0)
         if self.held is not None:
             prop, local = self.held.bound(film, self.prop[film], exponent, ratio)
         else:
             prop, local = self.prop[film] * ratio**-exponent, exponent
-        slope = np.where(ratio > _LEAST_RATIO, -local * prop / (ratio * solved), 0.0)
-        return prop, slope
+        slope = -local * prop / (ratio * solved)
+        return prop + slope * below, slope
 
 
 @dataclass(frozen=True, eq=False)

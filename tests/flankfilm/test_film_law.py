@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from ehl import LineContact, Lubricant, Meniscus, solve
+from flankfilm.cache import Cache
 from flankfilm.film_law import FilmLaw, HeldMeniscus
+from flankfilm.scene.reader import validated
+from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.engine import Engine
 
 
 def law(
@@ -50,8 +54,45 @@ def test_a_light_contact_leaves_the_meniscus_behind():
     for force in (20.0, 100.0, 300.0):
         flooded = 7e-7 * (force / 1000.0) ** -0.12
         assert 0.5 * flooded < at(found, force)[0] <= flooded
-    assert at(found, 0.0)[1] == 0.0
     assert np.isfinite(at(found, 1e6)).all()
+
+
+def test_where_a_pair_lets_go_the_law_goes_on_along_its_tangent():
+    """Value and slope without a jump: Newton's method of the load sharing would step to and fro across one."""
+    for found in (law(7e-7, 0.2), law(1e-7, 4.0)):
+        edge = 10.0
+        (prop, _), (before, slope) = at(found, edge), at(found, edge * (1 + 1e-7))
+        for force in (edge * (1 - 1e-7), 5.0, 0.0):
+            told, steep = at(found, force)
+            assert told == pytest.approx(prop + slope * (force - edge), rel=1e-5)
+            assert steep == pytest.approx(slope, rel=1e-5)
+        assert before == pytest.approx(prop, rel=1e-6)
+
+
+def test_relieved_teeth_with_a_film_share_their_load():
+    """Pairs that let go within a position's step of the edge of the law."""
+    relief = {"amount_um": 20.0, "length_mm": 2.0}
+    raw = {
+        "wants": ["stiffness"],
+        "pair": {
+            "module_mm": 2.0,
+            "face_width_mm": 40.0,
+            "pinion": {"teeth": 17, "profile_shift": 0.4, "bore_mm": 12.0, "tip_relief": relief},
+            "wheel": {"teeth": 60, "profile_shift": 0.1, "tip_relief": relief},
+        },
+        "material": {"youngs_modulus_GPa": 200.2, "poisson_ratio": 0.3},
+        "operating": {"pinion_torque_Nm": 150.0, "pinion_speed_rpm": 2000.0},
+        "lubricant": {
+            "viscosity_Pa_s": 0.075,
+            "pressure_viscosity_per_GPa": 19.6,
+            "density_kg_per_m3": 910.0,
+        },
+        "stiffness": {"model": "potential-energy"},
+        "film": {"model": "dowson"},
+    }
+    cycle = Engine(validated(raw), STAGES, Cache(None))["film"].cycle
+    assert cycle.load_share.sum(axis=1) == pytest.approx(1.0, rel=1e-9)
+    assert np.all(cycle.forces >= 0)
 
 
 def test_without_lack_of_oil_the_power_law_stands():
