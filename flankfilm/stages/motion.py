@@ -136,11 +136,11 @@ def fourier(engine: Engine) -> FourierStage:
     section = scene.dynamics
     kind = section.stiffness if section else "secant"
     cycle: MeshStiffness = engine["mesh"]
-    first = fit_fourier(cycle.stiffness(kind), order=1)
+    samples = cycle.stiffness(kind)
+    spectrum = np.abs(np.fft.rfft(samples))
+    resolved = 2.0 * spectrum[1 : (samples.size + 1) // 2] / spectrum[0]
     beyond = left_out(
-        np.array(first.harmonics),
-        _range(engine, first.stiffness.mean),
-        section.damping_ratio if section else 0.0,
+        resolved, _range(engine, float(samples.mean())), section.damping_ratio if section else 0.0
     )
     if section is not None and section.fourier_order == "auto":
         share = engine["plan"].series
@@ -148,7 +148,7 @@ def fourier(engine: Engine) -> FourierStage:
     else:
         order = int(section.fourier_order) if section else 1
         decision = asked_order(beyond, order)
-    fit = fit_fourier(cycle.stiffness(kind), order=order)
+    fit = fit_fourier(samples, order=order)
     other = fit_fourier(cycle.stiffness("tangent" if kind == "secant" else "secant"), order=order)
     return FourierStage(fit.stiffness, fit, kind, cycle.label, other, decision)
 
