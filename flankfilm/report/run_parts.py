@@ -71,13 +71,14 @@ def decisions(decided: Sequence[Decision], plan: Plan | None, runs: Mapping[str,
     tables = (_decided(decided),) if decided else ()
     if plan is not None and len(plan.shares):
         tables = (*tables, _shares(plan))
-    if not tables and not warned:
+    lines = (*(d.line for d in decided), *((plan.line,) if plan is not None else ()), *warned)
+    if not lines:
         return None
-    return Part("decisions", "Decisions and warnings", tables=tables, notes=warned)
+    return Part("decisions", "Decisions and warnings", tables=tables, notes=lines)
 
 
 def _decided(decided: Sequence[Decision]) -> Table:
-    heads = ("decision", "choice", "effect, at most", "allowed", "cost foreseen", "why")
+    heads = ("decision", "choice", "effect, at most", "allowed", "cost of all stages, foreseen")
     rows = tuple(
         (
             d.subject,
@@ -85,7 +86,6 @@ def _decided(decided: Sequence[Decision]) -> Table:
             "" if d.effect is None else percent(d.effect),
             "" if d.share is None else percent(d.share),
             "" if d.seconds is None else seconds(d.seconds),
-            d.reason,
         )
         for d in decided
     )
