@@ -126,7 +126,7 @@ def verify(
     folder = out if out is not None else Path(f"{scene.stem}-verify")
     with console_progress() as progress:
         found = verify_scene(wanted, folder, use_cache=cache, progress=progress)
-        files = write_verification(found, folder)
+        files = write_verification(found, wanted, folder)
     screen = Console(width=None if sys.stdout.isatty() else 160)
     for reference in (found.references[0], found.like_for_like):
         screen.print(table(found, reference))

@@ -17,13 +17,17 @@ def diagram_quantities(stage: DiagramStage) -> dict[str, Quantity]:
     points = np.asarray(stage.diagram)
     special = stage.diagram.table()
     along, at, jump = ("diagram_point",), ("special_point",), ("jump",)
+    unit = stage.rpm_per_frequency
+    scale = {} if unit is None else {"rpm_per_frequency": Quantity((), unit, "rpm", "speed of frequency 1")}
     return {
+        **scale,
         "diagram_branch": Quantity(along, points[:, 0].astype(np.int64), "1", "branch of periodic motions"),
         "diagram_frequency": Quantity(along, points[:, 1], "1", "mesh over natural frequency"),
         "diagram_displacement": Quantity(along, points[:, 2], "1", "displacement at tau = 0"),
         "diagram_velocity": Quantity(along, points[:, 3], "1", "velocity at tau = 0"),
         "diagram_stable": Quantity(along, points[:, 4].astype(np.int8), "1", "1 where stable"),
         "special_frequency": Quantity(at, [row[2] for row in special], "1", "mesh over natural frequency"),
+        "special_displacement": Quantity(at, [row[4] for row in special], "1", "displacement at tau = 0"),
         "special_kind": Quantity(
             at, np.asarray([r[1] for r in special], dtype="U16"), "1", "kind of special point"
         ),

@@ -20,7 +20,7 @@ def results_html(results: Results) -> str:
     """Headline figures of a run with their notes, and its files."""
     from flankfilm.report.contents import headlines
 
-    rows = [(line.name, line.text, line.note) for line in headlines(results)]
+    rows = [(line.name, line.told, line.note) for line in headlines(results)]
     files = ", ".join(str(path.relative_to(results.folder)) for path in results.files[:20])
     more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""
     told = f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s: {files}{more}"

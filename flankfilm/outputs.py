@@ -15,9 +15,12 @@ from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write
 from flankfilm.diagram_outputs import diagram_quantities, diagram_tables
 from flankfilm.load_outputs import load_outputs
 from flankfilm.mesh_stiffness import MeshStiffness
+from flankfilm.picture_outputs import picture_quantities
 from flankfilm.stages.decisions import decisions
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flankfilm.scene import Scene
     from flankfilm.stages.closed_forms import SinglePairs
     from flankfilm.stages.film import FilmStage
@@ -125,49 +128,77 @@ def fourier_quantities(fourier: FourierStage) -> dict[str, Quantity]:
     }
 
 
-def write_data(folder: Path, scene: Scene, values: Mapping[str, Any]) -> list[Path]:
-    """Write ``results.nc`` and the CSV files for the stages at hand; return what was written."""
+def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
+    """Give everything that a run found as one dataset: what ``results.nc`` holds and figures are drawn from.
+
+    Parameters
+    ----------
+    scene : Scene
+        What was asked for.
+    values : mapping
+        Stage name to result.
+    """
     quantities: dict[str, Quantity] = {}
-    tables: dict[str, dict[str, Any]] = {}
     if (single := values.get("closed forms")) is not None:
         quantities |= single_pair_quantities(single)
-        tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.position} | {
-            f"{name}_N_per_m": k
-            for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
-        }
-    for stage, prefix in (("dry cycle", "dry"), ("film", "lubricated")):
-        if (value := values.get(stage)) is not None:
-            cycle = value if stage == "dry cycle" else value.cycle
-            quantities |= cycle_quantities(cycle, prefix)
-            tables[f"mesh_cycle_{prefix}"] = _cycle_columns(cycle)
-    for found, more in load_outputs(values, speed=_speed(scene)):
-        quantities |= found
-        tables |= more
+    if (dry := values.get("dry cycle")) is not None:
+        quantities |= cycle_quantities(dry, "dry")
     if (film := values.get("film")) is not None:
-        quantities |= film_quantities(film)
-        tables["film_along_path"] = {
-            "rho1_mm": 1e3 * film.rho1,
-            "load_N_per_mm": 1e-3 * film.load,
-            "central_film_um": 1e6 * film.central,
-            "minimum_film_um": 1e6 * film.minimum,
-            "hertz_pressure_GPa": 1e-9 * film.hertz_pressure,
-        } | {f"stiffness_{n.replace('-', '_')}_N_per_m": k for n, k in film.stiffness.items()}
-        tables["film_along_path"] |= {_column(name, unit): values for name, values, unit, _ in _held(film)}
+        quantities |= cycle_quantities(film.cycle, "lubricated") | film_quantities(film)
+    for found, _ in load_outputs(values, speed=_speed(scene)):
+        quantities |= found
     if (fourier := values.get("fourier")) is not None:
         quantities |= fourier_quantities(fourier)
     if (sweep := values.get("sweep")) is not None:
         quantities |= sweep_quantities(sweep)
+    if (diagram := values.get("diagram")) is not None:
+        quantities |= diagram_quantities(diagram)
+    quantities |= picture_quantities(values)
+    decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
+    return to_dataset(quantities, {"title": scene.title, **decided, **provenance(scene.model_dump_json())})
+
+
+def results_tables(scene: Scene, values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Columns of the CSV files by name: one table for each curve."""
+    tables: dict[str, dict[str, Any]] = {}
+    if (single := values.get("closed forms")) is not None:
+        tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.position} | {
+            f"{name}_N_per_m": k
+            for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
+        }
+    if (dry := values.get("dry cycle")) is not None:
+        tables["mesh_cycle_dry"] = _cycle_columns(dry)
+    for _, more in load_outputs(values, speed=_speed(scene)):
+        tables |= more
+    if (film := values.get("film")) is not None:
+        tables["mesh_cycle_lubricated"] = _cycle_columns(film.cycle)
+        tables["film_along_path"] = _film_columns(film)
+    if (sweep := values.get("sweep")) is not None:
         for direction, states in sweep.states.items():
             tables[f"sweep_{direction}"] = _sweep_columns(sweep, direction, states)
     if (diagram := values.get("diagram")) is not None:
-        quantities |= diagram_quantities(diagram)
         tables |= diagram_tables(diagram)
-    decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
-    attributes = {"title": scene.title, **decided, **provenance(scene.model_dump_json())}
-    write_netcdf(folder / "results.nc", to_dataset(quantities, attributes))
+    return tables
+
+
+def write_data(folder: Path, dataset: xr.Dataset, tables: Mapping[str, Mapping[str, Any]]) -> list[Path]:
+    """Write ``results.nc`` and the CSV files; return what was written."""
+    write_netcdf(folder / "results.nc", dataset)
     for name, columns in tables.items():
         write_csv(folder / "csv" / f"{name}.csv", columns)
     return [folder / "results.nc", *(folder / "csv" / f"{name}.csv" for name in tables)]
+
+
+def _film_columns(film: FilmStage) -> dict[str, Any]:
+    return {
+        "rho1_mm": 1e3 * film.rho1,
+        "load_N_per_mm": 1e-3 * film.load,
+        "central_film_um": 1e6 * film.central,
+        "minimum_film_um": 1e6 * film.minimum,
+        "hertz_pressure_GPa": 1e-9 * film.hertz_pressure,
+        **{f"stiffness_{n.replace('-', '_')}_N_per_m": k for n, k in film.stiffness.items()},
+        **{_column(name, unit): values for name, values, unit, _ in _held(film)},
+    }
 
 
 def _column(name: str, unit: str) -> str:

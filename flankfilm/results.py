@@ -12,6 +12,8 @@ from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import StageRun
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flankfilm.stages.decide import Plan
     from flankfilm.stages.decisions import Decision
 
@@ -34,6 +36,8 @@ class Results:
         What was written.
     seconds : float
         Cost of the whole run [s].
+    dataset : xarray.Dataset
+        What ``results.nc`` holds; the functions of `flankfilm.figures` draw from it.
     """
 
     scene: Scene
@@ -42,6 +46,7 @@ class Results:
     runs: Mapping[str, StageRun]
     files: tuple[Path, ...]
     seconds: float
+    dataset: xr.Dataset
 
     @property
     def plan(self) -> Plan | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from flankfilm.cache import Cache, user_cache
 from flankfilm.faults import told_by_a_floor
 from flankfilm.folder import claim
-from flankfilm.outputs import write_data
+from flankfilm.outputs import results_dataset, results_tables, write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
@@ -60,10 +60,15 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
     except ValueError as error:
         raise told_by_a_floor(error) or error from error
     values = engine.results()
-    files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, scene, values))
+    dataset = results_dataset(scene, values)
+    files = engine.timed(
+        "data files",
+        "netCDF and CSV files",
+        lambda: write_data(folder, dataset, results_tables(scene, values)),
+    )
     if "vtk" in scene.wants:
         files += engine.timed("vtk files", "fields for ParaView", lambda: write_vtk(folder, engine, progress))
-    results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start)
+    results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start, dataset)
     if "report" in scene.wants:
         from flankfilm.report.contents import write_report
 

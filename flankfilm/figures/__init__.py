@@ -1,1 +1,47 @@
-"""One plot function for each kind of result; each returns a matplotlib figure."""
+"""One plot function for each kind of result; each takes a dataset of results and returns a matplotlib figure.
+
+The report and the documentation draw with the same functions. ``results.nc``, ``study.nc``, ``optimum.nc`` and
+``verify.nc`` hold all that they need, so that any figure can be drawn again in a style of one's own.
+"""
+
+from flankfilm.figures.diagrams import diagram
+from flankfilm.figures.film import (
+    film_along_path,
+    film_changes,
+    film_families,
+    film_profiles,
+    film_shares,
+    film_stiffness,
+)
+from flankfilm.figures.gear import gears_in_mesh, tooth_stress
+from flankfilm.figures.loads import over_torque, revolution, root_stress
+from flankfilm.figures.motion import portraits, sweep
+from flankfilm.figures.optima import optimum
+from flankfilm.figures.stiffness import fourier, load_share, mesh_stiffness, single_pairs, transmission_error
+from flankfilm.figures.studies import study
+from flankfilm.figures.verified import verification
+
+__all__ = [
+    "diagram",
+    "film_along_path",
+    "film_changes",
+    "film_families",
+    "film_profiles",
+    "film_shares",
+    "film_stiffness",
+    "fourier",
+    "gears_in_mesh",
+    "load_share",
+    "mesh_stiffness",
+    "optimum",
+    "over_torque",
+    "portraits",
+    "revolution",
+    "root_stress",
+    "single_pairs",
+    "study",
+    "sweep",
+    "tooth_stress",
+    "transmission_error",
+    "verification",
+]

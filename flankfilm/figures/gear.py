@@ -5,122 +5,136 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flankfilm.figures.style import COLOURS, figure, styled
+from flankfilm.figures.reading import need
+from flankfilm.figures.style import Style, colours, figure, styled
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
-    from fem.fields import GearField
-    from flankfilm.stages.fields import FieldsStage
-    from gears import GearPair
+Array = NDArray[np.float64]
 
-_SHADES = ("#dce9f5", "#f8e6d8")
+SHADES = ("#dce9f5", "#f8e6d8")
 
 
-def mesh(pair: GearPair) -> Figure:
-    """Draw both gears with a pair at the pitch point: the whole, and the path of contact enlarged."""
-    from gears.outline import outline
+def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw both gears with a pair at the pitch point: the whole, and the path of contact enlarged.
 
-    placed = pair.placement(pair.points.C)
-    shapes = [
-        1e3 * place(outline(tooth, points_per_part=24))
-        for place, tooth in zip((placed.pinion, placed.wheel), pair.teeth_profiles, strict=True)
-    ]
-    with styled():
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that has a pair of gears.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, "run a scene with a section [pair]", "outline_pinion", "outline_wheel", "path_point_place")
+    outlines = [1e3 * results[f"outline_{name}"].values for name in ("pinion", "wheel")]
+    with styled(style):
         drawn = figure(height=4.4)
         whole, close = drawn.subplots(1, 2, width_ratios=(2, 3))
+        lines = colours(2)
+        middle, reach = _path(close, results)
+        for shape, colour, shade in zip(outlines, lines, SHADES, strict=True):
+            look = {"facecolor": shade, "edgecolor": colour, "linestyle": "-", "linewidth": 0.7}
+            whole.fill(*shape.T, **look)
+            close.fill(*_nearby(shape, middle, reach).T, **look)
+        for centre, radius, colour in zip(
+            1e3 * results["gear_centre"].values, 1e3 * results["bore_radius"].values, lines, strict=True
+        ):
+            turn = np.linspace(0, 2 * np.pi, 181)
+            circle = centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])
+            whole.fill(*circle.T, facecolor="#ffffff", edgecolor=colour, linestyle="-", linewidth=0.7)
         for axes in (whole, close):
-            for shape, colour, shade in zip(shapes, COLOURS, _SHADES, strict=False):
-                axes.fill(*shape.T, facecolor=shade, edgecolor=colour, linewidth=0.8)
             axes.set_aspect("equal")
             axes.grid(visible=False)
             axes.set(xlabel="x [mm]")
-        for centre, radius, colour in zip(
-            (np.zeros(2), placed.wheel_centre), pair.bore_radii, COLOURS, strict=False
-        ):
-            turn = np.linspace(0, 2 * np.pi, 181)
-            circle = 1e3 * (centre + radius * np.column_stack([np.cos(turn), np.sin(turn)]))
-            whole.fill(*circle.T, facecolor="white", edgecolor=colour, linewidth=0.8)
         whole.set(ylabel="y [mm]")
-        _path(close, pair)
     return drawn
 
 
-def _path(axes: Axes, pair: GearPair) -> None:
-    """Enlarge the mesh with the path of contact and its points."""
-    points = {name: 1e3 * pair.placement(getattr(pair.points, name)).contact_point for name in "ABCDE"}
-    line = np.array([points["A"], points["E"]])
-    axes.plot(*line.T, color="black", linewidth=1.2)
-    for name, at in points.items():
-        axes.plot(*at, "o", color="black", markersize=3)
-        axes.annotate(name, (float(at[0]), float(at[1])), xytext=(4, 4), textcoords="offset points")
-    middle, reach = points["C"], 1.1 * float(np.linalg.norm(line[1] - line[0])) + 1e3 * pair.module
+def _path(axes: Axes, results: xr.Dataset) -> tuple[Array, float]:
+    """Draw the path of contact with its points; return middle and half-width of the picture [mm]."""
+    names = [str(name) for name in results["path_point_name"].values]
+    places = dict(zip(names, 1e3 * results["path_point_place"].values, strict=True))
+    ends = np.array([places["A"], places["E"]])
+    axes.plot(*ends.T, color="#000000", linewidth=1.2, zorder=3)
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    across = 10 * np.array([along[1], -along[0]])
+    for name, at in places.items():
+        axes.plot(*at, "o", color="#000000", markersize=3, zorder=3)
+        # B and D stand on the other side: the points may lie close together
+        side = across if name in "ACE" else -across
+        axes.annotate(
+            name, (float(at[0]), float(at[1])), xytext=(float(side[0]), float(side[1])),
+            textcoords="offset points", ha="center", va="center", color="#000000", zorder=4,
+        )  # fmt: skip
+    middle = places["C"]
+    reach = 0.75 * float(np.linalg.norm(ends[1] - ends[0])) + 0.1 * float(np.ptp(ends))
     axes.set(
         xlim=(middle[0] - reach, middle[0] + reach), ylim=(middle[1] - 0.8 * reach, middle[1] + 0.8 * reach)
     )
+    return middle, reach
 
 
-def von_mises(stage: FieldsStage) -> Figure:
-    """Draw the von Mises stress of both gears around the mesh."""
+def _nearby(shape: Array, middle: Array, reach: float) -> Array:
+    """Part of a closed outline around the enlarged picture, closed through a point behind it."""
+    near = np.linalg.norm(shape - middle, axis=1) < 2.0 * reach
+    if near.all():
+        return shape
+    start = int(np.flatnonzero(near & ~np.roll(near, 1))[0])
+    kept = np.roll(shape, -start, axis=0)[np.roll(near, -start)]
+    behind = 2.0 * reach * np.sign(shape.mean(axis=0)[1] - middle[1])
+    corners = np.array([[kept[-1][0], middle[1] + behind], [kept[0][0], middle[1] + behind]])
+    return np.concatenate([kept, corners])
+
+
+def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the von Mises stress of both gears around the mesh, with a pair at the pitch point.
+
+    The scale ends at the stress that 99.7 % of the pictured area stays below: fillets count, contacts do not.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``vtk``.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
     from matplotlib.tri import Triangulation
 
-    fields = (stage.pinion, stage.wheel)
-    focus, reach = _loaded_region(stage)
-    top = max(_stress_of_nearly_all(field, focus, reach) for field in fields)
-    with styled():
-        drawn = figure(height=5.2)
+    need(results, 'run a scene that wants "vtk"', "field_point", "field_von_mises", "field_triangles")
+    points, cells = 1e3 * results["field_point"].values, results["field_triangles"].values
+    stress, centre = 1e-6 * results["field_von_mises"].values, 1e3 * results["field_centre"].values
+    reach = 1e3 * float(results["field_reach"])
+    with styled(style):
+        drawn = figure(height=4.3)
         axes = drawn.subplots()
-        painted = None
-        for field in fields:
-            near = np.linalg.norm(field.points[field.cells[:, 0]] - focus, axis=1) < 1.6 * reach
-            corners = _quarters(field.cells[near])
-            used, numbers = np.unique(corners, return_inverse=True)
-            x, y = 1e3 * field.points[used].T
-            grid = Triangulation(x, y, numbers.reshape(-1, 3))
-            painted = axes.tripcolor(
-                grid, 1e-6 * field.von_mises_Pa[used], shading="gouraud", cmap="viridis", vmin=0, vmax=1e-6 * top,
-                rasterized=True,
-            )  # fmt: skip
-        assert painted is not None
+        top = _stress_of_nearly_all(points, cells, stress, centre, reach)
+        x, y = points.T
+        painted = axes.tripcolor(
+            Triangulation(x, y, cells), stress, shading="gouraud", vmin=0.0, vmax=top, rasterized=True
+        )
         drawn.colorbar(painted, ax=axes, label="von Mises stress [MPa]", extend="max")
         axes.set_aspect("equal")
         axes.grid(visible=False)
-        x, y = 1e3 * focus
-        axes.set(
-            xlim=(x - 1e3 * reach, x + 1e3 * reach),
-            ylim=(y - 750 * reach, y + 750 * reach),
-            xlabel="x [mm]",
-            ylabel="y [mm]",
-        )
+        x, y = centre.tolist()
+        axes.set(xlim=(x - reach, x + reach), ylim=(y - 0.75 * reach, y + 0.75 * reach))
+        axes.set(xlabel="x [mm]", ylabel="y [mm]")
     return drawn
 
 
-def _loaded_region(stage: FieldsStage) -> tuple[NDArray[np.float64], float]:
-    """Centre and half-width of the picture [m]: about three pitches around the highest stress."""
-    field = stage.pinion
-    focus = field.points[int(np.nanargmax(field.von_mises_Pa))]
-    radius = float(np.linalg.norm(field.points, axis=1).max())
-    teeth = np.unique(field.tooth).size
-    return focus, 1.7 * 2 * np.pi * radius / teeth
-
-
-def _stress_of_nearly_all(field: GearField, focus: NDArray[np.float64], reach: float) -> float:
-    """Stress that 99.7 % of the pictured area stays below: the fillets count, the contacts do not."""
-    corners = field.points[field.cells[:, :3]]
-    (ux, uy), (vx, vy) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
-    near = np.linalg.norm(corners[:, 0] - focus, axis=1) < reach
+def _stress_of_nearly_all(
+    points: Array, cells: NDArray[np.int32], stress: Array, centre: Array, reach: float
+) -> float:
+    """Stress that 99.7 % of the pictured area stays below."""
+    a, b, c = (points[cells[:, i]] for i in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    near = np.linalg.norm(a - centre, axis=1) < reach
     area = np.where(near, np.abs(ux * vy - uy * vx), 0.0)
-    stress = field.von_mises_Pa[field.cells].mean(axis=1)
-    order = np.argsort(stress)
+    mean = stress[cells].mean(axis=1)
+    order = np.argsort(mean)
     below = np.cumsum(area[order])
-    return float(stress[order][np.searchsorted(below, 0.997 * below[-1])])
-
-
-def _quarters(cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Split second-order triangles into four linear ones at their mid-side nodes."""
-    a, b, c, ab, bc, ca = cells.T
-    parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-    return np.concatenate([np.column_stack(part) for part in parts])
+    return float(mean[order][np.searchsorted(below, 0.997 * below[-1])])

@@ -2,88 +2,98 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flankfilm.figures.style import COLOURS, figure, legend_above, styled
+from flankfilm.figures.reading import need
+from flankfilm.figures.style import MARK, Style, colours, figure, legend_above, styled
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
-    from flankfilm.stages.sweep import SweepStage
+FREQUENCY = "mesh frequency over natural frequency [-]"
+SPEED = "pinion speed [rpm]"
+SMOOTH = 5000
+"""Most points of a curve that is drawn as a curve; longer ones become pixels, so that files stay small."""
 
-Array = NDArray[np.float64]
+SWEEP = 'run a scene that wants "sweep"'
 
 
-_DIRECTIONS = (COLOURS[5], COLOURS[0])
-
-
-def sweeps(
-    parameter: Array, states: Mapping[str, Array], labels: Mapping[str, Sequence[str]], name: str
-) -> Figure:
-    """Draw the states at tau = 0 of sweeps, and under them the label of each motion.
+def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the states at tau = 0 of the sweeps up and down, and under them the label of each motion.
 
     Parameters
     ----------
-    parameter : ndarray, shape (values,)
-        What was swept, in the unit of `name`.
-    states : mapping
-        Direction to states, shape (values, kept, 2).
-    labels : mapping
-        Direction to labels n-p-q, one a value.
-    name : str
-        Axis title with unit.
+    results : xarray.Dataset
+        Of a run that wants ``sweep``; over rpm where the scene has a scale, else over the frequency.
+    style : mapping, optional
+        rcParams that overrule the house's.
     """
-    with styled():
+    need(results, SWEEP, "sweep_frequency", "sweep_up", "sweep_down")
+    fast = "sweep_speed_rpm" in results
+    parameter = results["sweep_speed_rpm" if fast else "sweep_frequency"].values
+    rows = {d: [str(n) for n in results[f"sweep_{d}_label"].values] for d in ("up", "down")}
+    with styled(style):
         drawn = figure(height=4.6)
         upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
+        pair = colours(6)[5], colours(1)[0]
         # the larger dots lie below, so that both show where the sweeps agree
-        for (direction, points), colour, size in zip(states.items(), _DIRECTIONS, (3.4, 1.3), strict=False):
-            x = np.repeat(parameter, points.shape[1])
-            upper.plot(
-                x,
-                points[:, :, 0].ravel(),
-                ".",
-                color=colour,
-                markersize=size,
-                label=direction,
-                rasterized=True,
-            )
+        for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=True):
+            points = results[f"sweep_{direction}"].values
+            x, y = np.repeat(parameter, points.shape[1]), points[:, :, 0].ravel()
+            upper.plot(x, y, ".", color=colour, markersize=size, rasterized=True)
+            upper.plot([], [], ".", color=colour, markersize=8, label=direction)
         upper.set(ylabel="displacement at tau = 0 [-]")
         legend_above(drawn, upper)
-        names = _most_frequent([label for row in labels.values() for label in row], 8)
-        for row, colour, shift in zip(labels.values(), _DIRECTIONS, (0.12, -0.12), strict=False):
-            height = [names.index(label) if label in names else len(names) for label in row]
-            lower.plot(
-                parameter, np.asarray(height) + shift, ".", color=colour, markersize=2, rasterized=True
-            )
-        rest = ["other"] if any(label not in names for row in labels.values() for label in row) else []
+        names = _most_frequent([label for row in rows.values() for label in row], 8)
+        for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=True):
+            height = np.array([names.index(label) if label in names else len(names) for label in row])
+            lower.plot(parameter, height + shift, ".", color=colour, markersize=2, rasterized=True)
+        rest = ["other"] if any(label not in names for row in rows.values() for label in row) else []
         lower.set_yticks(range(len(names) + len(rest)), [*names, *rest])
         lower.margins(y=0.15)
-        lower.set(xlabel=name, ylabel="motion n-p-q")
+        lower.set(xlabel=SPEED if fast else FREQUENCY, ylabel="motion n-p-q")
         lower.invert_yaxis()
     return drawn
 
 
-def portraits(stage: SweepStage) -> Figure:
-    """Draw phase portraits with their Poincaré points and the edges of the backlash."""
-    motions = stage.portraits
-    columns = min(3, max(1, len(motions)))
-    rows = -(-len(motions) // columns)
-    with styled():
+def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw phase portraits with their Poincaré points and the edges of the backlash.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``sweep``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, SWEEP, "portrait_motion", "portrait_displacement", "portrait_section", "half_backlash")
+    count = results["portrait_motion"].size
+    columns = min(3, count)
+    rows = -(-count // columns)
+    edge = float(results["half_backlash"])
+    of_sample, of_point = results["portrait_of_sample"].values, results["portrait_of_point"].values
+    with styled(style):
         drawn = figure(height=2.6 * rows + 0.3)
         grid = drawn.subplots(rows, columns, squeeze=False)
-        for axes in grid.ravel()[len(motions) :]:
+        for axes in grid.ravel()[count:]:
             axes.set_axis_off()
-        for axes, motion in zip(grid.ravel(), motions, strict=False):
-            axes.plot(motion.displacement, motion.velocity, color=COLOURS[0], linewidth=0.8, rasterized=True)
-            axes.plot(motion.section[:, 0], motion.section[:, 1], "o", color=COLOURS[1], markersize=3.5)
-            for edge in (-stage.half_backlash, stage.half_backlash):
-                axes.axvline(edge, color="#999999", linewidth=0.8, linestyle=":")
-            axes.set_title(f"{motion.label} at ω = {motion.frequency:.4g}, {motion.direction}", fontsize=8.5)
+        first, second = colours(2)
+        for i, axes in zip(range(count), grid.ravel(), strict=False):
+            mine = of_sample == i
+            x, v = (results[f"portrait_{name}"].values[mine] for name in ("displacement", "velocity"))
+            axes.plot(x, v, color=first, linewidth=0.8, rasterized=x.size > SMOOTH)
+            section = results["portrait_section"].values[of_point == i]
+            axes.plot(section[:, 0], section[:, 1], "o", color=second, markersize=3.5)
+            for at in (-edge, edge):
+                axes.axvline(at, color=MARK, linewidth=0.8, linestyle=":")
+            motion, way = (str(results[f"portrait_{name}"].values[i]) for name in ("motion", "direction"))
+            axes.set_title(
+                f"{motion} at ω = {float(results['portrait_frequency'][i]):.4g}, {way}", fontsize=8.5
+            )
             axes.set(xlabel="displacement X [-]", ylabel="velocity dX/dτ [-]")
     return drawn
 

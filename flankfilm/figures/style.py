@@ -1,10 +1,10 @@
-"""Look of all figures: sizes, colours that survive printing, and the way to SVG text."""
+"""Look of all figures: sizes, colours that survive printing, and the way to files and SVG text."""
 
 from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,12 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#0
 """Okabe and Ito's palette: distinct for colour-blind readers and in grey."""
 
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 1)))
+
+Style = Mapping[str, Any]
+"""Settings of matplotlib's rcParams that go before the house's own."""
+
+MARK = "#999999"
+"""Colour of lines that mark places."""
 
 _RC: dict[Any, Any] = {
     "svg.fonttype": "none",
@@ -39,19 +45,44 @@ _RC: dict[Any, Any] = {
 
 
 @contextmanager
-def styled() -> Iterator[None]:
-    """Draw in the house's style without changing matplotlib's global state for others."""
-    import matplotlib as mpl
+def styled(style: Style | None = None) -> Iterator[None]:
+    """Draw in the house's style without changing matplotlib's global state for others.
 
-    with mpl.rc_context(_RC):
+    Parameters
+    ----------
+    style : mapping, optional
+        rcParams that overrule the house's, such as ``{"font.family": "serif", "figure.figsize": (3.4, 2.2)}``;
+        ``axes.prop_cycle`` gives the curves' colours and dashes.
+    """
+    import matplotlib as mpl
+    from cycler import cycler
+
+    curves = cycler(color=COLOURS) + cycler(linestyle=DASHES)
+    chosen: dict[Any, Any] = {**_RC, "axes.prop_cycle": curves, "figure.figsize": (0.0, 0.0), **(style or {})}
+    with mpl.rc_context(chosen):
         yield
 
 
+def looks(count: int) -> list[dict[str, Any]]:
+    """Give colour and dashes of `count` curves in the style at hand, from the start again where they run out."""
+    import matplotlib as mpl
+
+    known = list(mpl.rcParams["axes.prop_cycle"])
+    return [dict(known[i % len(known)]) for i in range(count)]
+
+
+def colours(count: int) -> list[str]:
+    """Give the colours alone of `count` curves."""
+    return [str(look["color"]) for look in looks(count)]
+
+
 def figure(width: float = 7.0, height: float = 3.2) -> Figure:
-    """Give an empty figure of `width` by `height` inches, free of pyplot's global list."""
+    """Give an empty figure of `width` by `height` inches, or the style's own, free of pyplot's global list."""
+    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(width, height))
+    own = tuple(mpl.rcParams["figure.figsize"])
+    return Figure(figsize=own if min(own) > 0 else (width, height))
 
 
 def legend_above(drawn: Figure, axes: Axes, columns: int = 3) -> None:
@@ -60,19 +91,39 @@ def legend_above(drawn: Figure, axes: Axes, columns: int = 3) -> None:
     drawn.legend(handles, labels, loc="outside upper left", ncols=columns, handlelength=2.6)
 
 
+def from_zero(*panels: Axes) -> None:
+    """Let the vertical axis begin at zero, and end above the data, level ones too."""
+    for axes in panels:
+        axes.set_ylim(0.0, 1.08 * float(axes.dataLim.y1))
+
+
+THEME = {
+    "#0072b2": "--c1", "#d55e00": "--c2", "#009e73": "--c3", "#cc79a7": "--c4", "#56b4e9": "--c5", "#e69f00": "--c6",
+    "#000000": "--ink", "#dddddd": "--grid", "#999999": "--mark", "#777777": "--mark", "#aaaaaa": "--mark",
+    "#555555": "--mark", "#dce9f5": "--shade1", "#f8e6d8": "--shade2", "#bbbbbb": "--band",
+    "#ffffff": "--card",
+}  # fmt: skip
+"""Colours of figures that a page may replace in the dark, as custom properties of its style sheet."""
+
+
 def to_svg(drawn: Figure, prefix: str) -> str:
-    """Return a figure as inline SVG whose ids start with `prefix`.
+    """Return a figure as inline SVG whose ids start with `prefix` and whose colours follow the page.
 
     Inline drawings share one page, and equal ids would make one use the other's clip paths.
     """
     text = io.StringIO()
     with styled():
-        drawn.savefig(text, format="svg", dpi=150, metadata={"Date": None, "Creator": None})
+        drawn.savefig(text, format="svg", dpi=150, transparent=True, metadata={"Date": None, "Creator": None})
     svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r"url\(#", f"url(#{prefix}-", svg)
-    return re.sub(r'href="#', f'href="#{prefix}-', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
+    return re.sub(r"(?<=[:\s])#[0-9a-f]{6}\b", lambda found: _themed(found.group()), svg)
+
+
+def _themed(colour: str) -> str:
+    return f"var({THEME[colour]},{colour})" if colour in THEME else colour
 
 
 def save(drawn: Figure, path: Path) -> None:

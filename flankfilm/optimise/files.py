@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.dataset import write_csv, write_text
+from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf, write_text
 from flankfilm.optimise.run import Optimum
+from flankfilm.study.files import unit_of
 from flankfilm.study.outputs import OUTPUTS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def summary(found: Optimum) -> list[str]:
@@ -58,14 +63,38 @@ def phases(found: Optimum) -> tuple[float, float, float] | None:
     return first, second, 1.0 - spent / whole
 
 
+def dataset(found: Optimum) -> xr.Dataset:
+    """Give every point of an optimisation along ``point``: keys as coordinates, outputs, and which are best."""
+    task, along = found.task, ("point",)
+    points = found.evaluations
+    quantities = {
+        key: Quantity(
+            along, np.asarray([p.values[i] for p in points]), unit_of(key), f"key {key} of the scene"
+        )
+        for i, key in enumerate(task.keys)
+    }
+    for i, name in enumerate(task.outputs):
+        values = [p.result.values[i] for p in points]
+        quantities[name] = Quantity(along, values, OUTPUTS[name].unit, OUTPUTS[name].meaning)
+    best = np.isin(np.arange(len(points)), found.best)
+    fine = np.array([p.tolerance == task.tolerances[1] for p in points])
+    quantities["best"] = Quantity(along, best.astype(np.int8), "1", "1 for the optimum, or for the front")
+    quantities["fine"] = Quantity(along, fine.astype(np.int8), "1", "1 at the scene's own tolerance")
+    quantities["seconds"] = Quantity(along, [p.result.seconds for p in points], "s", "cost of the point")
+    scene = json.dumps(task.raw_scene(points[found.best[0]].values, task.tolerances[1]))
+    attributes = {"title": task.title, "objectives_json": json.dumps(task.objectives), **provenance(scene)}
+    return to_dataset(quantities, attributes).set_coords(list(task.keys))
+
+
 def write_optimum(found: Optimum, folder: Path) -> list[Path]:
-    """Write ``optimum.csv`` (all points of the front), ``optimum.toml`` (the first one's scene) and the figure."""
-    from flankfilm.figures.optimum import optimum
+    """Write all points, the front, the first one's scene, the figure, and a page with all; return the files."""
+    from flankfilm.figures import optimum
     from flankfilm.figures.style import save
+    from flankfilm.report.other_pages import write_optimum_page
 
     task = found.task
     chosen = [found.evaluations[place] for place in found.best]
-    table, scene, picture = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml", "svg"))
+    table, scene, points, picture = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml", "nc", "svg"))
     write_csv(
         table,
         {key: [point.values[i] for point in chosen] for i, key in enumerate(task.keys)}
@@ -73,10 +102,10 @@ def write_optimum(found: Optimum, folder: Path) -> list[Path]:
     )
     raw = task.raw_scene(chosen[0].values, task.tolerances[1])
     write_text(scene, "\n".join(toml(raw)) + "\n")
-    units = {name: OUTPUTS[name].unit for name in task.objectives}
-    fine = np.array([e.tolerance == task.tolerances[1] for e in found.evaluations])
-    save(optimum(found.objectives(), found.best, fine, units), picture)
-    return [table, scene, picture]
+    held = dataset(found)
+    write_netcdf(points, held)
+    save(optimum(held), picture)
+    return [table, scene, points, picture, write_optimum_page(found, held, folder)]
 
 
 def toml(raw: Mapping[str, Any], section: str = "") -> Iterator[str]:
@@ -95,8 +124,6 @@ def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        import json
-
         return json.dumps(value, ensure_ascii=True)
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + " }"

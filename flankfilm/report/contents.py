@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from flankfilm.dataset import provenance, write_text
 from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
 from flankfilm.report import diagram_parts, film_parts, load_parts, mesh_parts, motion_parts, run_parts
-from flankfilm.report.page import Headline, Part, render
+from flankfilm.report.page import Fact, Headline, Part, render
 from flankfilm.report.run_parts import CostRow
-from flankfilm.report.text import percent
+from flankfilm.report.text import percent, seconds
 
 if TYPE_CHECKING:
     from flankfilm.results import Results
@@ -31,8 +31,9 @@ def headlines(results: Results) -> list[Headline]:
         told.append(
             Headline(
                 "greatest root stress, pinion and wheel",
-                " and ".join(largest) + " MPa",
+                " and ".join(largest),
                 f"error {percent(roots.stress.error)}",
+                "MPa",
             )
         )
     if (fourier := values.get("fourier")) is not None:
@@ -52,7 +53,7 @@ def headlines(results: Results) -> list[Headline]:
 
 def summary(results: Results) -> list[str]:
     """Lines for the terminal: headline figures with errors, and the files."""
-    told = [f"{h.name}: {h.text}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    told = [f"{h.name}: {h.told}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
     told += [decision.line for decision in results.decisions]
     if results.plan is not None:
         told.append(results.plan.line)
@@ -70,17 +71,39 @@ def write_report(results: Results) -> Path:
     scene = results.scene
     parts = [part for part in (*_result_parts(results), *_run_parts(results)) if part is not None]
     path = results.folder / "report.html"
-    lead = "Stiffness, film and motion of a spur-gear pair; each number with its error estimate and its cost."
-    write_text(path, render(scene.title or "flankfilm", lead, headlines(results), parts))
+    write_text(path, render(scene.title or "flankfilm", _facts(results), headlines(results), parts))
     return path
 
 
+def _facts(results: Results) -> list[Fact]:
+    """What was computed, how well, and at what cost, in a line."""
+    scene, told = results.scene, []
+    if (pair := results.values.get("pair")) is not None:
+        told.append(
+            Fact(
+                f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth, module {1e3 * pair.module:g} mm, "
+                f"face {1e3 * pair.face_width:g} mm",
+                "geometry",
+            )
+        )
+        if scene.operating is not None:
+            torque, speed = scene.operating.pinion_torque_Nm, scene.operating.pinion_speed_rpm
+            at = [
+                f"{value:g} {unit}" for value, unit in ((torque, "N m"), (speed, "rpm")) if value is not None
+            ]
+            told.append(Fact("pinion: " + ", ".join(at)))
+    told.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
+    if count := sum(len(run.warnings) for run in results.runs.values()):
+        told.append(Fact(f"{count} warning{'s' if count > 1 else ''}", "decisions"))
+    return told
+
+
 def _result_parts(results: Results) -> list[Part | None]:
-    values, scene = results.values, results.scene
+    values, scene, data = results.values, results.scene, results.dataset
     pair, cycle = values.get("pair"), final_cycle(results)
     parts: list[Part | None] = []
     if pair is not None:
-        parts.append(mesh_parts.geometry(pair))
+        parts.append(mesh_parts.geometry(pair, data))
     if cycle is not None and pair is not None:
         film = values.get("film")
         cycles = [cycle]
@@ -89,26 +112,26 @@ def _result_parts(results: Results) -> list[Part | None]:
         cycles += values.get("other cycles", ())
         changes = {} if film is None else {"secant": film.change_secant, "tangent": film.change_tangent}
         parts.append(
-            mesh_parts.stiffness(pair, values.get("closed forms"), cycles, changes, _model_note(results))
+            mesh_parts.stiffness(values.get("closed forms"), cycles, changes, _model_note(results), data)
         )
         if film is not None:
-            parts.append(film_parts.film(pair, film, values["dry cycle"], scene.tolerance))
+            parts.append(film_parts.film(film, values["dry cycle"], data, scene.tolerance))
     if pair is not None and (torques := values.get("torques")) is not None:
-        parts.append(load_parts.over_torque(torques, pair.face_width))
+        parts.append(load_parts.over_torque(torques, pair.face_width, data))
     if (whole := values.get("revolution")) is not None:
-        parts.append(load_parts.revolution(whole))
+        parts.append(load_parts.revolution(whole, data))
     if (roots := values.get("root stress")) is not None:
-        parts.append(load_parts.root_stress(roots))
+        parts.append(load_parts.root_stress(roots, data))
     if (fields := values.get("fields")) is not None:
-        parts.append(mesh_parts.fields(fields))
+        parts.append(mesh_parts.fields(fields, data))
     if (fourier := values.get("fourier")) is not None:
-        parts.append(motion_parts.fourier(fourier, cycle, pair.face_width if pair is not None else None))
+        parts.append(motion_parts.fourier(fourier, data))
     if (scaling := values.get("scaling")) is not None:
         parts.append(motion_parts.scaling(scaling))
         if (sweep := values.get("sweep")) is not None:
-            parts.append(motion_parts.sweep(sweep))
+            parts.append(motion_parts.sweep(sweep, data))
         if (diagram := values.get("diagram")) is not None:
-            parts.append(diagram_parts.diagram(diagram))
+            parts.append(diagram_parts.diagram(diagram, data))
     return parts
 
 

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures import diagram as diagram_figures
-from flankfilm.report.page import Headline, Part, Table, drawing
+from flankfilm import figures
+from flankfilm.report.page import Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from dynamics import Stretch
     from flankfilm.stages.diagram import DiagramStage
 
@@ -28,12 +30,13 @@ def headline(stage: DiagramStage) -> Headline:
     errors = [j.error for j in stage.jumps if j.budget]
     return Headline(
         "jump speeds",
-        ", ".join(at) + f" {unit}{more}",
+        ", ".join(at) + more,
         f"error up to {percent(max(errors))}" if errors else "",
+        unit,
     )
 
 
-def diagram(stage: DiagramStage) -> Part:
+def diagram(stage: DiagramStage, results: xr.Dataset) -> Part:
     """Draw the diagram and list ranges, jumps and what they depend on."""
     found, unit = stage.diagram, "rpm" if stage.rpm_per_frequency else "-"
     tables = [
@@ -63,9 +66,9 @@ def diagram(stage: DiagramStage) -> Part:
             for name, jumps in stage.variants.items()
         )
         tables.append(Table(("stiffness, mean over the scene's", f"jumps of period 1 at [{unit}]"), rows))
-    drawn = drawing(
-        diagram_figures.branches(stage),
-        "diagram",
+    drawn = picture(
+        figures.diagram,
+        results,
         "Every branch of periodic motions found: stable solid, unstable dashed, special points marked; the "
         "greatest force of stable motions of periods 1 and 2 over the mean force.",
     )

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures import film as film_figures
-from flankfilm.report.mesh_parts import path_marks
-from flankfilm.report.page import Drawing, Headline, Part, Table, drawing
+from flankfilm import figures
+from flankfilm.report.page import Drawing, Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flankfilm.mesh_stiffness import MeshStiffness
     from flankfilm.stages.film import FilmStage
-    from gears import GearPair
 
 
-def film(pair: GearPair, stage: FilmStage, dry: MeshStiffness, tolerance: float) -> Part:
+def film(stage: FilmStage, dry: MeshStiffness, results: xr.Dataset, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
     verdict = (
         f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
@@ -41,45 +40,31 @@ def film(pair: GearPair, stage: FilmStage, dry: MeshStiffness, tolerance: float)
         "film",
         "Oil film",
         (verdict, *_supply(stage), *_mixed(stage)),
-        tuple(_figures(pair, stage, dry)),
+        tuple(_figures(stage, results)),
         tuple(tables),
         (rounds, "Steady, isothermal, " + {"flooded": "fully flooded."}.get(stage.supply, "starved.")),
     )
 
 
-def _figures(pair: GearPair, stage: FilmStage, dry: MeshStiffness) -> list[Drawing]:
-    position, marks = stage.rho1 - pair.points.A, path_marks(pair)
-    along = film_figures.film_along_path(position, stage.central, stage.minimum, stage.hertz_pressure, marks)
+def _figures(stage: FilmStage, results: xr.Dataset) -> list[Drawing]:
     told = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
-    figures = [drawing(along, "filmpath", told)]
-    shares = {
-        "central film over flooded": stage.starvation,
-        "film ratio Lambda": stage.film_ratio,
-        "asperities' share of the load": stage.asperity_share,
-    }
-    known = {name: values for name, values in shares.items() if values is not None}
-    if known:
+    drawn = [picture(figures.film_along_path, results, told)]
+    if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
         told = "How far the contact is starved and how much its asperities carry, along the path of contact."
-        figures.append(drawing(film_figures.shares_along_path(position, known, marks), "filmshares", told))
+        drawn.append(picture(figures.film_shares, results, told))
     if stage.profiles:
         told = (
             "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
             "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
         )
-        figures.append(drawing(film_figures.film_profiles(stage.profiles), "filmprofile", told))
+        drawn.append(picture(figures.film_profiles, results, told))
     if stage.otherwise:
         told = (
             "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
             "layer stayed when the load changes."
         )
-        held = film_figures.stiffness_changes(starved_cycles(stage), dry)
-        figures.append(drawing(held, "filmheld", told))
-    return figures
-
-
-def starved_cycles(stage: FilmStage) -> tuple[MeshStiffness, ...]:
-    """Mesh with a starved film as it is, flooded, and with the other of meniscus and layer held."""
-    return (replace(stage.cycle, label=_as_it_is(stage)), *stage.otherwise.values())
+        drawn.append(picture(figures.film_changes, results, told))
+    return drawn
 
 
 def _definitions(stage: FilmStage) -> Table:
@@ -163,9 +148,9 @@ def headlines(stage: FilmStage) -> list[Headline]:
     thinnest = int(np.argmin(stage.minimum))
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
     told = [
-        Headline("least film on the path", f"{1e6 * stage.minimum[thinnest]:.3g} µm", note),
+        Headline("least film on the path", f"{1e6 * stage.minimum[thinnest]:.3g}", note, "µm"),
         Headline(
-            "what the film changes", f"{100 * stage.change_secant:+.2f} %", "of the mean secant stiffness"
+            "what the film changes", f"{100 * stage.change_secant:+.2f}", "of the mean secant stiffness", "%"
         ),
     ]
     if stage.starvation is not None:

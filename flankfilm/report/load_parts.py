@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.figures import loads as figures
-from flankfilm.load_outputs import passing
-from flankfilm.report.page import Part, Table, drawing
+from flankfilm import figures
+from flankfilm.report.page import Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from fem import MeshCycle
     from flankfilm.stages.loads import TorqueStage
     from flankfilm.stages.roots import RootStage
 
 
-def root_stress(stage: RootStage) -> Part:
+def root_stress(stage: RootStage, results: xr.Dataset) -> Part:
     """Stress at the roots by finite elements, beside ISO 6336-3."""
     gears = {"pinion": stage.stress.pinion, "wheel": stage.stress.wheel}
-    nominal = {} if stage.iso is None else dict(zip(gears, stage.iso.stresses, strict=True))
     rows: list[tuple[str, ...]] = []
     for name, gear in gears.items():
         for what, peak in (("tension", gear.greatest_tension), ("compression", gear.greatest_compression)):
@@ -55,10 +55,8 @@ def root_stress(stage: RootStage) -> Part:
         "Stress along the fillets of one tooth as it passes through the mesh: largest under the loaded flank, least "
         "on the other side."
     )
-    picture = drawing(
-        figures.root_stress({name: passing(gear) for name, gear in gears.items()}, nominal), "roots", caption
-    )
-    return Part("roots", "Root stress", figures=(picture,), tables=tuple(tables), notes=tuple(notes))
+    drawn = picture(figures.root_stress, results, caption)
+    return Part("roots", "Root stress", figures=(drawn,), tables=tuple(tables), notes=tuple(notes))
 
 
 def _iso(iso: Any) -> Table:
@@ -71,7 +69,7 @@ def _iso(iso: Any) -> Table:
     return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), tuple(rows))
 
 
-def over_torque(stage: TorqueStage, face_width: float) -> Part:
+def over_torque(stage: TorqueStage, face_width: float, results: xr.Dataset) -> Part:
     """Stiffness and transmission error over torque."""
     scale = 1e-9 / face_width
     rows = tuple(
@@ -98,22 +96,22 @@ def over_torque(stage: TorqueStage, face_width: float) -> Part:
         "first harmonic over the mean",
     )
     caption = "Mean stiffness and transmission error over torque, without film."
-    picture = drawing(figures.over_torque(stage, face_width), "torques", caption)
+    drawn = picture(figures.over_torque, results, caption)
     notes = (f"Left out: {stage.message}",) if stage.message else ()
-    return Part("torques", "Torque", figures=(picture,), tables=(Table(heads, rows),), notes=notes)
+    return Part("torques", "Torque", figures=(drawn,), tables=(Table(heads, rows),), notes=notes)
 
 
-def revolution(cycle: MeshCycle) -> Part:
+def revolution(cycle: MeshCycle, results: xr.Dataset) -> Part:
     """Transmission error tooth by tooth."""
     loaded, unloaded = cycle.transmission_error, cycle.unloaded_transmission_error
     caption = (
         "Transmission error tooth by tooth, with pitch deviations where the scene gives them, without film; positive "
         "when the wheel lags."
     )
-    picture = drawing(figures.revolution(cycle.position, loaded, unloaded), "revolution", caption)
+    drawn = picture(figures.revolution, results, caption)
     rows = (
         ("under load", number(1e6 * float(np.ptp(loaded)))),
         ("without load", number(1e6 * float(np.ptp(unloaded)))),
     )
     table = Table(("transmission error", "peak to peak [µm]"), rows)
-    return Part("revolution", "Revolution", figures=(picture,), tables=(table,), notes=(cycle.message,))
+    return Part("revolution", "Revolution", figures=(drawn,), tables=(table,), notes=(cycle.message,))

@@ -7,27 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.figures import gear as gear_figures
-from flankfilm.figures import stiffness as stiffness_figures
+from flankfilm import figures
 from flankfilm.mesh_stiffness import MeshStiffness
-from flankfilm.report.page import Headline, Part, Table, drawing
+from flankfilm.report.page import Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import xarray as xr
 
     from flankfilm.stages.closed_forms import SinglePairs
     from flankfilm.stages.fields import FieldsStage
     from gears import GearPair
 
 
-def path_marks(pair: GearPair) -> dict[str, float]:
-    """Points A to E as travel from A [m]."""
-    points = pair.points
-    return {name: getattr(points, name) - points.A for name in "ABCDE"}
-
-
-def geometry(pair: GearPair) -> Part:
+def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     """Geometry with drawing and table."""
     rows = [
         ("teeth", *(str(g.teeth) for g in (pair.pinion, pair.wheel))),
@@ -59,9 +54,9 @@ def geometry(pair: GearPair) -> Part:
         "geometry",
         "Geometry",
         figures=(
-            drawing(
-                gear_figures.mesh(pair),
-                "mesh",
+            picture(
+                figures.gears_in_mesh,
+                results,
                 "The pair in mesh at the pitch point, with the path of contact A to E.",
             ),
         ),
@@ -73,38 +68,25 @@ def geometry(pair: GearPair) -> Part:
 
 
 def stiffness(
-    pair: GearPair,
     single: SinglePairs | None,
     cycles: list[MeshStiffness],
     changes: Mapping[str, float],
     note: str,
+    results: xr.Dataset,
 ) -> Part:
     """Stiffness of all models on one axis, load share and transmission error."""
-    figures = [
-        drawing(
-            stiffness_figures.mesh_cycles(cycles, pair.face_width),
-            "cycles",
-            "Mesh stiffness (secant) over two base pitches, all models on one axis.",
-        ),
-        drawing(
-            stiffness_figures.load_share(cycles[0]), "share", f"Load share of a pair: {cycles[0].label}."
-        ),
-        drawing(
-            stiffness_figures.transmission_error(cycles), "error", "Deflection along the line of action."
-        ),
-    ]
+    told = {
+        figures.mesh_stiffness: "Mesh stiffness (secant) over two base pitches, all models on one axis.",
+        figures.load_share: f"Load share of a pair: {cycles[0].label}.",
+        figures.transmission_error: "Deflection along the line of action.",
+    }
+    drawn = [picture(draw, results, caption) for draw, caption in told.items()]
     if single is not None:
-        figures.insert(
-            0,
-            drawing(
-                stiffness_figures.single_pairs(
-                    single.position, single.curves, path_marks(pair), pair.face_width
-                ),
-                "single",
-                "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up.",
-            ),
+        caption = (
+            "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up."
         )
-    scale = 1e-9 / pair.face_width
+        drawn.insert(0, picture(figures.single_pairs, results, caption))
+    scale = 1e-9 / float(results["face_width"])
     rows = tuple(
         (
             cycle.label,
@@ -136,9 +118,7 @@ def stiffness(
         "The error of a closed form against the real tooth is unknown until it is compared with finite "
         "elements; the column shows numerical error alone."
     )
-    return Part(
-        "stiffness", "Mesh stiffness", figures=tuple(figures), tables=tuple(tables), notes=tuple(notes)
-    )
+    return Part("stiffness", "Mesh stiffness", figures=tuple(drawn), tables=tuple(tables), notes=tuple(notes))
 
 
 def iso_table(iso: Any) -> Table:
@@ -151,16 +131,16 @@ def iso_table(iso: Any) -> Table:
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 
 
-def fields(stage: FieldsStage) -> Part:
+def fields(stage: FieldsStage, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
     return Part(
         "fields",
         "Loaded teeth",
         figures=(
-            drawing(
-                gear_figures.von_mises(stage),
-                "mises",
+            picture(
+                figures.tooth_stress,
+                results,
                 "Von Mises stress with a pair at the pitch point. The scale leaves out the highest 0.3 % of the "
                 "pictured area, which lies under the contacts.",
             ),
@@ -179,13 +159,15 @@ def headlines(cycle: MeshStiffness, face_width: float) -> list[Headline]:
     return [
         Headline(
             "mean mesh stiffness (secant)",
-            f"{scale * cycle.secant.mean():.4g} N/(mm µm)",
+            f"{scale * cycle.secant.mean():.4g}",
             f"error {percent(cycle.mean_error)}, {cycle.label}",
+            "N/(mm µm)",
         ),
         Headline(
             "mean mesh stiffness (tangent)",
-            f"{scale * cycle.tangent.mean():.4g} N/(mm µm)",
+            f"{scale * cycle.tangent.mean():.4g}",
             "for small vibration",
+            "N/(mm µm)",
         ),
-        Headline("loaded transmission error", f"{1e6 * te:.3g} µm", "peak to peak"),
+        Headline("loaded transmission error", f"{1e6 * te:.3g}", "peak to peak", "µm"),
     ]

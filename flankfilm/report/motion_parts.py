@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures import motion as motion_figures
-from flankfilm.figures import stiffness as stiffness_figures
-from flankfilm.report.page import Drawing, Part, Table, drawing
+from flankfilm import figures
+from flankfilm.report.page import Drawing, Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
-    from flankfilm.mesh_stiffness import MeshStiffness
+    import xarray as xr
+
     from flankfilm.stages.motion import FourierStage, ScalingStage
     from flankfilm.stages.sweep import SweepStage
 
 
-def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float | None) -> Part:
+def fourier(stage: FourierStage, results: xr.Dataset) -> Part:
     """Fourier stiffness with its remainder."""
     series = stage.stiffness
     unit = "N/m" if stage.fit is not None or series.mean != 1.0 else "-"
@@ -25,22 +25,14 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
     )
-    figures: tuple[Drawing, ...] = ()
+    drawn: tuple[Drawing, ...] = ()
     notes: tuple[str, ...] = ("Phases refer to tau = 0, the instant when a pair is at A.",)
-    if stage.fit is not None and cycle is not None and face_width is not None:
-        harmonics = np.asarray(stage.fit.harmonics[:12])
-        order = f"order {len(series.amplitudes)}"
-        fits = {f"{stage.kind}, {order}": stage.fit}
-        if stage.other is not None:
-            fits[f"{'tangent' if stage.kind == 'secant' else 'secant'}, {order}"] = stage.other
-        figures = (
-            drawing(
-                stiffness_figures.fourier(cycle, fits, harmonics, face_width),
-                "fourier",
-                f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples "
-                "over the mean.",
-            ),
+    if stage.fit is not None:
+        caption = (
+            f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples "
+            "over the mean."
         )
+        drawn = (picture(figures.fourier, results, caption),)
         notes = (
             *notes,
             f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the "
@@ -54,7 +46,7 @@ def fourier(stage: FourierStage, cycle: MeshStiffness | None, face_width: float 
         "fourier",
         "Fourier stiffness",
         (f"Mean {number(series.mean, 6)} {unit}.",),
-        figures,
+        drawn,
         (Table(heads, rows),),
         notes,
     )
@@ -66,28 +58,16 @@ def scaling(stage: ScalingStage) -> Part:
     return Part("scaling", "Physical and dimensionless", tables=(Table(heads, stage.rows()),))
 
 
-def sweep(stage: SweepStage) -> Part:
+def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    if stage.speed_rpm is None:
-        parameter, name = stage.frequency, "mesh frequency over natural frequency [-]"
-    else:
-        parameter, name = stage.speed_rpm, "pinion speed [rpm]"
-    figures = [
-        drawing(
-            motion_figures.sweeps(parameter, stage.states, stage.labels, name),
-            "sweep",
-            "States at tau = 0, swept up and down; where the two differ, motions coexist. "
-            "n-p-q: n mesh periods, p losses of contact, q back-flank contacts.",
-        )
-    ]
+    caption = (
+        "States at tau = 0, swept up and down; where the two differ, motions coexist. "
+        "n-p-q: n mesh periods, p losses of contact, q back-flank contacts."
+    )
+    drawn = [picture(figures.sweep, results, caption)]
     if stage.portraits:
-        figures.append(
-            drawing(
-                motion_figures.portraits(stage),
-                "portraits",
-                "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash.",
-            )
-        )
+        caption = "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash."
+        drawn.append(picture(figures.portraits, results, caption))
     notes = [
         f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a "
         f"period; {stage.periods:,} periods were followed.",
@@ -102,4 +82,4 @@ def sweep(stage: SweepStage) -> Part:
         notes.insert(
             0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
         )
-    return Part("motion", "Motion", figures=tuple(figures), notes=tuple(notes))
+    return Part("motion", "Motion", figures=tuple(drawn), notes=tuple(notes))

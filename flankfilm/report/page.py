@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from typing import TYPE_CHECKING
@@ -10,24 +11,39 @@ from typing import TYPE_CHECKING
 from flankfilm.figures.style import to_svg
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure as inline SVG, with its caption."""
+    """A figure as inline SVG, with its caption and the name of the function that draws it."""
 
     svg: str
     caption: str
+    function: str
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text cells; the first column is left-aligned, numbers right."""
+    """A table of text cells; the first column and columns of words are left-aligned, numbers right."""
 
     heads: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """Class of each column: "f" for the first, "t" for words, "n" for numbers."""
+        columns = zip(*self.rows, strict=True) if self.rows else [()] * len(self.heads)
+        return tuple("f" if i == 0 else _side(column) for i, column in enumerate(columns))
+
+
+def _side(column: Sequence[str]) -> str:
+    """Words where most cells that hold something do not begin like a number."""
+    told = [cell for cell in column if cell not in ("", "-", "unknown")]
+    words = sum(not re.match(r"[-+±.]?\d", cell) for cell in told)
+    return "t" if 2 * words > len(told) else "n"
 
 
 @dataclass(frozen=True)
@@ -52,25 +68,45 @@ class Headline:
     name : str
         What it is.
     text : str
-        Value with unit.
+        Value.
     note : str
         Error estimate and how it came about.
+    unit : str
+        Of the value; empty for pure numbers.
     """
 
     name: str
     text: str
     note: str = ""
+    unit: str = ""
+
+    @property
+    def told(self) -> str:
+        """Value with unit."""
+        return f"{self.text} {self.unit}".strip()
 
 
-def drawing(figure: Figure, name: str, caption: str) -> Drawing:
-    """Inline a figure; `name` must be unique on the page."""
-    return Drawing(to_svg(figure, name), caption)
+@dataclass(frozen=True)
+class Fact:
+    """A short statement under the title, with the anchor of the section that tells more, or empty."""
+
+    text: str
+    anchor: str = ""
 
 
-def render(title: str, lead: str, headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
+def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: str) -> Drawing:
+    """Draw results with one of `flankfilm.figures` for the page; its name becomes the figure's id."""
+    return Drawing(to_svg(draw(results), draw.__name__), caption, f"flankfilm.figures.{draw.__name__}")
+
+
+def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
     """Return the page's HTML."""
     import jinja2
 
     source = resources.files("flankfilm.report").joinpath("report.html.j2").read_text(encoding="utf-8")
-    environment = jinja2.Environment(autoescape=True, trim_blocks=True, undefined=jinja2.StrictUndefined)
-    return environment.from_string(source).render(title=title, lead=lead, headlines=headlines, sections=parts)
+    environment = jinja2.Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+    )
+    return environment.from_string(source).render(
+        title=title, facts=facts, headlines=headlines, sections=parts
+    )

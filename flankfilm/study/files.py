@@ -21,7 +21,7 @@ def dataset(found: StudyResults) -> xr.Dataset:
     plan = found.plan
     columns = {key: np.asarray([row[i] for row in plan.rows]) for i, key in enumerate(plan.keys)}
     quantities = {
-        key: Quantity(("row",), values, _unit_of(key), f"key {key} of the scene")
+        key: Quantity(("row",), values, unit_of(key), f"key {key} of the scene")
         for key, values in columns.items()
     }
     for i, name in enumerate(plan.outputs):
@@ -36,7 +36,7 @@ def dataset(found: StudyResults) -> xr.Dataset:
     return to_dataset(quantities, attributes).set_coords(list(plan.keys))
 
 
-def _unit_of(key: str) -> str:
+def unit_of(key: str) -> str:
     """Unit that a scene's key carries, "1" where it carries none."""
     last = key.rpartition(".")[2]
     for suffix, unit in _UNITS.items():
@@ -60,18 +60,20 @@ _UNITS = {
 
 
 def write_study(found: StudyResults, folder: Path) -> list[Path]:
-    """Write ``study.nc`` and, where numbers vary, ``study.svg``; return the files."""
-    from flankfilm.figures.study import study
+    """Write ``study.nc``, ``study.svg`` where numbers vary, and a page with all; return the files."""
+    from flankfilm.figures import study
+    from flankfilm.figures.studies import varied_numbers
     from flankfilm.figures.style import save
+    from flankfilm.report.other_pages import write_study_page
 
     files = [folder / "study.nc"]
     content = dataset(found)
     write_netcdf(files[0], content)
-    drawn = study(content, found.plan.keys[: found.plan.varied], found.plan.outputs)
-    if drawn is not None:
+    keys = found.plan.keys[: found.plan.varied]
+    if varied_numbers(content, keys):
         files.append(folder / "study.svg")
-        save(drawn, files[-1])
-    return files
+        save(study(content, keys, found.plan.outputs), files[-1])
+    return [*files, write_study_page(found, content, folder)]
 
 
 def summary(found: StudyResults) -> list[str]:

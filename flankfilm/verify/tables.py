@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.dataset import write_csv
+from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
+from flankfilm.picture_outputs import geometry_quantities
 from flankfilm.verify.compare import UNITS, Difference, Verification
 from flankfilm.verify.models import Curves
 
 if TYPE_CHECKING:
+    import xarray as xr
     from rich.table import Table
+
+    from flankfilm.scene import Scene
 
 
 def table(found: Verification, reference: Curves) -> Table:
@@ -59,14 +63,50 @@ def costs(found: Verification) -> str:
     return " ".join(told)
 
 
-def write_verification(found: Verification, folder: Path) -> list[Path]:
-    """Write the differences and the curves as CSV, and the figure; return the files."""
-    from flankfilm.figures.style import save
-    from flankfilm.figures.verification import verification
+def dataset(found: Verification, scene: Scene) -> xr.Dataset:
+    """Curves of every closed form and of finite elements as one dataset.
 
-    picture = folder / "verify.svg"
-    save(verification(found), picture)
-    return [*_write_tables(found, folder), picture]
+    Parameters
+    ----------
+    found : Verification
+    scene : Scene
+        That was verified.
+    """
+    models = [model for model in found.models if model.single.size]
+    quantities = geometry_quantities(found.pair) | {
+        "path_rho1": Quantity(("path",), found.rho1, "m", "curvature radius of the pinion's flank"),
+        "phase": Quantity(
+            ("position",), found.phase, "1", "travel after a pair is at A, over the base pitch"
+        ),
+        "like_for_like": Quantity(
+            (), found.references.index(found.like_for_like), "1", "reference without what closed forms lack"
+        ),
+        "reference_error": Quantity(
+            ("reference",), [c.error or 0.0 for c in found.references], "1", "relative numerical error"
+        ),
+    }
+    for kind, curves in (("reference", found.references), ("model", models)):
+        quantities |= {
+            kind: Quantity((kind,), np.array([c.label for c in curves]), "1", kind),
+            f"{kind}_single": Quantity((kind, "path"), [c.single for c in curves], "N/m", "one pair, secant"),
+            f"{kind}_secant": Quantity((kind, "position"), [c.secant for c in curves], "N/m", "mesh, secant"),
+            f"{kind}_transmission_error": Quantity(
+                (kind, "position"), [c.transmission_error for c in curves], "m", "deflection"
+            ),
+        }
+    return to_dataset(quantities, {"title": scene.title, **provenance(scene.model_dump_json())})
+
+
+def write_verification(found: Verification, scene: Scene, folder: Path) -> list[Path]:
+    """Write curves and differences as netCDF and CSV, the figure, and a page with all; return the files."""
+    from flankfilm.figures import verification
+    from flankfilm.figures.style import save
+    from flankfilm.report.other_pages import write_verification_page
+
+    held, files = dataset(found, scene), [folder / f"verify.{suffix}" for suffix in ("nc", "svg")]
+    write_netcdf(files[0], held)
+    save(verification(held), files[1])
+    return [*_write_tables(found, folder), *files, write_verification_page(found, held, folder)]
 
 
 def _write_tables(found: Verification, folder: Path) -> list[Path]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.figures.style import COLOURS, DASHES, figure, styled
+from flankfilm.figures.style import COLOURS, DASHES, Style, colours, figure, styled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,21 +17,44 @@ FAMILY = 18
 """Most curves of one family; beyond that rows are drawn as points, coloured by the second number."""
 
 
-def study(found: xr.Dataset, keys: Sequence[str], outputs: Sequence[str]) -> Figure | None:
+def study(
+    found: xr.Dataset,
+    keys: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+    *,
+    style: Style | None = None,
+) -> Figure:
     """Draw every output against the first varied number; the other keys make a family of curves.
 
-    Returns
-    -------
-    Figure or None
-        None where no number varies.
+    Parameters
+    ----------
+    found : xarray.Dataset
+        What ``study.nc`` holds.
+    keys : sequence of str, optional
+        Varied keys in the order wished, the first along the axis; all of them unless given.
+    outputs : sequence of str, optional
+        What is drawn, a panel each; all of them unless given.
+    style : mapping, optional
+        rcParams that overrule the house's.
+
+    Raises
+    ------
+    ValueError
+        Where no number varies.
     """
-    numbers = [k for k in keys if np.issubdtype(found[k].dtype, np.number) and np.ptp(found[k].values) > 0]
+    keys = [str(k) for k in found.coords] if keys is None else keys
+    outputs = (
+        [str(n) for n in found.data_vars if n not in ("seconds", "fault")] if outputs is None else outputs
+    )
+    numbers = varied_numbers(found, keys)
     if not numbers:
-        return None
+        raise ValueError(
+            f"no number varies among {', '.join(keys)}: there is nothing to draw the outputs against"
+        )
     others = [k for k in keys if k != numbers[0]]
     columns = min(2, len(outputs))
     lines = -(-len(outputs) // columns)
-    with styled():
+    with styled(style):
         drawn = figure(3.6 * columns, 2.5 * lines + 0.7)
         panels = drawn.subplots(lines, columns, squeeze=False).ravel()
         for axes, name in zip(panels, outputs, strict=False):
@@ -45,6 +68,11 @@ def study(found: xr.Dataset, keys: Sequence[str], outputs: Sequence[str]) -> Fig
     return drawn
 
 
+def varied_numbers(found: xr.Dataset, keys: Sequence[str]) -> list[str]:
+    """Keys among `keys` that are numbers and vary."""
+    return [k for k in keys if np.issubdtype(found[k].dtype, np.number) and np.ptp(found[k].values) > 0]
+
+
 def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], name: str) -> None:
     x, y = found[across].values, found[name].values
     rows = list(zip(*(found[key].values.tolist() for key in others), strict=True)) or [()] * x.size
@@ -55,7 +83,7 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
             points = axes.scatter(x, y, c=shade, s=8, cmap="viridis")
             axes.figure.colorbar(points, ax=axes, label=others[0])
         else:
-            axes.plot(x, y, ".", color=COLOURS[0])
+            axes.plot(x, y, ".", color=colours(1)[0])
     else:
         firsts = list(dict.fromkeys(member[:1] for member in family))
         rests = list(dict.fromkeys(member[1:] for member in family))
@@ -65,7 +93,7 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
             axes.plot(
                 x[mine],
                 y[mine],
-                color=COLOURS[firsts.index(member[:1]) % len(COLOURS)],
+                color=colours(len(COLOURS))[firsts.index(member[:1]) % len(COLOURS)],
                 linestyle=DASHES[rests.index(member[1:]) % len(DASHES)],
                 marker=".",
                 label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
