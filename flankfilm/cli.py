@@ -315,6 +315,11 @@ for _function, _name, _help in (
     app.command(f"flankfilm.exchange.commands:{_function}", name=_name, help=_help)
 
 
+app.command(
+    "flankfilm.figures.commands:animate", name="animate", help="Draw the mesh cycle in RESULTS, deformed."
+)
+
+
 def parse_tolerance(text: str) -> float:
     """Read a tolerance such as ``0.5%`` or ``0.005``.
 

@@ -67,7 +67,9 @@ def geometry_quantities(pair: GearPair) -> dict[str, Quantity]:
         "gear_centre": Quantity(
             ("gear", "axis"), [np.zeros(2), placed.wheel_centre], "m", "axes of pinion and wheel"
         ),
+        "base_radius": Quantity(("gear",), pair.base_radii, "m", "radius of the base circle"),
         "bore_radius": Quantity(("gear",), pair.bore_radii, "m", "radius of the bore"),
+        "module": Quantity((), pair.module, "m", "module"),
         "face_width": Quantity((), pair.face_width, "m", "face width"),
         "base_pitch": Quantity((), pair.base_pitch, "m", "base pitch"),
         "contact_ratio": Quantity((), pair.contact_ratio, "1", "contact ratio"),

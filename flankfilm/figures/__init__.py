@@ -4,6 +4,7 @@ The report and the documentation draw with the same functions. ``results.nc``, `
 ``verify.nc`` hold all that they need, so that any figure can be drawn again in a style of one's own.
 """
 
+from flankfilm.figures.animation import animate_cycle, tooth_picture
 from flankfilm.figures.diagrams import diagram
 from flankfilm.figures.film import (
     film_along_path,
@@ -22,6 +23,7 @@ from flankfilm.figures.studies import study
 from flankfilm.figures.verified import verification
 
 __all__ = [
+    "animate_cycle",
     "diagram",
     "film_along_path",
     "film_changes",
@@ -41,6 +43,7 @@ __all__ = [
     "single_pairs",
     "study",
     "sweep",
+    "tooth_picture",
     "tooth_stress",
     "transmission_error",
     "verification",

@@ -72,7 +72,7 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     need(results, SWEEP, "portrait_motion", "portrait_displacement", "portrait_section", "half_backlash")
     count = results["portrait_motion"].size
-    columns = min(3, count)
+    columns = max(2, min(3, count))
     rows = -(-count // columns)
     edge = float(results["half_backlash"])
     of_sample, of_point = results["portrait_of_sample"].values, results["portrait_of_point"].values

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.figures.reading import need
+from flankfilm.figures.reading import need, titled
 from flankfilm.figures.style import Style, colours, figure, styled
 
 if TYPE_CHECKING:
@@ -46,11 +46,11 @@ def optimum(found: xr.Dataset, *, style: Style | None = None) -> Figure:
                 markersize=11,
                 label="best",
             )
-            panels[0].set(xlabel="evaluation", ylabel=_words(found, names[0]))
+            panels[0].set(xlabel="evaluation", ylabel=titled(found, names[0]))
         for axes, (first, second) in zip(panels, pairs, strict=False):
             _points(axes, found, found[first].values, found[second].values)
             _front(axes, found, first, second, "o-" if len(pairs) == 1 else "o")
-            axes.set(xlabel=_words(found, first), ylabel=_words(found, second))
+            axes.set(xlabel=titled(found, first), ylabel=titled(found, second))
         drawn.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)
     return drawn
 
@@ -76,7 +76,3 @@ def _front(axes: Axes, found: xr.Dataset, first: str, second: str, line: str) ->
         markersize=4,
         label="front",
     )
-
-
-def _words(found: xr.Dataset, name: str) -> str:
-    return f"{name.replace('_', ' ')} [{found[name].attrs['units'].replace('1', '-')}]"

@@ -79,3 +79,21 @@ def mark_path(results: xr.Dataset, panels: Sequence[Axes], named: Axes) -> None:
 def label_of(results: xr.Dataset, name: str) -> str:
     """Model that a variable's ``long_name`` tells after its colon."""
     return str(results[name].attrs["long_name"]).partition(": ")[2]
+
+
+def words(name: str) -> str:
+    """Name of a variable without its unit, as a person writes it."""
+    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_MPa", "_m_per_s"):
+        name = name.removesuffix(unit)
+    return name.replace("_", " ")
+
+
+def unit(results: xr.Dataset, name: str, pure: str = "-") -> str:
+    """Unit of a variable; `pure` for numbers without one."""
+    held = str(results[name].attrs["units"]).replace("um", "µm")
+    return pure if held == "1" else held
+
+
+def titled(results: xr.Dataset, name: str) -> str:
+    """Give a variable's name with its unit, for an axis or the head of a column."""
+    return f"{words(name)} [{unit(results, name)}]"

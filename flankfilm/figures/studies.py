@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.figures.reading import titled
 from flankfilm.figures.style import COLOURS, DASHES, Style, colours, figure, styled
 
 if TYPE_CHECKING:
@@ -98,12 +99,4 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
                 marker=".",
                 label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
             )
-    unit = found[name].attrs["units"]
-    axes.set(xlabel=across, ylabel=_words(name) if unit == "1" else f"{_words(name)} [{unit}]")
-
-
-def _words(name: str) -> str:
-    """Name of an output without its unit."""
-    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_MPa", "_m_per_s"):
-        name = name.removesuffix(unit)
-    return name.replace("_", " ")
+    axes.set(xlabel=across, ylabel=titled(found, name))

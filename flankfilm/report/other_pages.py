@@ -13,6 +13,7 @@ import numpy as np
 
 from flankfilm import figures
 from flankfilm.dataset import write_text
+from flankfilm.figures.reading import titled, unit, words
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, render
 from flankfilm.report.run_parts import inputs
@@ -41,7 +42,7 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
     """
     plan, rows = found.plan, len(found.rows)
     headlines = [
-        Headline(_words(name), *_range(data, name)) for name in plan.outputs if np.isfinite(data[name]).any()
+        Headline(words(name), *_range(data, name)) for name in plan.outputs if np.isfinite(data[name]).any()
     ]
     failed = Counter(row.fault for row in found.failures)
     notes = [f"{count} rows failed: {fault}" for fault, count in failed.most_common(20)]
@@ -57,7 +58,7 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         (str(row.index), *(_cell(v) for v in plan.rows[row.index]), *(number(v, 5) for v in row.values))
         for row in found.rows[:MOST_ROWS]
     ]
-    heads = ("row", *plan.keys, *(f"{_words(n)} [{_unit(data, n)}]" for n in plan.outputs))
+    heads = ("row", *plan.keys, *(titled(data, n) for n in plan.outputs))
     facts = [
         Fact(f"{rows} rows, {plan.design}", "rows"),
         Fact(f"{seconds(float(data['seconds'].sum()))} of work"),
@@ -88,14 +89,14 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     first = dict(zip(task.outputs, chosen[0].result.values, strict=True))
     which = "" if len(chosen) == 1 else "where the first objective is best"
     headlines = [
-        Headline(_words(name), number(first[name], 5), which, _unit(data, name, "")) for name in task.outputs
+        Headline(words(name), number(first[name], 5), which, unit(data, name, "")) for name in task.outputs
     ]
     if len(chosen) == 1:
         headlines += [
             Headline(key, number(value, 6) if isinstance(value, float) else str(value), "at the optimum")
             for key, value in zip(task.keys, chosen[0].values, strict=True)
         ]
-    heads = (*task.keys, *(f"{_words(n)} [{_unit(data, n)}]" for n in task.outputs))
+    heads = (*task.keys, *(titled(data, n) for n in task.outputs))
     cells = [
         (*(_cell(v) for v in point.values), *(number(v, 5) for v in point.result.values))
         for point in chosen[:MOST_ROWS]
@@ -200,18 +201,8 @@ def _range(data: xr.Dataset, name: str) -> tuple[str, str, str]:
     return (
         low if low == high else f"{low} to {high}",
         str(data[name].attrs["long_name"]),
-        _unit(data, name, ""),
+        unit(data, name, ""),
     )
-
-
-def _unit(data: xr.Dataset, name: str, pure: str = "-") -> str:
-    """Unit of an output, `pure` for numbers without one."""
-    unit = str(data[name].attrs["units"]).replace("um", "µm")
-    return pure if unit == "1" else unit
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _cell(value: float | str) -> str:

@@ -1,0 +1,141 @@
+"""Draws the loaded teeth with VTK, in a process of its own: ``python -m flankfilm.figures.rendering``.
+
+A machine without OpenGL ends the process that draws, with a signal rather than an exception; `animation` starts
+this one, and tells what happened to it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from flankfilm.figures.view import View
+
+INK, PAPER = "#1c2126", "#ffffff"
+
+COLOURS = 160
+"""Colours of the scale in a GIF, which can hold 256 in all."""
+
+
+def steps(folder: Path) -> dict[float, dict[str, Path]]:
+    """Files of each position in ``mesh_cycle.pvd``, by the position [base pitches] and the start of their name."""
+    found: dict[float, dict[str, Path]] = {}
+    for entry in ElementTree.parse(folder / "mesh_cycle.pvd").iter("DataSet"):
+        file = folder / str(entry.get("file"))
+        found.setdefault(float(str(entry.get("timestep"))), {})[file.stem.rpartition("_")[0]] = file
+    return dict(sorted(found.items()))
+
+
+def frames(view: View) -> Iterator[Any]:
+    """Draw the positions, each as an array of pixels."""
+    import pyvista as pv
+
+    chosen = steps(Path(view.folder))
+    if not view.seconds:
+        nearest = min(chosen, key=lambda at: abs(at - view.only))
+        chosen = {nearest: chosen[nearest]}
+    plotter = pv.Plotter(off_screen=True, window_size=list(view.size), lighting="none")
+    plotter.set_background(PAPER)
+    plotter.enable_parallel_projection()
+    for at, files in chosen.items():
+        plotter.clear()
+        _draw(plotter, view, at, files)
+        yield plotter.screenshot(return_img=True)
+    plotter.close()
+
+
+def _draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
+    """One position: stress on the deformed teeth, and the forces between them."""
+    import pyvista as pv
+
+    # the pinion turns ahead by the deflection, as much exaggerated as the displacements
+    turn = view.scale * float(np.interp(at, view.phase, view.error)) / view.base_radius
+    for name, angle in (("pinion", turn), ("wheel", 0.0)):
+        gear = pv.read(files[name])
+        near = np.linalg.norm(gear.cell_centers().points[:, :2] - view.centre, axis=1) < 1.7 * view.reach
+        gear = gear.extract_cells(np.flatnonzero(near))
+        ahead = angle * np.column_stack([-gear.points[:, 1], gear.points[:, 0], np.zeros(gear.n_points)])
+        gear.points = gear.points + view.scale * gear["displacement_m"] + ahead
+        gear["stress"] = 1e-6 * gear["von_mises_Pa"]
+        surface = gear.extract_surface(nonlinear_subdivision=1, algorithm="dataset_surface")
+        bar = {
+            "title": "von Mises stress [MPa]", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
+            "fmt": "%.0f", "position_x": 0.3, "position_y": 0.03, "width": 0.4, "height": 0.09,
+            "title_font_size": view.size[1] // 32, "label_font_size": view.size[1] // 36,
+        }  # fmt: skip
+        plotter.add_mesh(
+            surface, scalars="stress", cmap="viridis", clim=(0.0, 1e-6 * view.greatest), lighting=False,
+            show_scalar_bar=name == "pinion", scalar_bar_args=bar if name == "pinion" else None,
+        )  # fmt: skip
+        edges = _outline(surface)
+        if edges.n_cells:
+            plotter.add_mesh(edges, color=INK, line_width=view.size[1] / 400, lighting=False)
+    told, corner = f"displacements x {view.scale:g}", (view.size[1] // 40, view.size[1] - view.size[1] // 15)
+    plotter.add_text(told, position=corner, font_size=view.size[1] // 56, color=PAPER)
+    x, y = view.centre
+    plotter.camera_position = [(x, y, 1.0), (x, y, 0.0), (0.0, 1.0, 0.0)]
+    plotter.camera.parallel_scale = view.reach * view.size[1] / view.size[0]
+
+
+def _outline(surface: Any) -> Any:
+    """Edges of a gear's outline: those of one cell alone, without the ones between cells of different sizes.
+
+    Along the cuts between sectors, and where cells were split towards a contact, edges of one cell lie on longer or
+    shorter ones of others; on the outline they touch others at their ends alone.
+    """
+    joined = surface.clean(tolerance=1e-7, absolute=True)
+    edges = joined.extract_feature_edges(feature_edges=False, manifold_edges=False, non_manifold_edges=False)
+    ends = edges.points[edges.lines.reshape(-1, 3)[:, 1:], :2]
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    square = np.maximum(np.sum(along**2, axis=1), 1e-30)
+    alone = np.ones(len(ends), dtype=bool)
+    for i, middle in enumerate(ends.mean(axis=1)):
+        way = np.clip(np.sum((middle - start) * along, axis=1) / square, 0.0, 1.0)
+        distance = np.sum((middle - start - way[:, None] * along) ** 2, axis=1)
+        distance[i] = np.inf
+        alone[i] = distance.min() > 0.04 * square[i]
+    return edges.extract_cells(np.flatnonzero(alone))
+
+
+def write(view: View) -> None:
+    """Write the picture or the animation."""
+    from PIL import Image
+
+    pictures = [Image.fromarray(np.asarray(pixels)) for pixels in frames(view)]
+    target = Path(view.target)
+    if not view.seconds:
+        pictures[0].save(target)
+        return
+    wait = round(1e3 * view.seconds / len(pictures))
+    if target.suffix == ".gif":
+        palette = _palette()
+        pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+        pictures[0].save(
+            target, append_images=pictures[1:], save_all=True, duration=wait, loop=0, optimize=True
+        )
+    else:
+        pictures[0].save(
+            target, append_images=pictures[1:], save_all=True, duration=wait, loop=0, quality=80, method=4
+        )
+
+
+def _palette() -> Any:
+    """One palette for all frames, so that colours do not flicker: the scale, and greys for text and outlines."""
+    from matplotlib import colormaps
+    from PIL import Image
+
+    scale = colormaps["viridis"](np.linspace(0.0, 1.0, COLOURS))[:, :3]
+    greys = np.repeat(np.linspace(0.1, 1.0, 256 - COLOURS)[:, None], 3, axis=1)
+    holder = Image.new("P", (1, 1))
+    holder.putpalette(np.rint(255 * np.concatenate([scale, greys])).astype(np.uint8).ravel().tolist())
+    return holder
+
+
+if __name__ == "__main__":
+    write(View(**json.load(sys.stdin)))
