@@ -97,6 +97,9 @@ def from_zero(*panels: Axes) -> None:
         axes.set_ylim(0.0, 1.08 * float(axes.dataLim.y1))
 
 
+RASTER = 150
+"""Dots per inch of the parts of a drawing that are pixels."""
+
 THEME = {
     "#0072b2": "--c1", "#d55e00": "--c2", "#009e73": "--c3", "#cc79a7": "--c4", "#56b4e9": "--c5", "#e69f00": "--c6",
     "#000000": "--ink", "#dddddd": "--grid", "#999999": "--mark", "#777777": "--mark", "#aaaaaa": "--mark",
@@ -111,9 +114,13 @@ def to_svg(drawn: Figure, prefix: str) -> str:
 
     Inline drawings share one page, and equal ids would make one use the other's clip paths.
     """
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     text = io.StringIO()
     with styled():
-        drawn.savefig(text, format="svg", dpi=150, transparent=True, metadata={"Date": None, "Creator": None})
+        # savefig would lay the figure out twice
+        drawn.set_dpi(RASTER)
+        FigureCanvasSVG(drawn).print_svg(text, metadata={"Date": None, "Creator": None})
     svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)

@@ -10,6 +10,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,6 +22,15 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 PATIENCE = 60.0
 """Seconds that one command may take."""
 
+START = """import os, sys
+ends = [os.dup(int(end)) for end in sys.argv[1:3]]
+for end, wanted in zip(ends, (3, 4)):
+    os.dup2(end, wanted)
+    os.set_inheritable(wanted, True)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+"""Makes the pipe's ends the file descriptors 3 and 4, where Chromium looks for them."""
+
 
 class Browser:
     """One page of a headless Chromium; what it logs is kept in `logged`."""
@@ -28,12 +38,11 @@ class Browser:
     def __init__(self, executable: str, profile: Path) -> None:
         to_browser, self._commands = os.pipe()
         self._answers, from_browser = os.pipe()
-        # the pipe's ends must be file descriptors 3 and 4 of the browser
-        start = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
         self._process = subprocess.Popen(
-            ["/bin/sh", "-c", start, "sh", executable, "--headless", "--no-sandbox", "--disable-gpu",
-             "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-             "--disable-dev-shm-usage", "--hide-scrollbars", f"--user-data-dir={profile}", "--remote-debugging-pipe"],
+            [sys.executable, "-c", START, str(to_browser), str(from_browser), executable,
+             "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+             "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--hide-scrollbars",
+             f"--user-data-dir={profile}", "--remote-debugging-pipe"],
             pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         os.close(to_browser)
@@ -50,7 +59,9 @@ class Browser:
         """Send one command to the page and return its result."""
         return self._call(method, parameters, self._session)
 
-    def open(self, page: Path, width: int, height: int = 900, dark: bool = False, media: str = "screen") -> None:
+    def open(
+        self, page: Path, width: int, height: int = 900, dark: bool = False, media: str = "screen"
+    ) -> None:
         """Load a file as a screen of a given size and scheme shows it."""
         self.logged.clear()
         phone = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}

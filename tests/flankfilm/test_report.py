@@ -1,0 +1,265 @@
+"""Every figure is drawn from what the files hold; every page opens in a browser, small and large, light and dark."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import re
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from flankfilm import figures
+from flankfilm.cache import Cache
+from flankfilm.figures.style import to_svg
+from flankfilm.optimise.files import dataset as optimum_dataset
+from flankfilm.optimise.run import Evaluation, Optimum
+from flankfilm.optimise.task import read_task
+from flankfilm.outputs import results_dataset, write_data
+from flankfilm.report.contents import write_report
+from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
+from flankfilm.results import Results
+from flankfilm.scene import parse_scene
+from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.engine import Engine
+from flankfilm.study.files import dataset as study_dataset
+from flankfilm.study.plan import StudyFile, plan_of
+from flankfilm.study.row import RowResult
+from flankfilm.study.run import StudyResults
+from flankfilm.verify.tables import dataset as verify_dataset
+
+SCENE = """
+title = "Every picture <b>&amp; one warning"
+wants = ["geometry", "closed-forms", "stiffness", "film", "fourier", "sweep", "diagram", "torques", "revolution",
+         "root-stress", "report"]
+tolerance = 0.05
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 23, bore_mm = 20 }
+wheel = { teeth = 25, bore_mm = 20 }
+backlash_um = 50
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+density_kg_per_m3 = 7850
+[operating]
+pinion_torque_Nm = 200
+pinion_speed_rpm = 2000
+torques_Nm = [100, 200]
+[lubricant]
+viscosity_Pa_s = 0.075
+pressure_viscosity_per_GPa = 19.6
+[film]
+model = "ehl"
+supply = "oil-layer"
+oil_layer_um = 0.2
+[dynamics]
+damping_ratio = 0.05
+error_amplitude_um = 10
+sweep = { speed_rpm = [12000, 20000], points = 9 }
+diagram = { speed_rpm = [16000, 20000], searches = 2, max_period = 1 }
+"""
+PAIR = SCENE[SCENE.index("[pair]") : SCENE.index("[film]")]
+SIMPLE = f'wants = ["stiffness"]\n{PAIR}\n[stiffness]\nmodel = "ishikawa"\npairs = "independent"\n'
+
+OF_A_RUN = (
+    figures.diagram, figures.film_along_path, figures.film_changes, figures.film_profiles, figures.film_shares,
+    figures.film_stiffness, figures.fourier, figures.gears_in_mesh, figures.load_share, figures.mesh_stiffness,
+    figures.over_torque, figures.portraits, figures.revolution, figures.root_stress, figures.single_pairs,
+    figures.sweep, figures.tooth_stress, figures.transmission_error,
+)  # fmt: skip
+OF_OTHERS = {"optimum", "study", "verification"}
+ELSEWHERE = {"animate_cycle", "film_families", "tooth_picture"}
+
+PURE = {"motion n-p-q", "evaluation"}
+"""Titles of axes that have no unit to tell."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """A run with its page, and the pages of what is not a run."""
+
+    results: xr.Dataset
+    others: dict[str, xr.Dataset]
+    pages: dict[str, Path]
+    seconds: float
+
+
+def some_study(folder: Path) -> StudyResults:
+    (folder / "scene.toml").write_text(SIMPLE, encoding="utf-8")
+    raw = {
+        "scene": "scene.toml",
+        "outputs": ["contact_ratio", "transmission_error_um"],
+        "vary": {"pair.module_mm": [1.5, 2.0, 2.5], "operating.pinion_torque_Nm": [100.0, 200.0]},
+    }
+    plan = plan_of(StudyFile.model_validate(raw), folder)
+    rows = [RowResult(i, (1.6 + 0.01 * i, 9.0 - i), 0.1) for i in range(5)]
+    rows.append(RowResult(5, (np.nan, np.nan), 0.1, "the mesh <failed>"))
+    return StudyResults(plan, tuple(rows), 6, 1.0)
+
+
+def some_optimum(folder: Path) -> Optimum:
+    file = folder / "optimum.toml"
+    file.write_text(
+        'title = "Trade-off"\nscene = "scene.toml"\nminimise = ["specific_sliding", "transmission_error_um"]\n'
+        '[vary]\n"pair.pinion.profile_shift" = { from = 0.0, to = 0.2 }\n',
+        encoding="utf-8",
+    )
+    task = read_task(file)
+    found = [
+        Evaluation(task.tolerances[i // 4], (0.02 * i,), RowResult(i, (1.0 + 0.1 * i, 9.0 / (i + 1)), 0.1))
+        for i in range(8)
+    ]
+    return Optimum(task, tuple(found), np.array([4, 5, 6, 7]), 8, 1.0)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    folder = tmp_path_factory.mktemp("report")
+    scene = parse_scene(SCENE)
+    engine = Engine(scene, STAGES, Cache(None))
+    for name in (*goals(scene), "fields"):
+        engine[name]
+    values = engine.results()
+    data = results_dataset(scene, values)
+    write_data(folder, data, {})
+    start = time.perf_counter()
+    run = Results(scene, folder, values, engine.runs, (), 1.0, data)
+    pages = {"run": write_report(run)}
+    seconds = time.perf_counter() - start
+    study, verified = some_study(folder), engine["verification"]
+    others = {"study": study_dataset(study), "verification": verify_dataset(verified, scene)}
+    best = some_optimum(folder)
+    others["optimum"] = optimum_dataset(best)
+    for name in (*others, "none"):
+        (folder / name).mkdir()
+    pages["study"] = write_study_page(study, others["study"], folder / "study")
+    pages["verification"] = write_verification_page(verified, others["verification"], folder / "verification")
+    pages["optimum"] = write_optimum_page(best, others["optimum"], folder / "optimum")
+    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as found:
+        return Made(found.load(), others, pages, seconds)
+
+
+def test_every_function_is_tried_here_or_elsewhere():
+    tried = {draw.__name__ for draw in OF_A_RUN} | OF_OTHERS | ELSEWHERE
+    assert tried == set(figures.__all__)
+
+
+def drawn(made: Made):
+    """Every figure by name, ready to be measured."""
+    for draw in OF_A_RUN:
+        yield draw.__name__, draw(made.results)
+    for name, data in made.others.items():
+        yield name, getattr(figures, name)(data)
+    yield "film_families", figures.film_families({"one": made.results, "the same": made.results})
+
+
+def test_axes_tell_units_legends_cover_no_data_and_nothing_is_cut_off(made):
+    for name, figure in drawn(made):
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        panels = [axes for axes in figure.axes if axes.axison and axes.get_visible()]
+        legends = [*figure.legends, *(axes.get_legend() for axes in panels if axes.get_legend())]
+        for legend, axes in itertools.product(legends, panels):
+            over = legend.get_window_extent(renderer)
+            inside = axes.get_window_extent(renderer)
+            assert not over.shrunk(0.98, 0.98).overlaps(inside), f"{name}: the legend covers data"
+        for axes in panels:
+            for title in (axes.get_xlabel(), axes.get_ylabel()):
+                told = not title or title in PURE or re.search(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", title, re.DOTALL)
+                assert told, f"{name}: {title!r} has no unit"
+            assert axes.get_ylabel() or axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes)
+        whole = figure.get_tightbbox(renderer).padded(-0.02)
+        assert whole.x0 >= -0.01, name
+        assert whole.y0 >= -0.01, name
+        assert whole.x1 <= figure.get_figwidth() + 0.01, name
+        assert whole.y1 <= figure.get_figheight() + 0.01, name
+
+
+def test_curves_are_those_of_the_file(made):
+    results = made.results
+    line = figures.mesh_stiffness(results).axes[0].lines[0]
+    secant = results.lubricated_secant_stiffness.values / 0.040 * 1e-9
+    assert np.allclose(line.get_ydata(), np.tile(secant, 2), rtol=1e-12)
+    series = figures.fourier(results).axes[0].lines[1].get_ydata()
+    assert np.mean(series[:200]) == pytest.approx(secant.mean(), rel=1e-3)
+    film = figures.film_along_path(results).axes[0].lines[1]
+    assert film.get_ydata().min() == pytest.approx(1e6 * float(results.film_minimum_thickness.min()))
+    travel = film.get_xdata()
+    assert travel[0] == pytest.approx(1e3 * float(results.film_rho1[0] - results.path_point_rho1[0]))
+
+
+def test_a_figure_of_the_report_is_drawn_again_from_the_file(made):
+    page = made.pages["run"].read_text(encoding="utf-8")
+    for name in re.findall(r"flankfilm\.figures\.(\w+)", page):
+        assert to_svg(getattr(figures, name)(made.results), name) in page
+
+
+def test_a_style_of_one_s_own_goes_first_and_leaves_no_trace(made):
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    own = figures.mesh_stiffness(
+        made.results,
+        style={
+            "figure.figsize": (3.4, 2.2),
+            "axes.prop_cycle": mpl.cycler(color=["#ff0000"]),
+            "font.size": 6.0,
+        },
+    )
+    assert tuple(own.get_size_inches()) == (3.4, 2.2)
+    assert {line.get_color() for line in own.axes[0].lines} == {"#ff0000"}
+    assert own.axes[0].xaxis.label.get_size() == 6.0
+    assert dict(mpl.rcParams) == before
+
+
+@pytest.mark.parametrize("draw", OF_A_RUN, ids=lambda draw: draw.__name__)
+def test_results_that_lack_something_are_refused_with_a_remedy(draw):
+    empty = xr.Dataset(attrs={"title": "A motion"})
+    with pytest.raises(ValueError, match=r"A motion: no .* to draw; run a scene "):
+        draw(empty)
+
+
+def test_every_function_says_what_it_takes():
+    for name in figures.__all__:
+        told = inspect.getdoc(getattr(figures, name)) or ""
+        assert "Parameters" in told, name
+
+
+def test_pages_are_small_and_soon_written(made):
+    for name, page in made.pages.items():
+        assert page.stat().st_size < 5e6, name
+    assert made.seconds < 60.0  # benchmarks/report_time.py measures; this is a guard against hours
+
+
+EVERY_TEXT = Path(__file__).with_name("page_checks.js").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("width", "dark"), [(360, False), (360, True), (1200, False), (1200, True)])
+def test_pages_in_a_browser(made, browser, width, dark):
+    for name, page in made.pages.items():
+        browser.open(page, width, dark=dark)
+        found = SimpleNamespace(**browser.run(EVERY_TEXT))
+        assert browser.logged == [], name
+        assert found.broken == [], f"{name}: images that do not decode"
+        assert found.doubled == [], f"{name}: ids that are not unique"
+        assert found.astray == [], f"{name}: links and clip paths that lead nowhere"
+        assert found.wide == [], f"{name}: wider than the screen"
+        assert found.faint == [], f"{name}: text of too little contrast"
+        assert found.tiny == [], f"{name}: text too small to read"
+        assert found.figures > 0, name
+        assert found.paper < 0.2 if dark else found.paper > 0.8, f"{name}: the scheme is not followed"
+
+
+def test_print_is_dark_on_light(made, browser):
+    browser.open(made.pages["run"], 800, dark=True, media="print")
+    ink = browser.run("getComputedStyle(document.body).color")
+    assert max(map(int, re.findall(r"\d+", ink)[:3])) < 80
+    assert browser.run("getComputedStyle(document.querySelector('nav')).display") == "none"

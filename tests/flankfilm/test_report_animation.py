@@ -1,0 +1,131 @@
+"""Pictures of the loaded teeth, and the moving one; and what is told where they cannot be drawn."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import fem
+from fem.vtk import write_vtk_series
+from flankfilm.cache import Cache
+from flankfilm.faults import InputError, SolverError
+from flankfilm.figures import animate_cycle, animation, tooth_picture
+from flankfilm.outputs import results_dataset, write_data
+from flankfilm.scene import parse_scene
+from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.engine import Engine
+
+SCRIPT = Path(sys.executable).with_name("flankfilm")
+
+SCENE = """
+wants = ["stiffness", "vtk"]
+tolerance = 0.05
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 23, bore_mm = 20 }
+wheel = { teeth = 25, bore_mm = 20 }
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 300
+[film]
+model = "none"
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run's folder with three positions for ParaView."""
+    folder = tmp_path_factory.mktemp("run")
+    scene = parse_scene(SCENE)
+    engine = Engine(scene, STAGES, Cache(None))
+    for name in ("dry cycle", "film model", "mesh", "fields"):
+        engine[name]
+    write_data(folder, results_dataset(scene, engine.results()), {})
+    cycle: fem.MeshCycle = engine["mesh"].contact
+    write_vtk_series(folder, engine["pair"], cycle, engine["compliance"], (0, 40, 80))
+    return folder
+
+
+def drawn(draw, *arguments, **options) -> Path:
+    """Draw; a machine without OpenGL skips, or fails where FLANKFILM_REQUIRE_OPENGL is set."""
+    try:
+        return draw(*arguments, **options)
+    except SolverError as fault:
+        if os.environ.get("FLANKFILM_REQUIRE_OPENGL") or "OpenGL" not in str(fault):
+            raise
+        pytest.skip(str(fault))
+
+
+@pytest.fixture(scope="module")
+def frames(run, tmp_path_factory) -> list[np.ndarray]:
+    """Frames of the animation."""
+    file = tmp_path_factory.mktemp("moving") / "cycle.gif"
+    drawn(animate_cycle, run, file, size=(240, 160), seconds=1.5)
+    with Image.open(file) as moving:
+        assert moving.n_frames == 3
+        assert moving.info["duration"] == 500
+        assert moving.info["loop"] == 0
+        found = []
+        for i in range(3):
+            moving.seek(i)
+            found.append(np.asarray(moving.convert("RGB"), dtype=float))
+        return found
+
+
+def test_the_animation_shows_stress_that_moves(frames):
+    middle = frames[0][40:120, 20:220]
+    bright = (
+        (middle[..., 0] > 180) & (middle[..., 1] > 180) & (middle[..., 2] < 120)
+    )  # the scale's end, yellow
+    white = middle.min(axis=2) > 240  # gaps between teeth
+    assert 0.001 < bright.mean() < 0.1
+    assert 0.05 < white.mean() < 0.5
+    assert np.abs(frames[1] - frames[0]).max() > 100
+
+
+def test_the_picture_takes_the_position_that_is_asked_for(run, frames, tmp_path):
+    file = drawn(tooth_picture, run, tmp_path / "last.png", phase=0.7, size=(240, 160))
+    picture = np.asarray(Image.open(file), dtype=float)
+    assert picture.shape == (160, 240, 3)
+    apart = [np.abs(frame - picture).mean() for frame in frames]
+    assert apart[2] < 0.2 * min(apart[:2])
+
+
+def test_faults_are_told_together(tmp_path):
+    with pytest.raises(InputError) as told:
+        animate_cycle(tmp_path, tmp_path / "cycle.mp4")
+    assert [fault.where for fault in told.value.faults] == [str(tmp_path / "cycle.mp4"), str(tmp_path)]
+    assert 'wants "vtk"' in str(told.value)
+
+
+def test_without_pyvista_the_extra_is_named(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"flankfilm\[pictures\]"):
+        animate_cycle(run, tmp_path / "cycle.gif")
+
+
+@pytest.mark.parametrize("end", ["import os; os.kill(os.getpid(), 11)", "raise RuntimeError('no display')"])
+def test_a_machine_without_opengl_is_told_what_to_install(run, tmp_path, monkeypatch, end):
+    """The process that draws dies of a signal, as VTK's does; ours lives, says so, and leaves no file."""
+    real = subprocess.run
+    command = [sys.executable, "-c", end]
+    monkeypatch.setattr(animation.subprocess, "run", lambda _, **options: real(command, **options))
+    with pytest.raises(SolverError, match=r"(signal 11|status 1 .*no display).*libegl1"):
+        animate_cycle(run, tmp_path / "cycle.gif")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_tells_faults_without_a_traceback(tmp_path):
+    done = subprocess.run([str(SCRIPT), "animate", str(tmp_path)], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "mesh_cycle.pvd" in done.stderr
