@@ -1,33 +1,29 @@
-"""Draws the pictures of the README from examples/article.toml: python docs/pictures.py."""
+"""Draws the pictures of the README and of docs/howto/report.md from examples/article.toml: python docs/pictures.py."""
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
-from flankfilm.cache import Cache, keep_compiled_code, user_cache
-from flankfilm.figures import gear, stiffness
-from flankfilm.figures.style import styled
-from flankfilm.scene import read_scene
-from flankfilm.stages.catalogue import STAGES
-from flankfilm.stages.engine import Engine
+import xarray as xr
+from runs import EXAMPLES, IMAGES, keep_compiled_code, save
 
-HERE = Path(__file__).parent
+from flankfilm import figures
 
 
 def main() -> None:
-    """Write docs/images/teeth.png and docs/images/stiffness.png."""
+    """Write docs/images/teeth.png, stiffness.png, tooth.webp and mesh_cycle.webp."""
     keep_compiled_code()
-    scene = read_scene(HERE.parent / "examples" / "article.toml")
-    engine = Engine(scene, STAGES, Cache(user_cache() / "results"))
-    cycles = [engine["mesh"], *engine["other cycles"]]
-    drawn = {
-        "teeth": gear.von_mises(engine["fields"]),
-        "stiffness": stiffness.mesh_cycles(cycles, engine["pair"].face_width),
-    }
-    (HERE / "images").mkdir(exist_ok=True)
-    with styled():
-        for name, figure in drawn.items():
-            figure.savefig(HERE / "images" / f"{name}.png", dpi=110)
+    from flankfilm.run import run_scene
+    from flankfilm.scene import read_scene
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / "article"
+        run_scene(read_scene(EXAMPLES / "article.toml"), folder)
+        with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
+            save({"teeth": figures.tooth_stress(results), "stiffness": figures.mesh_stiffness(results)})
+        figures.tooth_picture(folder, IMAGES / "tooth.webp", size=(960, 640))
+        figures.animate_cycle(folder, IMAGES / "mesh_cycle.webp", size=(420, 280))
 
 
 if __name__ == "__main__":

@@ -153,7 +153,7 @@ def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
         quantities |= sweep_quantities(sweep)
     if (diagram := values.get("diagram")) is not None:
         quantities |= diagram_quantities(diagram)
-    quantities |= picture_quantities(values)
+    quantities |= picture_quantities(values, _speed(scene))
     decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
     return to_dataset(quantities, {"title": scene.title, **decided, **provenance(scene.model_dump_json())})
 

@@ -23,21 +23,26 @@ if TYPE_CHECKING:
 OUTLINE = 12
 """Points of each part of a tooth's outline: straight sides between them do not show."""
 
+STATIONS = 81
+"""Points of the path of contact at which velocities are given, both ends included."""
+
 PICTURED = 2.7
 """Half-width of the pictured part of the mesh, in pitches."""
 
 
-def picture_quantities(values: Mapping[str, Any]) -> dict[str, Quantity]:
+def picture_quantities(values: Mapping[str, Any], speed: float | None) -> dict[str, Quantity]:
     """Variables of the stages at hand.
 
     Parameters
     ----------
     values : mapping
         Stage name to result.
+    speed : float or None
+        Of the pinion [rad/s].
     """
     found: dict[str, Quantity] = {}
     if (pair := values.get("pair")) is not None:
-        found |= geometry_quantities(pair)
+        found |= geometry_quantities(pair) | _kinematics(pair, speed)
     if (dry := values.get("dry cycle")) is not None:
         found["dry_model"] = Quantity((), dry.label, "1", "model of the mesh cycle without film")
     if others := values.get("other cycles"):
@@ -81,6 +86,25 @@ def geometry_quantities(pair: GearPair) -> dict[str, Quantity]:
             "m",
             "place in the frame of the outlines",
         ),
+    }
+
+
+def _kinematics(pair: GearPair, speed: float | None) -> dict[str, Quantity]:
+    """Curvature radii, and velocities of the flanks against the contact, from A to E."""
+    path, along = pair.path_of_contact(n=STATIONS), ("path_station",)
+    found = {
+        "kinematic_rho1": Quantity(along, path.rho1, "m", "curvature radius of the pinion's flank"),
+        "kinematic_rho2": Quantity(along, path.rho2, "m", "curvature radius of the wheel's flank"),
+        "kinematic_radius": Quantity(along, path.radius, "m", "reduced curvature radius of both flanks"),
+    }
+    if speed is None:
+        return found
+    entrainment, sliding = path.entrainment(speed), path.sliding(speed)
+    return found | {
+        "kinematic_entrainment": Quantity(
+            along, entrainment, "m/s", "(u1 + u2)/2, mean velocity of the flanks"
+        ),
+        "kinematic_sliding": Quantity(along, sliding, "m/s", "u1 - u2, negative before C"),
     }
 
 

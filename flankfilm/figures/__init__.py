@@ -14,7 +14,7 @@ from flankfilm.figures.film import (
     film_shares,
     film_stiffness,
 )
-from flankfilm.figures.gear import gears_in_mesh, tooth_stress
+from flankfilm.figures.gear import gears_in_mesh, kinematics, tooth_stress
 from flankfilm.figures.loads import over_torque, revolution, root_stress
 from flankfilm.figures.motion import portraits, sweep
 from flankfilm.figures.optima import optimum
@@ -33,6 +33,7 @@ __all__ = [
     "film_stiffness",
     "fourier",
     "gears_in_mesh",
+    "kinematics",
     "load_share",
     "mesh_stiffness",
     "optimum",

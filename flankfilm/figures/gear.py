@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.figures.reading import need
-from flankfilm.figures.style import Style, colours, figure, styled
+from flankfilm.figures.reading import PATH_LABEL, mark_path, need, travel
+from flankfilm.figures.style import Style, colours, figure, legend_above, looks, styled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,6 +89,47 @@ def _nearby(shape: Array, middle: Array, reach: float) -> Array:
     behind = 2.0 * reach * np.sign(shape.mean(axis=0)[1] - middle[1])
     corners = np.array([[kept[-1][0], middle[1] + behind], [kept[0][0], middle[1] + behind]])
     return np.concatenate([kept, corners])
+
+
+def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw curvature radii along the path of contact, and the velocities of the flanks where the speed is known.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that has a pair of gears.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, "run a scene with a section [pair]", "kinematic_rho1", "path_point_rho1")
+    at, known = travel(results, "kinematic_rho1"), "kinematic_sliding" in results
+    radii = {"rho1": "pinion, R1", "rho2": "wheel, R2", "radius": "reduced, R"}
+    mean, sliding = (
+        (results["kinematic_entrainment"].values, results["kinematic_sliding"].values) if known else (at, at)
+    )
+    velocities = {
+        "pinion, u1": mean + sliding / 2,
+        "wheel, u2": mean - sliding / 2,
+        "entrainment, (u1 + u2)/2": mean,
+        "sliding, u1 - u2": sliding,
+    }
+    with styled(style):
+        drawn = figure(height=4.8 if known else 2.6)
+        panels = drawn.subplots(1 + known, 1, sharex=True, squeeze=False).ravel().tolist()
+        for (name, label), look in zip(radii.items(), looks(3), strict=True):
+            panels[0].plot(at, 1e3 * results[f"kinematic_{name}"].values, label=label, **look)
+        panels[0].set(ylabel="curvature radius [mm]")
+        legend_above(drawn, panels[0])
+        if known:
+            for (label, speed), look in zip(velocities.items(), looks(4), strict=True):
+                panels[1].plot(at, speed, label=label, **look)
+            panels[1].set(ylabel="velocity [m/s]")
+            panels[1].legend(
+                loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2, handlelength=2.6
+            )
+        panels[-1].set(xlabel=PATH_LABEL)
+        mark_path(results, panels, panels[0])
+    return drawn
 
 
 def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:

@@ -59,6 +59,11 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
                 results,
                 "The pair in mesh at the pitch point, with the path of contact A to E.",
             ),
+            picture(
+                figures.kinematics,
+                results,
+                "Curvature radii and velocities of the flanks along the path of contact; no sliding at C.",
+            ),
         ),
         tables=(
             Table(("", "pinion", "wheel"), tuple(rows)),

@@ -1,0 +1,51 @@
+"""Results of scenes for the pictures of the documentation, taken from the cache where an earlier run left them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flankfilm.cache import Cache, keep_compiled_code, user_cache
+from flankfilm.figures.style import styled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from flankfilm.scene import Scene
+
+HERE = Path(__file__).parent
+EXAMPLES = HERE.parent / "examples"
+IMAGES = HERE / "images"
+
+
+def results(scene: Scene, stages: Sequence[str] = ()) -> xr.Dataset:
+    """Give what ``results.nc`` of a scene holds, of some stages alone where they are named; nothing is written."""
+    keep_compiled_code()
+    from flankfilm.outputs import results_dataset
+    from flankfilm.stages.catalogue import STAGES, goals
+    from flankfilm.stages.engine import Engine
+
+    engine = Engine(scene, STAGES, Cache(user_cache() / "results"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a scene's own run shows them
+        for name in stages or goals(scene):
+            engine[name]
+    return results_dataset(scene, engine.results())
+
+
+def example(name: str) -> xr.Dataset:
+    """Give the results of one of the examples."""
+    from flankfilm.scene import read_scene
+
+    return results(read_scene(EXAMPLES / f"{name}.toml"))
+
+
+def save(drawn: Mapping[str, Figure], dpi: int = 110) -> None:
+    """Write figures as ``docs/images/NAME.png``."""
+    IMAGES.mkdir(exist_ok=True)
+    with styled():
+        for name, figure in drawn.items():
+            figure.savefig(IMAGES / f"{name}.png", dpi=dpi)
