@@ -23,7 +23,7 @@ def main() -> None:
         with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
             save({"teeth": figures.tooth_stress(results), "stiffness": figures.mesh_stiffness(results)})
         figures.tooth_picture(folder, IMAGES / "tooth.webp", size=(960, 640))
-        figures.animate_cycle(folder, IMAGES / "mesh_cycle.webp", size=(420, 280))
+        figures.animate_cycle(folder, IMAGES / "mesh_cycle.webp", size=(390, 260))
 
 
 if __name__ == "__main__":

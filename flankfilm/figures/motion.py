@@ -36,9 +36,12 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     fast = "sweep_speed_rpm" in results
     parameter = results["sweep_speed_rpm" if fast else "sweep_frequency"].values
     rows = {d: [str(n) for n in results[f"sweep_{d}_label"].values] for d in ("up", "down")}
+    names = _most_frequent([label for row in rows.values() for label in row], 8)
+    rest = ["other"] if any(label not in names for row in rows.values() for label in row) else []
+    below = 0.19 * max(4, len(names) + len(rest))
     with styled(style):
-        drawn = figure(height=4.6)
-        upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 1.3))
+        drawn = figure(height=3.8 + below)
+        upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(2.6, below))
         pair = colours(6)[5], colours(1)[0]
         # the larger dots lie below, so that both show where the sweeps agree
         for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=True):
@@ -48,11 +51,9 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             upper.plot([], [], ".", color=colour, markersize=8, label=direction)
         upper.set(ylabel="displacement at tau = 0 [-]")
         legend_above(drawn, upper)
-        names = _most_frequent([label for row in rows.values() for label in row], 8)
         for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=True):
             height = np.array([names.index(label) if label in names else len(names) for label in row])
             lower.plot(parameter, height + shift, ".", color=colour, markersize=2, rasterized=True)
-        rest = ["other"] if any(label not in names for row in rows.values() for label in row) else []
         lower.set_yticks(range(len(names) + len(rest)), [*names, *rest])
         lower.margins(y=0.15)
         lower.set(xlabel=SPEED if fast else FREQUENCY, ylabel="motion n-p-q")

@@ -46,6 +46,8 @@ def headlines(results: Results) -> list[Headline]:
             else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
         )
         told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
+    if (sweep := values.get("sweep")) is not None:
+        told.append(motion_parts.headline(sweep))
     if (diagram := values.get("diagram")) is not None:
         told.append(diagram_parts.headline(diagram))
     return told

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm import figures
-from flankfilm.report.page import Drawing, Part, Table, picture
+from flankfilm.report.page import Drawing, Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def fourier(stage: FourierStage, results: xr.Dataset) -> Part:
     return Part(
         "fourier",
         "Fourier stiffness",
-        (f"Mean {number(series.mean, 6)} {unit}.",),
+        (f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}.",),
         drawn,
         (Table(heads, rows),),
         notes,
@@ -54,6 +54,9 @@ def fourier(stage: FourierStage, results: xr.Dataset) -> Part:
 
 def scaling(stage: ScalingStage) -> Part:
     """Physical and dimensionless quantities side by side."""
+    if stage.scales is None:
+        rows = tuple((name, value) for name, _, value in stage.rows())
+        return Part("scaling", "Oscillator", tables=(Table(("quantity", "dimensionless"), rows),))
     heads = ("quantity", "physical", "dimensionless")
     return Part("scaling", "Physical and dimensionless", tables=(Table(heads, stage.rows()),))
 
@@ -83,3 +86,16 @@ def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
             0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
         )
     return Part("motion", "Motion", figures=tuple(drawn), notes=tuple(notes))
+
+
+def headline(stage: SweepStage) -> Headline:
+    """Where contact is first lost by the motion that begins the sweep up."""
+    note = f"grazing of the orbit that never leaves contact; error {stage.error:.0e} a period"
+    if not stage.grazings.size:
+        return Headline("contact is first lost at", "none in range", note)
+    first = float(np.min(stage.grazings))
+    if stage.speed_rpm is None:
+        return Headline("contact is first lost at ω", number(first, 6), note)
+    return Headline(
+        "contact is first lost at", number(first * stage.speed_rpm[0] / stage.frequency[0], 5), note, "rpm"
+    )

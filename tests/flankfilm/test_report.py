@@ -269,8 +269,9 @@ def test_pages_in_a_browser(made, browser, width, dark):
         assert found.paper < 0.2 if dark else found.paper > 0.8, f"{name}: the scheme is not followed"
 
 
-def test_print_is_dark_on_light(made, browser):
-    browser.open(made.pages["run"], 800, dark=True, media="print")
+def test_print_is_dark_on_light_and_fits_paper(made, browser):
+    browser.open(made.pages["run"], 720, dark=True, media="print")
+    assert browser.run("document.documentElement.scrollWidth") <= 720
     ink = browser.run("getComputedStyle(document.body).color")
     assert max(map(int, re.findall(r"\d+", ink)[:3])) < 80
     assert browser.run("getComputedStyle(document.querySelector('nav')).display") == "none"
