@@ -14,7 +14,7 @@ from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries
 from flankfilm.dataset import write_text
 from flankfilm.figures import bench as figures
 from flankfilm.figures.style import to_svg
-from flankfilm.report.page import Drawing, Headline, Part, Table, render
+from flankfilm.report.page import Drawing, Fact, Headline, Part, Table, render
 
 __all__ = ["write_page"]
 
@@ -58,7 +58,7 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
         _machine(found),
     ]
     paths.append(folder / "report.html")
-    write_text(paths[-1], render("Error against cost", LEAD, _headlines(found), parts))
+    write_text(paths[-1], render("Error against cost", [Fact(LEAD)], _headlines(found), parts))
     return paths
 
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure as inline SVG, with its caption and the name of the function that draws it."""
+    """A figure as inline SVG, with its caption and the name of the function that draws it from results, if one does."""
 
     svg: str
     caption: str
-    function: str
+    function: str = ""
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,8 @@
   }
   return {
     broken, wide, faint, tiny,
+    // a phone shows a page that is too wide smaller, by laying out a wider one
+    screen: innerWidth,
     doubled: ids.filter((id, i) => ids.indexOf(id) !== i),
     astray: asked.filter((id) => !known.has(id)),
     figures: document.querySelectorAll("figure svg").length,

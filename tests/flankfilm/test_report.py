@@ -262,7 +262,7 @@ def test_pages_in_a_browser(made, browser, width, dark):
         assert found.broken == [], f"{name}: images that do not decode"
         assert found.doubled == [], f"{name}: ids that are not unique"
         assert found.astray == [], f"{name}: links and clip paths that lead nowhere"
-        assert found.wide == [], f"{name}: wider than the screen"
+        assert (found.wide, found.screen) == ([], width), f"{name}: wider than the screen"
         assert found.faint == [], f"{name}: text of too little contrast"
         assert found.tiny == [], f"{name}: text too small to read"
         assert found.figures > 0, name
