@@ -89,13 +89,16 @@ def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
 
 
 def headline(stage: SweepStage) -> Headline:
-    """Where contact is first lost by the motion that begins the sweep up."""
-    note = f"grazing of the orbit that never leaves contact; error {stage.error:.0e} a period"
+    """Lowest speed at which the orbit that keeps contact touches the edge of the backlash."""
+    note = f"by the orbit that never leaves contact; error {stage.error:.0e} a period"
     if not stage.grazings.size:
-        return Headline("contact is first lost at", "none in range", note)
+        return Headline("edge of the backlash touched at", "none in range", note)
     first = float(np.min(stage.grazings))
     if stage.speed_rpm is None:
-        return Headline("contact is first lost at ω", number(first, 6), note)
+        return Headline("edge of the backlash touched at ω", number(first, 6), note)
     return Headline(
-        "contact is first lost at", number(first * stage.speed_rpm[0] / stage.frequency[0], 5), note, "rpm"
+        "edge of the backlash touched at",
+        number(first * stage.speed_rpm[0] / stage.frequency[0], 5),
+        note,
+        "rpm",
     )
