@@ -39,7 +39,10 @@ highlight_language = "none"
 
 # Types of other libraries have no page here.
 nitpick_ignore_regex = [
-    ("py:.*", r"(numpy|np|npt|scipy|xarray|xr|pydantic|matplotlib|Figure$|collections|concurrent|pathlib)\b.*"),
+    (
+        "py:.*",
+        r"(numpy|np|npt|scipy|xarray|xr|pydantic|matplotlib|Figure$|collections|concurrent|pathlib)\b.*",
+    ),
 ]
 autosummary_generate = True
 autosummary_generate_overwrite = True
