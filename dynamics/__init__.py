@@ -16,13 +16,15 @@ if TYPE_CHECKING:
     from dynamics.boundary import BasinBoundary as BasinBoundary
     from dynamics.boundary import basin_boundary as basin_boundary
     from dynamics.boundary import share_interval as share_interval
-    from dynamics.continuation import Branch as Branch
+    from dynamics.branch import Branch as Branch
     from dynamics.continuation import continue_branch as continue_branch
     from dynamics.cost import Cost as Cost
     from dynamics.crises import Crisis as Crisis
+    from dynamics.crises import boundary_crises as boundary_crises
     from dynamics.crises import boundary_crisis as boundary_crisis
     from dynamics.diagrams import Diagram as Diagram
     from dynamics.diagrams import diagram as diagram
+    from dynamics.edges import edge_saddles as edge_saddles
     from dynamics.errors import DynamicsError as DynamicsError
     from dynamics.errors import DynamicsWarning as DynamicsWarning
     from dynamics.errors import Fault as Fault
@@ -48,11 +50,14 @@ if TYPE_CHECKING:
     from dynamics.inverse import identify as identify
     from dynamics.labelling import Stretch as Stretch
     from dynamics.labelling import stretches as stretches
-    from dynamics.loci import DoublePoint as DoublePoint
     from dynamics.loci import Locus as Locus
     from dynamics.loci import continue_locus as continue_locus
+    from dynamics.locus_tracing import DoublePoint as DoublePoint
     from dynamics.manifolds import Manifold as Manifold
     from dynamics.manifolds import manifold as manifold
+    from dynamics.multi_sweeps import Motion as Motion
+    from dynamics.multi_sweeps import MultiSweep as MultiSweep
+    from dynamics.multi_sweeps import multi_sweep as multi_sweep
     from dynamics.oscillator import GearOscillator as GearOscillator
     from dynamics.robustness import ForceRange as ForceRange
     from dynamics.robustness import force_range as force_range
@@ -75,7 +80,7 @@ if TYPE_CHECKING:
     from dynamics.switching import doubled_orbit as doubled_orbit
 
 _HOMES = {
-    "DoublePoint": "loci",
+    "DoublePoint": "locus_tracing",
     "Locus": "loci",
     "continue_locus": "loci",
     "Diagram": "diagrams",
@@ -85,7 +90,7 @@ _HOMES = {
     "find_orbits": "finding",
     "Attractor": "attraction",
     "BasinResult": "attraction",
-    "Branch": "continuation",
+    "Branch": "branch",
     "LyapunovResult": "exponents",
     "basins": "attraction",
     "continue_branch": "continuation",
@@ -94,6 +99,7 @@ _HOMES = {
     "lyapunov_scan": "exponents",
     "ContactGrazing": "grazing",
     "Cost": "cost",
+    "edge_saddles": "edges",
     "DynamicsError": "errors",
     "DynamicsWarning": "errors",
     "Fault": "errors",
@@ -112,7 +118,11 @@ _HOMES = {
     "basin_boundary": "boundary",
     "share_interval": "boundary",
     "Crisis": "crises",
+    "boundary_crises": "crises",
     "boundary_crisis": "crises",
+    "Motion": "multi_sweeps",
+    "MultiSweep": "multi_sweeps",
+    "multi_sweep": "multi_sweeps",
     "Manifold": "manifolds",
     "manifold": "manifolds",
     "Stretch": "labelling",

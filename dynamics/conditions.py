@@ -96,10 +96,10 @@ def special_orbit(
             return None
         # the determinant and trace of the measure are as exact as the entries of the Jacobian
         size = float(np.max(np.abs(off))) / max(1.0, float(np.max(np.abs(point.jacobian))))
-        closed = point.residual <= rounding(point)
-        if size < best or (closed and kept is not None and kept.residual > rounding(kept)):
+        closed = point.residual <= rounding(point, problem.periods)
+        if size < best or (closed and kept is not None and kept.residual > rounding(kept, problem.periods)):
             best, kept = size, point
-        elif best < 1e-11 and kept is not None and kept.residual <= rounding(kept):
+        elif best < 1e-11 and kept is not None and kept.residual <= rounding(kept, problem.periods):
             break
         try:
             step = np.linalg.solve(matrix, -off)
@@ -113,6 +113,6 @@ def special_orbit(
         u = u + step
         if iteration > 4 and best > 1e-3:
             return None
-    if kept is None or not (best < 1e-11 and kept.residual <= rounding(kept)):
+    if kept is None or not (best < 1e-11 and kept.residual <= rounding(kept, problem.periods)):
         return None
     return kept

@@ -5,100 +5,24 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.corrector import OrbitProblem, Point
+from dynamics.branch import GOOD_ENDS, KINDS, MEETS, UNBOUNDED, Branch
+from dynamics.corrector import OrbitProblem, Point, passes
 from dynamics.cost import Cost
-from dynamics.crossings import Crossing, find_crossings, locate
+from dynamics.crossings import find_crossings, locate
 from dynamics.errors import Faults
-from dynamics.flow import period_map
 from dynamics.shooting import Orbit, floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
-__all__ = ["KINDS", "Branch", "continue_branch"]
+__all__ = ["KINDS", "MEETS", "Branch", "continue_branch"]
 
 FloatArray = npt.NDArray[np.float64]
-MEETS = "meets the branch of half the period"
-KINDS = ("saddle-node", "period-doubling", "grazing")
-
-
-@dataclass(frozen=True, eq=False)
-class Branch:
-    """A branch of periodic orbits.
-
-    Parameters
-    ----------
-    parameter : str
-        What was varied.
-    periods : int
-        Period of the orbits, in excitation periods.
-    values : ndarray, shape (m,)
-        Parameter along the branch.
-    states : ndarray, shape (m, 2)
-        X and V at tau = 0.
-    multipliers : ndarray of complex, shape (m, 2)
-        Floquet multipliers.
-    stable : ndarray of bool, shape (m,)
-        Stability.
-    labels : tuple of str
-        n-p-q or Un-p-q.
-    points : tuple of SpecialPoint
-        Special points in their order along the branch.
-    ended : tuple of str
-        Why the branch ended at its first and at its last point.
-    error : float
-        Largest estimated relative error of a special point's parameter.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether both ends were reached for a good reason (a bound, the start again, the branch of half the period)
-        and every special point seen was located.
-    message : str
-        What happened, with a remedy if not converged.
-    """
-
-    parameter: str
-    periods: int
-    values: FloatArray
-    states: FloatArray
-    multipliers: npt.NDArray[np.complex128]
-    stable: npt.NDArray[np.bool_]
-    labels: tuple[str, ...]
-    points: tuple[SpecialPoint, ...]
-    ended: tuple[str, str]
-    error: float
-    cost: Cost
-    converged: bool
-    message: str
-
-    def special(self, kind: str) -> list[SpecialPoint]:
-        """Special points of one kind, in their order along the branch.
-
-        Parameters
-        ----------
-        kind : str
-            "saddle-node", "period-doubling" or "grazing"; "neimark-sacker", which the exact flow never meets.
-
-        Raises
-        ------
-        DynamicsError
-            If there is no such kind.
-        """
-        faults = Faults()
-        known = (*KINDS, "neimark-sacker")
-        if kind not in known:
-            faults.add("kind", kind, ", ".join(known), "name one of these")
-        faults.raise_if_any()
-        return [p for p in self.points if p.kind == kind]
-
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
-        """Columns parameter, X, V."""
-        return np.column_stack([self.values, self.states]).astype(dtype if dtype is not None else np.float64)
+LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
+ENDLESS = 1e4  # times its first size: a motion that grows without bound
 
 
 def continue_branch(
@@ -187,12 +111,13 @@ class _Walker:
     ) -> None:  # fmt: skip
         self.problem, self.limit, self.progress = problem, limit, progress
         self.step, self.max_step, self.min_step = steps
+        self.first = problem.scale
         self.points = [start]
         self.special: list[SpecialPoint] = []
         self.tangent = problem.tangent(start, along)
         self.bend = np.zeros(3)
         even = problem.periods % 2 == 0
-        self.phases = self._phases(start)
+        self.phases = problem.phases(start)
         self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
         self.ended = ""
         self.missed: list[float] = []
@@ -219,34 +144,28 @@ class _Walker:
                     self.ended = MEETS
                     return
                 self.half = half
-            self._accept(last, step)
-            if len(self.points) > 3 and self._closed(last, new):  # however small the loop
+            self._accept(step)
+            size = float(np.max(np.abs(new.u[:2])))
+            if len(self.points) > 3 and passes(last, new, self.phases):  # however small the loop
                 self.ended = "closed"
-            elif float(np.max(np.abs(new.u[:2]))) > 1e6:
-                self.ended = "the motion grows without bound"
+            elif size * self.problem.scale > ENDLESS * self.first:
+                self.ended = UNBOUNDED
+            elif size > LARGE:
+                self._rescale(size)
 
-    def _phases(self, start: Point) -> list[list[float]]:
-        """Unknowns of the start, its orbit taken from each excitation period on."""
-        n = self.problem.periods
-        states = period_map(self.problem.at(start.u), start.state, n).states
-        value = np.full((n, 1), start.u[2])
-        phases: list[list[float]] = np.hstack(
-            [np.roll(states, 1, axis=0) / self.problem.scale, value]
-        ).tolist()
-        return phases
-
-    def _closed(self, last: Point, new: Point) -> bool:
-        """Tell whether a step passes the start, at any of the n phases of its orbit."""
-        chord = (new.u - last.u).tolist()
-        square = sum(c * c for c in chord)
-        for phase in self.phases:
-            back = [p - u for p, u in zip(phase, last.u.tolist(), strict=True)]
-            along = sum(b * c for b, c in zip(back, chord, strict=True)) / square
-            if 0.0 < along <= 1.0:
-                beside = sum((b - along * c) ** 2 for b, c in zip(back, chord, strict=True))
-                if beside < 0.01 * square:
-                    return True
-        return False
+    def _rescale(self, factor: float) -> None:
+        """Measure a motion that has grown by its new size: steps and tolerances are shares of it."""
+        last = self.points[-1]
+        larger = replace(self.problem, scale=factor * self.problem.scale)
+        again = larger.correct(larger.unknowns(last.state, last.value), np.array([0.0, 0.0, 1.0]))
+        if again is None:
+            return
+        self.problem, self.points[-1] = larger, again
+        shrink = np.array([1.0 / factor, 1.0 / factor, 1.0])
+        self.phases = (np.array(self.phases) * shrink).tolist()
+        self.bend = np.zeros(3)
+        self.half = self.half / factor
+        self.tangent = larger.tangent(again, self.tangent * shrink)
 
     def _try(self, last: Point) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
@@ -278,27 +197,24 @@ class _Walker:
         crossings, explained = find_crossings(self.problem, last, new)
         if not explained and patient:
             return None
-        return _Step(new, tangent, crossings, explained)
-
-    def _accept(self, last: Point, step: _Step) -> None:
-        """Take a point, locate what lies between, choose the next step."""
-        new = step.point
-        if not step.explained:
-            self.missed.append(new.value)
-        found = []
-        for crossing in step.crossings:
-            special = locate(self.problem, last, new, crossing)
-            if special is None:
-                self.missed.append(new.value)
-            else:
-                found.append(special)
-        chord = new.u - last.u
+        between = [locate(self.problem, last, new, crossing) for crossing in crossings]
+        found = [p for p in between if p is not None]
+        self.refused = "a special point was not located"
+        if len(found) < len(between) and patient:
+            return None
         found.sort(key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord))
-        self.special += found
+        return _Step(new, tangent, found, explained and len(found) == len(between))
+
+    def _accept(self, step: _Step) -> None:
+        """Take a point and what lies before it, choose the next step."""
+        new = step.point
+        length = math.dist(new.u, self.points[-1].u)
+        if not step.complete:
+            self.missed.append(new.value)
+        self.special += step.special
         self.points.append(new)
         self.iterations += new.iterations
         # half the curvature, for the predictor: none from so short a step that the difference is rounding
-        length = math.sqrt(chord @ chord)
         self.bend = 0.5 / length * (step.tangent - self.tangent) if length > 1e-5 else np.zeros(3)
         self.tangent = step.tangent
         if new.u[2] in (0.0, 1.0):
@@ -315,8 +231,8 @@ class _Step:
 
     point: Point
     tangent: FloatArray
-    crossings: list[Crossing]
-    explained: bool
+    special: list[SpecialPoint]
+    complete: bool  # whether the special points explain all that changes
 
 
 def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Branch:
@@ -330,7 +246,7 @@ def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Bran
     pairs = [floquet_multipliers(p.trace, p.determinant) for p in points]
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
-    good = all(reason in ("bound", "closed", MEETS) for reason in ended) and not missed
+    good = all(reason in GOOD_ENDS for reason in ended) and not missed
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
     if missed:
         message += f"; not located near {problem.parameters[0]} = {missed[0]:.10g}: lower min_step"

@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.flow import DEGREE
+from dynamics.flow import DEGREE, period_map
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.shooting import EPS
 
-__all__ = ["OrbitProblem", "Point"]
+__all__ = ["OrbitProblem", "Point", "passes", "rounding"]
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -200,6 +200,13 @@ class OrbitProblem:
             return self.evaluate(u, refinement)
         return self._point(u, store, turned, residual, iterations)
 
+    def phases(self, point: Point) -> list[list[float]]:
+        """Unknowns of a point, its orbit taken from each excitation period on, one row each."""
+        states = period_map(self.at(point.u), point.state, self.periods).states
+        rest = np.broadcast_to(point.u[2:], (self.periods, len(point.u) - 2))
+        rows: list[list[float]] = np.hstack([np.roll(states, 1, axis=0) / self.scale, rest]).tolist()
+        return rows
+
     def half_way(self, point: Point) -> FloatArray:
         """Unknowns X and V after half the orbit's period; n must be even."""
         from dynamics.kernels.flow import iterate
@@ -277,6 +284,22 @@ class _Store:
         return self.image, self.lin, self.bend, self.counts, self.turns
 
 
-def rounding(point: Point) -> float:
-    """Residual that rounding leaves."""
-    return 64.0 * EPS * max(1.0, float(np.max(np.abs(point.jacobian))))
+def passes(last: Point, new: Point, places: list[list[float]]) -> bool:
+    """Tell whether the step from one point to another passes one of several places in the space of unknowns."""
+    start = last.u.tolist()
+    chord = [b - a for a, b in zip(start, new.u.tolist(), strict=True)]
+    square = sum(c * c for c in chord)
+    for place in places:
+        back = [p - u for p, u in zip(place, start, strict=True)]
+        along = sum(b * c for b, c in zip(back, chord, strict=True)) / square
+        if 0.0 < along <= 1.0:
+            beside = sum((b - along * c) ** 2 for b, c in zip(back, chord, strict=True))
+            if beside < 0.01 * square:
+                return True
+    return False
+
+
+def rounding(point: Point, periods: int) -> float:
+    """Residual that rounding leaves: it grows with the state, with its derivative and with every period."""
+    size = max(1.0, float(np.max(np.abs(point.u[:2]))))
+    return 64.0 * EPS * size * periods * max(1.0, float(np.max(np.abs(point.jacobian))))

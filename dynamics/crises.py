@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.continuation import Branch, continue_branch
+from dynamics.branch import Branch
+from dynamics.continuation import continue_branch
 from dynamics.cost import Cost
+from dynamics.diagrams import Diagram
 from dynamics.errors import Faults
-from dynamics.flow import tables
-from dynamics.manifolds import carried
-from dynamics.shooting import Orbit, find_orbit
+from dynamics.passing import Passing, is_direct_saddle
+from dynamics.shooting import Orbit
+from dynamics.sweeps import sweep
 
-__all__ = ["Crisis", "boundary_crisis"]
+__all__ = ["Crisis", "boundary_crises", "boundary_crisis"]
 
 FloatArray = npt.NDArray[np.float64]
-FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
-NEAR = 0.08  # of the size of the saddle: nearness at which a passing motion's side is told
-ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured
-LOST = -1.0
+SMOOTH = 1e-3  # of the size of the saddle: jump of the overshoot above which a change of sign is no tangency
+SETTLED = 20_000  # periods after which the motion beside the saddle is named
+LEAST = 9  # values looked at on a saddle's range, however narrow
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,13 +42,20 @@ class Crisis:
         Branch of its unstable manifold on which the attractor lies: 1 or -1 along the eigenvector of positive X.
     overshoot : tuple of float
         At both bounds: how far motions from that branch come past the stable manifold, over the size of the saddle.
-        Positive: they leave; negative: all turn back, the attractor is closed.
+        Positive: they leave; negative: all turn back, the attractor is closed; -1: none comes back.
+    before : str
+        Motion that the branch leads to where it is closed, beside the crisis. Only if this is "aperiodic" does a
+        chaotic attractor end; if not, motions that pass the boundary to and fro before they settle begin (the
+        boundary of the basin becomes fractal).
+    after : str
+        Motion that the branch leads to at the other bound.
     error : float
         Width of the bracket, relative.
     cost : Cost
         Effort.
     converged : bool
-        Whether the overshoot changes its sign within the bounds, on one branch, and the root is closed in on.
+        Whether the overshoot passes zero within the bounds, on one branch, without a jump, and the root is closed in
+        on.
     message : str
         What was found.
     """
@@ -54,6 +64,8 @@ class Crisis:
     saddle: Orbit
     side: int
     overshoot: tuple[float, float]
+    before: str
+    after: str
     error: float
     cost: Cost
     converged: bool
@@ -104,91 +116,145 @@ def boundary_crisis(
     low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
     number = faults.whole("points", points, 10, 10**6, "2000 is usual")
     longest = faults.whole("periods", periods, 1, 10**6, "240 is usual")
-    leading = np.asarray(saddle.multipliers)
-    if not saddle.converged or np.iscomplexobj(leading) or not leading[0] > 1.0 > abs(leading[1]):
+    if not saddle.converged or not is_direct_saddle(saddle.multipliers):
         faults.add("saddle", saddle.label, "a saddle with a multiplier above 1", "take one of find_orbits")
     elif not low <= saddle.oscillator.get(parameter) <= high or not low < high:
         faults.add("bounds", bounds, "a range with the saddle in it", "widen the bounds")
     faults.raise_if_any()
-    search = _Passing(continue_branch(saddle, parameter, (low, high)), saddle, number, longest)
-    ends = {side: tuple(search.overshoot(value, side) for value in (low, high)) for side in (1, -1)}
+    branch = continue_branch(saddle, parameter, (low, high))
+    value = saddle.oscillator.get(parameter)
+    run = next((r for r in _runs(branch) if _holds(branch.values[r], value)), slice(0, 0))
+    if run.stop - run.start < 2:
+        faults.add("saddle", saddle.label, "a saddle over a range of the bounds", "narrow the bounds")
+        faults.raise_if_any()
+    search = Passing(
+        saddle.oscillator, parameter, branch.values[run], branch.states[run], saddle.periods, number, longest
+    )
+    low, high = max(low, float(search.values[0])), min(high, float(search.values[-1]))
+    ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
     if len(sides) != 1:
         told = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
         message = f"no crisis of this saddle: overshoots at the bounds {told}"
         cost = Cost(time.perf_counter() - began, 2, 0, search.periods)
-        return Crisis(math.nan, saddle, 0, (math.nan, math.nan), math.nan, cost, False, message)
-    side = sides[0]
-    (a, b), at_a = (low, high), ends[side][0]
-    steps = 0
-    while b - a > 1e-10 * abs(b) and steps < 60:  # halving: the overshoot has kinks where another lobe leads
-        middle = 0.5 * (a + b)
-        if search.overshoot(middle, side) * at_a > 0.0:
-            a = middle
-        else:
-            b = middle
-        steps += 1
-    root = 0.5 * (a + b)
-    at = search.saddle(root)
-    message = f"{at.label} and the attractor beside it meet at {parameter} = {root:.10g}"
-    cost = Cost(time.perf_counter() - began, 2, steps, search.periods)
-    return Crisis(
-        root, at, side, (ends[side][0], ends[side][1]), (b - a) / abs(root), cost, b - a <= 1e-9 * abs(root), message
+        return Crisis(math.nan, saddle, 0, (math.nan, math.nan), "", "", math.nan, cost, False, message)
+    return _closed_in(search, (low, high), ends[sides[0]], sides[0], began)
+
+
+def boundary_crises(
+    diagram: Diagram,
+    *,
+    values: int = 200,
+    points: int = 300,
+    periods: int = 90,
+    max_period: int = 4,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[Crisis]:
+    """Look for crises of all saddles of a diagram.
+
+    Along every stretch on which a branch is a saddle with a multiplier above 1 the overshoot is looked at, on both
+    sides; where it changes its sign the tangency is closed in on, as by `boundary_crisis`.
+
+    Parameters
+    ----------
+    diagram : Diagram
+        Its branches are the saddles. One that it lacks is not looked at, and two crises of one saddle closer
+        together than the values are missed.
+    values : int
+        Values of the parameter over the diagram's range; at least nine on every stretch.
+    points, periods : int
+        As in `boundary_crisis`, for the search; the tangencies are closed in on with four times as many points.
+    max_period : int
+        Longest period of a saddle that is looked at.
+    progress : callable, optional
+        Called with the number of stretches done and the number of all.
+
+    Returns
+    -------
+    list of Crisis
+        Those that are smooth tangencies, by parameter. Where `before` is "aperiodic" a chaotic attractor ends.
+
+    Raises
+    ------
+    DynamicsError
+        If an argument is out of range.
+    """
+    faults = Faults()
+    number = faults.whole("values", values, 2, 10**6, "200 is usual")
+    some = faults.whole("points", points, 10, 10**6, "300 is usual")
+    longest = faults.whole("periods", periods, 1, 10**6, "90 is usual")
+    most = faults.whole("max_period", max_period, 1, 1000, "4 is usual")
+    faults.raise_if_any()
+    spacing = (diagram.bounds[1] - diagram.bounds[0]) / number
+    runs = [(branch, run) for branch in diagram.branches if branch.periods <= most for run in _runs(branch)]
+    found = []
+    for done, (branch, run) in enumerate(runs, start=1):
+        search = Passing(
+            diagram.oscillator, diagram.parameter, branch.values[run], branch.states[run], branch.periods, some, longest
+        )  # fmt: skip
+        low, high = float(search.values[0]), float(search.values[-1])
+        looked = max(LEAST, math.ceil((high - low) / spacing) + 1)
+        at = np.linspace(low, high, looked)[1:-1]  # at its ends a saddle is none
+        for side in (1, -1):
+            seen = [search.overshoot(float(value), side) for value in at]
+            for k in np.flatnonzero([a * b < 0.0 for a, b in pairwise(seen)]):
+                crisis = _again(search, (float(at[k]), float(at[k + 1])), side)
+                if crisis is not None and crisis.converged:
+                    found.append(crisis)
+        if progress is not None:
+            progress(done, len(runs))
+    return sorted(found, key=lambda c: c.parameter)
+
+
+def _again(search: Passing, bounds: tuple[float, float], side: int) -> Crisis | None:
+    """Close in with more points, if the change of sign is still there."""
+    began = time.perf_counter()
+    fine = Passing(
+        search.oscillator, search.parameter, search.values, search.states, search.n, 4 * search.points,
+        search.longest,
     )  # fmt: skip
+    ends = (fine.overshoot(bounds[0], side), fine.overshoot(bounds[1], side))
+    return _closed_in(fine, bounds, ends, side, began) if ends[0] * ends[1] < 0.0 else None
 
 
-class _Passing:
-    """Motions of a saddle's unstable manifold that come back to it."""
+def _closed_in(
+    search: Passing, bounds: tuple[float, float], ends: tuple[float, float], side: int, began: float
+) -> Crisis:
+    """Root of the overshoot, and the motions on both sides of it."""
+    a, b, jump, steps = search.first(bounds, side, 0 if ends[0] < 0.0 else 1)
+    root = 0.5 * (a + b)
+    closed, opened = (a, bounds[1]) if ends[0] < 0.0 else (b, bounds[0])
+    before, after = _motion(search, closed, side), _motion(search, opened, side)
+    at = search.saddle(root)
+    message = f"{at.label} and the {before} motion beside it meet at {search.parameter} = {root:.10g}"
+    if jump > SMOOTH:
+        message = f"no crisis of this saddle: near {search.parameter} = {root:.10g} the overshoot jumps by {jump:.2g}"
+    good = abs(b - a) <= 1e-9 * abs(root) and jump <= SMOOTH
+    cost = Cost(time.perf_counter() - began, 2, steps, search.periods)
+    return Crisis(root, at, side, ends, before, after, abs(b - a) / abs(root), cost, good, message)
 
-    def __init__(self, branch: Branch, saddle: Orbit, points: int, periods: int) -> None:
-        self.branch, self.start, self.points, self.longest = branch, saddle, points, periods
-        self.periods = 0
 
-    def saddle(self, value: float) -> Orbit:
-        """The saddle at a value, by Newton's method from the branch."""
-        i = int(np.argmin(np.abs(self.branch.values - value)))
-        here = self.start.oscillator.with_parameter(self.branch.parameter, value)
-        return find_orbit(here, self.branch.states[i], periods=self.start.periods)
+def _motion(search: Passing, value: float, side: int) -> str:
+    """Label of the motion that a branch of the unstable manifold leads to."""
+    here = search.oscillator.with_parameter(search.parameter, value)
+    start = search.beside(value, side)
+    return sweep(here, search.parameter, [value], initial=start, transient=SETTLED).labels[0]
 
-    def overshoot(self, value: float, side: int) -> float:
-        """Largest u of returning motions, over the size of the saddle; -1 if none returns."""
-        orbit = self.saddle(value)
-        n, multiplier = orbit.periods, float(np.real(orbit.multipliers[0]))
-        if not orbit.converged or np.iscomplexobj(orbit.multipliers) or not multiplier > 1.0:
-            return LOST
-        size = float(np.max(np.abs(orbit.state)))
-        along = np.linalg.svd(orbit.jacobian - multiplier * np.eye(2))[2][1]
-        along = along if along[0] >= 0.0 else -along
-        across = np.linalg.svd(orbit.jacobian.T - multiplier * np.eye(2))[2][1]
-        across = across / (across @ along)
-        table = tables(orbit.oscillator)
-        begin = math.ceil(math.log(BEGUN / FIRST) / math.log(multiplier))
 
-        def states(share: FloatArray, more: int) -> FloatArray:
-            first = orbit.state + side * FIRST * size * np.outer(multiplier**share, along)
-            self.periods += len(share) * (n * begin + more)
-            return carried(table, first, n * begin + more)
+def _runs(branch: Branch) -> Iterator[slice]:
+    """Stretches of a branch on which it is a saddle and the parameter rises or falls throughout."""
+    saddle = [is_direct_saddle(m) for m in branch.multipliers]
+    way = np.sign(np.diff(branch.values))
+    start = 0
+    for i in range(1, len(saddle) + 1):
+        ends = i == len(saddle) or not saddle[i] or not saddle[i - 1]
+        turns = i < len(saddle) and i - start >= 2 and way[i - 1] != way[start]
+        if ends or turns:
+            if i - start >= 2 and saddle[start]:
+                yield slice(start, i)
+            start = i - 1 if turns and not ends else i
 
-        def passed(at: FloatArray) -> FloatArray:
-            return np.asarray(-side * ((at - orbit.state) @ across) / size)
 
-        share = (np.arange(self.points) + 0.5) / self.points
-        at, best = states(share, 0), (LOST, 0, 0.0)
-        for k in range(1, self.longest + 1):
-            at = carried(table, at, 1)
-            with np.errstate(invalid="ignore"):
-                near = np.max(np.abs(at - orbit.state), axis=1) < NEAR * size
-                gone = np.where(near, passed(at), LOST)
-            i = int(np.argmax(gone))
-            if gone[i] > best[0]:
-                best = (float(gone[i]), k, float(share[i]))
-        self.periods += self.longest * self.points
-        if best[0] == LOST or abs(best[0]) * multiplier**ROUNDS > 1.0:
-            return best[0]
-        width, middle, largest = 2.0 / self.points, best[2], best[0]
-        for _ in range(6):  # zoom in on the top of the lobe
-            window = middle + width * np.linspace(-1.0, 1.0, 21)
-            lobe = passed(states(window, best[1] + ROUNDS * n)) / multiplier**ROUNDS
-            i = int(np.nanargmax(lobe))
-            middle, largest, width = float(window[i]), float(lobe[i]), width / 8.0
-        return largest
+def _holds(values: FloatArray, value: float) -> bool:
+    """Tell whether a value lies within a range of values."""
+    return bool(values.min() <= value <= values.max())

@@ -9,44 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.conditions import Condition, special_orbit
-from dynamics.continuation import KINDS, MEETS, Branch, continue_branch
-from dynamics.corrector import OrbitProblem
+from dynamics.branch import KINDS, Branch
 from dynamics.cost import Cost
 from dynamics.errors import Faults
 from dynamics.finding import find_orbits
-from dynamics.flow import period_map
+from dynamics.gathering import Gathering, Origin
 from dynamics.labelling import Stretch, stretches
+from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
-from dynamics.shooting import Orbit
-from dynamics.special import SpecialPoint
-from dynamics.switching import doubled_orbit
+from dynamics.shooting import find_orbit
+from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["Diagram", "Origin", "diagram"]
 
 FloatArray = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Origin:
-    """How a branch was come by.
-
-    Parameters
-    ----------
-    parent : int or None
-        Branch whose period doubling it leaves; None if a search found it.
-    value : float
-        Parameter at the period doubling or of the search.
-    """
-
-    parent: int | None
-    value: float
-
-    def __str__(self) -> str:
-        """In words."""
-        if self.parent is None:
-            return f"found at {self.value:.6g}"
-        return f"period doubling of branch {self.parent} at {self.value:.10g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +80,8 @@ class Diagram:
         DynamicsError
             If there is no such kind.
         """
-        return sorted((p for b in self.branches for p in b.special(kind)), key=lambda p: p.parameter)
+        points = of_kind([p for b in self.branches for p in b.points], kind, KINDS)
+        return sorted(points, key=lambda p: p.parameter)
 
     def stretches(self, stable: bool | None = None) -> list[Stretch]:
         """Stretches of all branches that keep one label, by their lower ends.
@@ -145,6 +122,7 @@ def diagram(
     *,
     periods: Sequence[int] = (1, 2, 3),
     searches: int = 9,
+    swept: int = 100,
     max_period: int = 8,
     max_branches: int = 100,
     max_step: float = 0.02,
@@ -152,9 +130,10 @@ def diagram(
 ) -> Diagram:
     """Build the bifurcation diagram of periodic orbits over one parameter.
 
-    Orbits are searched for at several values of the parameter; each that lies on no branch known so far is followed
-    both ways. From every period doubling the branch of twice the period is followed, and so on. A branch ends at a
-    bound, where it closes, or where it meets the branch of half its period.
+    Orbits are searched for at several values of the parameter, and met by sweeps from many starts; each that lies on
+    no branch known so far is followed both ways. From every period doubling the branch of twice the period is
+    followed, and so on. A branch ends at a bound, where it closes, where it meets the branch of half its period, or
+    where the motion grows without bound.
 
     Parameters
     ----------
@@ -167,8 +146,10 @@ def diagram(
     periods : sequence of int
         Periods searched for.
     searches : int
-        Values of the parameter at which orbits are searched for, at the middles of equal intervals. A branch that
-        exists between two of them only, and that no period doubling leads to, is missed.
+        Values of the parameter at which orbits are searched for, at the middles of equal intervals.
+    swept : int
+        Values of the sweeps; 0 for none. An isolated branch between two searches that no period doubling leads to has
+        a stable part beside each of its folds, but is missed if that lies between two of these values, too.
     max_period : int
         Longest period followed.
     max_branches : int
@@ -195,9 +176,10 @@ def diagram(
         faults.add("bounds", bounds, "the lower value first", "give (low, high)")
     number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
     longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
+    steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
     most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     faults.raise_if_any()
-    builder = _Builder(oscillator, parameter, (low, high), longest, most, max_step, progress)
+    builder = Gathering(oscillator, parameter, (low, high), longest, most, max_step, progress)
     unsure = []
     for k in range(number):
         value = low + (k + 0.5) / number * (high - low)
@@ -208,131 +190,38 @@ def diagram(
         for orbit in found.orbits:
             if not builder.holds(orbit, value):
                 builder.follow(orbit, Origin(None, value))
-    return builder.result(tuple(unsure), began)
-
-
-class _Builder:
-    """Branches so far."""
-
-    def __init__(
-        self, oscillator: GearOscillator, parameter: str, bounds: tuple[float, float], longest: int, most: int,
-        max_step: float, progress: Callable[[int, str], None] | None,
-    ) -> None:  # fmt: skip
-        self.oscillator, self.parameter, self.bounds = oscillator, parameter, bounds
-        self.longest, self.most, self.max_step, self.progress = longest, most, max_step, progress
-        self.branches: list[Branch] = []
-        self.origins: list[Origin] = []
-        self.left_out: list[str] = []
-        self.ends: list[tuple[int, float]] = []
-        self.periods = 0
-
-    def follow(self, orbit: Orbit, origin: Origin) -> None:
-        """Follow an orbit, and then the branches that its period doublings lead to."""
-        waiting = [(orbit, origin)]
-        while waiting:
-            start, source = waiting.pop(0)
-            value = start.oscillator.get(self.parameter)
-            if source.parent is not None and self._taken(start.periods, source.value):
-                continue
-            if self.holds(start, value):
-                continue
-            if len(self.branches) >= self.most:
-                self.left_out.append(
-                    f"{start.label} at {value:.10g}: {self.most} branches, raise max_branches"
-                )
-                continue
-            if self.progress is not None:
-                self.progress(len(self.branches), f"{start.label} {source}")
-            branch = continue_branch(start, self.parameter, self.bounds, max_step=self.max_step)
-            self.periods += branch.cost.periods
-            self.branches.append(branch)
-            self.origins.append(source)
-            mine = len(self.branches) - 1
-            self._note_ends(branch)
-            for point in branch.special("period-doubling"):
-                if self._taken(2 * point.periods, point.parameter):
-                    continue
-                if 2 * point.periods > self.longest:
-                    self.left_out.append(
-                        f"period doubling of {point.label} at {point.parameter:.10g}: beyond max_period"
-                    )
-                    continue
-                doubled = doubled_orbit(self.oscillator, self.parameter, point, self.bounds)
-                if doubled is None:
-                    self.left_out.append(
-                        f"period doubling of {point.label} at {point.parameter:.10g}: no doubled orbit found"
-                    )
-                else:
-                    waiting.append((doubled, Origin(mine, point.parameter)))
-
-    def _note_ends(self, branch: Branch) -> None:
-        """Note the period doublings at which a branch ends, so that it is not followed from its other end."""
-        low, high = (np.array([b]) for b in self.bounds)
-        n = branch.periods // 2
-        for k in (0, -1):
-            if branch.ended[k] != MEETS:
-                continue
-            state, value = branch.states[k], float(branch.values[k])
-            half = period_map(self.oscillator.with_parameter(self.parameter, value), state, n).state
-            scale = max(float(np.max(np.abs(state))), self.oscillator.half_backlash, 1e-300)
-            problem = OrbitProblem(self.oscillator, (self.parameter,), n, low, high, scale)
-            guess = problem.unknowns(0.5 * (state + half), value)
-            point = special_orbit(problem, Condition("period-doubling"), guess)
-            if point is not None:
-                value = point.value
-            else:  # a corner next to a grazing: the nearest of those known
-                known = [
-                    p.parameter for b in self.branches if b.periods == n for p in b.special("period-doubling")
-                ]
-                value = min(known, key=lambda at: abs(at - value), default=value)
-            self.ends.append((branch.periods, value))
-
-    def _taken(self, periods: int, value: float) -> bool:
-        """Tell whether a branch of this period ends at the value by meeting that of half its period."""
-        near = 1e-7 * (self.bounds[1] - self.bounds[0])
-        return any(periods == n and abs(end - value) < near for n, end in self.ends)
-
-    def holds(self, orbit: Orbit, value: float) -> bool:
-        """Tell whether an orbit lies on one of the branches."""
-        points = period_map(orbit.oscillator, orbit.state, orbit.periods).states
-        return any(
-            self._on(branch, points, value) for branch in self.branches if branch.periods == orbit.periods
+    if steps:
+        met = multi_sweep(
+            oscillator, parameter, np.linspace(low, high, steps), seeds=2 * number, max_period=longest
         )
+        _follow_met(builder, met)
+    return _result(builder, tuple(unsure), began)
 
-    def _on(self, branch: Branch, points: FloatArray, value: float) -> bool:
-        """Tell whether a branch passes through one of the points of an orbit at a value."""
-        off = branch.values - value
-        scale = max(float(np.max(np.abs(branch.states))), 1e-300)
-        low, high = (np.array([b]) for b in self.bounds)
-        problem = OrbitProblem(self.oscillator, (self.parameter,), branch.periods, low, high, scale)
-        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
-            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
-            guess = branch.states[i] + share * (branch.states[i + 1] - branch.states[i])
-            chord = float(np.max(np.abs(branch.states[i + 1] - branch.states[i])))
-            near = float(np.min(np.max(np.abs(points - guess), axis=1)))
-            if near > 2.0 * chord + 1e-3 * scale:
-                continue
-            there = problem.correct(problem.unknowns(guess, value), np.array([0.0, 0.0, 1.0]))
-            if (
-                there is not None
-                and float(np.min(np.max(np.abs(points - there.state), axis=1))) < 1e-7 * scale
-            ):
-                return True
-        return False
 
-    def result(self, unsure: tuple[float, ...], began: float) -> Diagram:
-        """Assemble the record."""
-        branches = tuple(self.branches)
-        bad = [i for i, b in enumerate(branches) if not b.converged]
-        tally = ", ".join(f"{sum(len(b.special(kind)) for b in branches)} {kind}s" for kind in KINDS)
-        message = f"{len(branches)} branches; {tally}"
-        if bad:
-            message += f"; branch {bad[0]} did not end well: {branches[bad[0]].message}"
-        if unsure:
-            message += f"; orbits may be missing near {self.parameter} = {unsure[0]:.6g}: more searches"
-        iterations = sum(b.cost.iterations for b in branches)
-        return Diagram(
-            self.oscillator, self.parameter, self.bounds, branches, tuple(self.origins), tuple(self.left_out), unsure,
-            max((b.error for b in branches), default=0.0),
-            Cost(time.perf_counter() - began, 3, iterations, self.periods), not (bad or unsure), message,
-        )  # fmt: skip
+def _follow_met(builder: Gathering, met: MultiSweep) -> None:
+    """Follow the periodic motions of sweeps that lie on no branch."""
+    builder.periods += met.cost.periods
+    for motion in (m for here in met.motions for m in here if 0 < m.periods <= builder.longest):
+        here = builder.oscillator.with_parameter(builder.parameter, motion.value)
+        orbit = find_orbit(here, motion.states[-1], periods=motion.periods)
+        if orbit.converged and not builder.holds(orbit, motion.value):
+            builder.follow(orbit, Origin(None, motion.value))
+
+
+def _result(gathered: Gathering, unsure: tuple[float, ...], began: float) -> Diagram:
+    """Assemble the record."""
+    branches = tuple(gathered.branches)
+    bad = [i for i, b in enumerate(branches) if not b.converged]
+    tally = ", ".join(f"{sum(len(b.special(kind)) for b in branches)} {kind}s" for kind in KINDS)
+    message = f"{len(branches)} branches; {tally}"
+    if bad:
+        message += f"; branch {bad[0]} did not end well: {branches[bad[0]].message}"
+    if unsure:
+        message += f"; orbits may be missing near {gathered.parameter} = {unsure[0]:.6g}: more searches"
+    iterations = sum(b.cost.iterations for b in branches)
+    return Diagram(
+        gathered.oscillator, gathered.parameter, gathered.bounds, branches, tuple(gathered.origins),
+        tuple(gathered.left_out), unsure,
+        max((b.error for b in branches), default=0.0),
+        Cost(time.perf_counter() - began, 3, iterations, gathered.periods), not (bad or unsure), message,
+    )  # fmt: skip

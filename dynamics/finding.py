@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,11 +12,12 @@ import numpy.typing as npt
 from dynamics.cost import Cost
 from dynamics.errors import Faults
 from dynamics.flow import Tables, period_map, tables
+from dynamics.index import index_at_infinity
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.sweeps import rest_state, settling_periods
 
-__all__ = ["IndexCount", "OrbitSet", "find_orbits"]
+__all__ = ["IndexCount", "OrbitSet", "find_orbits", "reach"]
 
 FloatArray = npt.NDArray[np.float64]
 Region = tuple[tuple[float, float], tuple[float, float]]
@@ -94,8 +94,7 @@ def find_orbits(
 
     Starts lie on a grid and on long motions. Orbits found are deflated, so that later searches are pushed away from
     them. The fixed points of the n-period map have indices, the sign of (1 - m1)(1 - m2), whose sum is the index of
-    the map on a large circle: there the backlash does not count, and it is that of the linear equation with D = 0.
-    Where the sum differs the search is repeated with a finer grid, twice.
+    the map on a large circle (`dynamics.index`). Where the sum differs the search is repeated with a finer grid, twice.
 
     Parameters
     ----------
@@ -160,8 +159,7 @@ class _Search:
         self.oscillator, self.table = oscillator, tables(oscillator)
         self.orbits: list[Orbit] = []
         self.points: list[FloatArray] = []  # of each orbit
-        self.periods = 0
-        self.motion = self._motion()
+        self.motion, self.periods = _long_motions(oscillator, self.table)
         size = np.max(np.abs(self.motion), axis=0, initial=1e-9)
         self.region = region if region is not None else _around(size)
         self.scale = float(np.max(np.abs(self.region)))
@@ -218,7 +216,7 @@ class _Search:
                 product = float(np.real(np.prod(1.0 - np.asarray(orbit.multipliers) ** (n // orbit.periods))))
                 total += orbit.periods * int(np.sign(product))
                 number += orbit.periods
-        return IndexCount(n, number, total, _index_at_infinity(self.oscillator, n))
+        return IndexCount(n, number, total, index_at_infinity(self.oscillator, n))
 
     def _keep(self, orbit: Orbit) -> None:
         if not orbit.converged:
@@ -229,33 +227,30 @@ class _Search:
         self.orbits.append(orbit)
         self.points.append(points)
 
-    def _motion(self) -> FloatArray:
-        """States of motions from three starts, the later ones at the end; what diverges is left out."""
-        rest = rest_state(self.oscillator)
-        push = np.array([0.0, 1.0 + float(np.max(np.abs(rest)))])
-        wait = min(settling_periods(self.oscillator, low=50), 400)
-        parts = []
-        for start in (rest, rest + push, -rest - push):
-            image = period_map(self.table, start, 80, skip=wait)
-            self.periods += wait + 80
-            if not image.message and float(np.max(np.abs(image.states))) < 1e6:
-                parts.append(image.states)
-        return np.stack(parts, axis=1).reshape(-1, 2) if parts else np.array([rest])
+
+def reach(oscillator: GearOscillator) -> Region:
+    """Box of states somewhat larger than what long motions from three starts cover."""
+    return _around(np.max(np.abs(_long_motions(oscillator, tables(oscillator))[0]), axis=0, initial=1e-9))
+
+
+def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[FloatArray, int]:
+    """States of motions from three starts, the later ones at the end, and the periods that they took.
+
+    What diverges is left out.
+    """
+    rest = rest_state(oscillator)
+    push = np.array([0.0, 1.0 + float(np.max(np.abs(rest)))])
+    wait = min(settling_periods(oscillator, low=50), 400)
+    parts, used = [], 0
+    for start in (rest, rest + push, -rest - push):
+        image = period_map(table, start, 80, skip=wait)
+        used += wait + 80
+        if not image.message and float(np.max(np.abs(image.states))) < 1e6:
+            parts.append(image.states)
+    return (np.stack(parts, axis=1).reshape(-1, 2) if parts else np.array([rest])), used
 
 
 def _around(size: FloatArray) -> Region:
     """Box somewhat larger than a motion."""
     x, v = (float(1.3 * s + 0.1 * np.max(size)) for s in size)
     return (-x, x), (-v, v)
-
-
-def _index_at_infinity(oscillator: GearOscillator, n: int) -> int | None:
-    """Index of the n-period map on a large circle."""
-    if oscillator.one_sided:
-        return None
-    linear: Tables = tables(dataclasses.replace(oscillator, half_backlash=0.0))
-    jacobian = period_map(linear, np.zeros(2)).jacobian
-    if not np.all(np.isfinite(jacobian)):
-        return None
-    product = np.prod(1.0 - np.linalg.eigvals(jacobian) ** n)
-    return int(np.sign(product.real)) if abs(product) > 1e-6 else None

@@ -8,7 +8,7 @@ from itertools import groupby
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.continuation import Branch
+from dynamics.branch import Branch
 from dynamics.special import SpecialPoint
 
 __all__ = ["Stretch", "stretches"]

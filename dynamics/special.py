@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["SpecialPoint"]
+from dynamics.errors import Faults
+
+__all__ = ["OfKind", "SpecialPoint", "of_kind"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,3 +60,38 @@ class SpecialPoint:
     tau: float = math.nan
     acceleration: float = math.nan
     stiffness: float = math.nan
+
+
+class OfKind(Protocol):
+    """What has a kind."""
+
+    @property
+    def kind(self) -> str:
+        """Its name."""
+
+
+Marked = TypeVar("Marked", bound=OfKind)
+
+
+def of_kind(points: Sequence[Marked], kind: str, kinds: Sequence[str]) -> list[Marked]:
+    """Points of one kind, in their order.
+
+    Parameters
+    ----------
+    points : sequence
+        Special points or points of codimension two.
+    kind : str
+        One of `kinds`.
+    kinds : sequence of str
+        The kinds there are.
+
+    Raises
+    ------
+    DynamicsError
+        If there is no such kind.
+    """
+    if kind not in kinds:
+        faults = Faults()
+        faults.add("kind", kind, ", ".join(kinds), "name one of these")
+        faults.raise_if_any()
+    return [p for p in points if p.kind == kind]

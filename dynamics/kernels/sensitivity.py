@@ -448,7 +448,8 @@ def correct(
         flag, turned, best = look(
             origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
         )
-    if not best <= 1.5e-14 * max(1.0, largest(lin, 2)):
+    rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.corrector
+    if not best <= rounding * max(1.0, largest(lin, 2)):
         flag = LOST
     scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
     return flag, turned, done, best

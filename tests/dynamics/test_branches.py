@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import pickle
 
@@ -9,13 +10,21 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from dynamics import DynamicsError, continue_branch, find_orbit, period_map, sweep, turning_points
+from dynamics import (
+    DynamicsError,
+    FourierStiffness,
+    GearOscillator,
+    continue_branch,
+    find_orbit,
+    find_orbits,
+    period_map,
+    sweep,
+    turning_points,
+)
 
 
 @pytest.fixture(scope="module")
 def scan():
-    from dynamics import FourierStiffness, GearOscillator
-
     osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
     return osc, continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.3, 1.3))
 
@@ -190,3 +199,17 @@ def test_end_of_patience_is_said(article):
     )
     assert not branch.converged
     assert "max_points" in branch.message
+
+
+def test_branch_that_grows_without_bound_goes_to_the_edge_of_the_linear_resonance():
+    """Far out backlash does not count: the branch tends to where the linear equation's multiplier is -1, as D/A."""
+    starved = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 1.7, half_backlash=1.0)
+    (start,) = (o for o in find_orbits(starved, (2,)).orbits if o.label == "2-1-1")
+    branch = continue_branch(start, "frequency", (0.1, 2.5))
+    assert branch.converged
+    assert branch.ended == ("the motion grows without bound",) * 2
+    for value in branch.values[[0, -1]]:
+        linear = dataclasses.replace(starved, half_backlash=0.0, frequency=float(value))
+        least = np.linalg.eigvals(period_map(linear, (0.0, 0.0)).jacobian).real.min()
+        assert abs(least + 1.0) < 2e-3
+    assert {round(float(v), 3) for v in branch.values[[0, -1]]} == {1.954, 2.045}

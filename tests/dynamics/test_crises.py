@@ -10,7 +10,9 @@ from dynamics import (
     FourierStiffness,
     GearOscillator,
     basins,
+    boundary_crises,
     boundary_crisis,
+    diagram,
     find_orbits,
 )
 
@@ -29,11 +31,12 @@ def saddle(label: str):
 def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
     """The tangency with U3-3-1 does not depend on how many points follow its manifold, and parts lasting chaos from
     chaos that dies out: below it every start comes to 6-4-4 if one waits."""
-    found = boundary_crisis(saddle("U3-3-1"), "frequency", (1.116, 1.13))
-    again = boundary_crisis(saddle("U3-3-1"), "frequency", (1.1175, 1.131), points=1500)
+    found = boundary_crisis(saddle("U3-3-1"), "frequency", (1.116, 1.13), points=500, periods=90)
+    again = boundary_crisis(saddle("U3-3-1"), "frequency", (1.1175, 1.131), points=800, periods=120)
     assert found.converged
     assert found.saddle.label == "U3-3-1"
     assert found.overshoot[0] > 0.0 > found.overshoot[1]
+    assert (found.before, found.after) == ("aperiodic", "6-4-4")
     assert found.parameter == pytest.approx(1.119740782, abs=2e-9)
     assert again.parameter == pytest.approx(found.parameter, abs=1e-9)
     for shift, kinds in ((-0.004, {"6-4-4"}), (0.004, {"6-4-4", "aperiodic"})):
@@ -42,6 +45,18 @@ def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
             a.label for a in basins(here, (-1.5, 1.5, 8), (-1.5, 1.5, 8), limit=10_000).attractors if a.share
         }
         assert labels == kinds
+
+
+@pytest.mark.slow
+def test_all_saddles_of_a_diagram():
+    """The same crisis without its saddle being named."""
+    whole = diagram(
+        scan(1.13), "frequency", (1.117, 1.123), periods=(1, 3), searches=2, swept=0, max_period=3
+    )
+    found = boundary_crises(whole, values=4, points=250)
+    assert "U3-3-1" in {c.saddle.label for c in found if c.before == "aperiodic"}
+    (chaotic,) = (c for c in found if c.saddle.label == "U3-3-1" and c.after == "6-4-4")
+    assert chaotic.parameter == pytest.approx(1.119740782, abs=2e-8)
 
 
 def test_no_crisis_is_said_to_be_none():

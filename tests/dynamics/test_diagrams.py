@@ -89,15 +89,24 @@ def test_every_attractor_of_sweeps_is_in_the_diagram(whole):
             assert label in stable, (value, label)
 
 
-def test_diagram_holds_the_isola_and_no_branch_twice(whole):
+def test_diagram_holds_the_isolas_and_no_branch_twice(whole):
     closed = [b for b in whole.branches if b.ended == ("closed", "closed")]
-    assert [b.periods for b in closed] == [3]
-    assert {"3-3-2", "U3-2-2"} <= set(closed[0].labels)
+    assert sorted(b.periods for b in closed) == [3, 6, 7]
+    assert {"3-3-2", "U3-2-2"} <= set(next(b for b in closed if b.periods == 3).labels)
     spans = [(b.periods, round(b.values.min(), 3), round(b.values.max(), 3)) for b in whole.branches]
     assert len(set(spans)) == len(spans)
     assert all(o.parent is None or whole.branches[o.parent].periods * 2 == b.periods for o, b in zip(
         whole.origins, whole.branches, strict=True))  # fmt: skip
     assert all("beyond max_period" in text for text in whole.left_out)
+
+
+def test_isola_between_two_searches_is_met_by_sweeps():
+    """The one search looks for period 1 only; 3-3-2 is stable from .88883 to .90243."""
+    for swept, periods in ((0, {1, 2}), (40, {1, 2, 3})):
+        found = diagram(
+            lubricated(), "frequency", (0.885, 0.905), periods=(1,), searches=1, swept=swept, max_period=3
+        )
+        assert {b.periods for b in found.branches} == periods
 
 
 def test_special_points_of_the_whole_diagram(whole):
