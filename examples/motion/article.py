@@ -1,7 +1,8 @@
 """A scan of the article's section 6 with all its figures.
 
 Run it with:   python examples/motion/article.py 6.1 --out out/motion
-Minutes at full size; --small takes seconds and shows the same things coarsely.
+Minutes at full size; --small takes seconds and shows the same things coarsely. Figures are vector files (svg or pdf)
+unless png is asked for.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import drawing
 import numpy as np
+from matplotlib.figure import Figure
 from scans import SCANS, Scan
 
 import dynamics
@@ -20,7 +22,11 @@ import dynamics
 
 @dataclass(frozen=True)
 class Size:
-    """How much work: values swept, periods of the exponents, starts along each side of the basins, and so on."""
+    """How much work: values swept, periods of the exponents, starts along each side of the basins, and so on.
+
+    `cells` along each side of the basins are where their boundaries are looked for, `levels` the halvings of those
+    that a boundary passes.
+    """
 
     values: int
     periods: int
@@ -28,9 +34,11 @@ class Size:
     searches: int
     max_period: int
     basins: int
+    cells: int
+    levels: int
 
 
-SMALL, FULL = Size(41, 200, 24, 3, 2, 2), Size(801, 4000, 200, 9, 8, 20)
+SMALL, FULL = Size(41, 200, 24, 3, 2, 2, 16, 2), Size(401, 1000, 80, 9, 8, 20, 64, 3)
 
 
 def main(arguments: Sequence[str] | None = None) -> list[Path]:
@@ -38,54 +46,63 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("scan", choices=sorted(SCANS))
     parser.add_argument("--out", type=Path, default=Path("out/motion"))
+    parser.add_argument("--format", choices=("svg", "pdf", "png"), default="svg", help="of the figures")
     parser.add_argument("--small", action="store_true", help="seconds instead of minutes")
     given = parser.parse_args(arguments)
     folder = given.out / given.scan
     folder.mkdir(parents=True, exist_ok=True)
-    files, told = draw(SCANS[given.scan], folder, SMALL if given.small else FULL)
+    files, told = draw(SCANS[given.scan], folder, SMALL if given.small else FULL, given.format)
     (folder / "summary.txt").write_text("\n".join(told) + "\n", encoding="utf-8")
     print("\n".join(told))
     return [*files, folder / "summary.txt"]
 
 
-def draw(scan: Scan, folder: Path, size: Size) -> tuple[list[Path], list[str]]:
+def draw(scan: Scan, folder: Path, size: Size, ending: str) -> tuple[list[Path], list[str]]:
     """Compute and draw everything of a scan; return the files and what was found, in words."""
     osc, parameter = scan.oscillator, scan.parameter
     symbol = "mesh frequency" if parameter == "frequency" else "error amplitude"
     values = np.linspace(*scan.bounds, size.values)
+    files, told = [], []
+
+    def keep(figure: Figure, name: str) -> None:
+        files.append(drawing.save(figure, folder, name, ending))
+
+    longest = min(scan.max_period, size.max_period)
+    for k, bounds in enumerate((scan.bounds, *scan.zooms)):
+        met = dynamics.multi_sweep(
+            osc, parameter, np.linspace(*bounds, size.values), seeds=2 * size.searches, max_period=16
+        )
+        diagram = dynamics.diagram(osc, parameter, bounds, searches=size.searches, max_period=longest)
+        keep(drawing.diagram_figure(diagram, met, symbol), "diagram" if k == 0 else f"zoom_{bounds[0]:g}")
+        told += [f"{bounds[0]:g} to {bounds[1]:g}: {diagram.message}", met.message, *diagram.left_out]
+        if k == 0:
+            motions, missing = named_motions(scan, diagram)
+            keep(drawing.portrait_figure(motions, osc.half_backlash), "portraits")
+            told += [f"{label}: no stable stretch in the diagram" for label in missing]
     sweeps = [dynamics.sweep(osc, parameter, values, direction) for direction in ("up", "down")]
-    diagram = dynamics.diagram(
-        osc, parameter, scan.bounds, searches=size.searches, max_period=min(scan.max_period, size.max_period)
-    )
-    told = [diagram.message, *diagram.left_out]
-    files = [drawing.save(drawing.diagram_figure(diagram, sweeps, symbol), folder, "diagram")]
-    exponents, errors = exponent_spectra(scan, sweeps, size.periods)
-    files.append(
-        drawing.save(drawing.exponent_figure(values, exponents, errors, symbol), folder, "exponents")
-    )
-    motions, missing = named_motions(scan, diagram)
-    told += [f"{label}: no stable stretch in the diagram" for label in missing]
-    files.append(drawing.save(drawing.portrait_figure(motions, osc.half_backlash), folder, "portraits"))
+    keep(drawing.exponent_figure(exponent_spectra(scan, sweeps, size.periods), symbol), "exponents")
     for value in scan.basins[: size.basins]:
-        figure, lines = basins(scan, value, size.starts)
-        told += lines
-        files.append(drawing.save(figure, folder, f"basins_{value:g}"))
+        figure, line = basins(scan, value, size)
+        told.append(line)
+        keep(figure, f"basins_{value:g}")
     return files, told
 
 
 def exponent_spectra(
     scan: Scan, sweeps: Sequence[dynamics.SweepResult], periods: int
-) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Largest exponents and their standard errors along both sweeps."""
-    exponents, errors = {}, {}
+) -> list[tuple[str, np.ndarray]]:
+    """Rows value, both exponents and the larger one's standard error along each sweep, with its direction."""
+    spectra = []
     for sweep in sweeps:
         rows = []
         for value, states in zip(sweep.values, sweep.states, strict=True):
+            if not np.all(np.abs(states) < 1e6):
+                continue  # motion without bound
             here = scan.oscillator.with_parameter(scan.parameter, float(value))
             found = dynamics.lyapunov_exponents(here, periods, state=states[-1], transient=0)
-            rows.append((found.exponents[0], found.standard_error))
-        exponents[sweep.direction], errors[sweep.direction] = np.array(rows).T
-    return exponents, errors
+            rows.append((value, *found.exponents, found.standard_error))
+        spectra.append((sweep.direction, np.array(rows)))
+    return spectra
 
 
 def named_motions(
@@ -109,22 +126,32 @@ def named_motions(
     return motions, missing
 
 
-def basins(scan: Scan, value: float, starts: int) -> tuple[object, list[str]]:
-    """Basins at a value with unstable orbits and the stable manifolds of those of least period."""
+def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
+    """Basins at a value, their boundary's dimension, unstable orbits and the stable manifolds of the saddles."""
     here = scan.oscillator.with_parameter(scan.parameter, value)
     (x0, x1), (v0, v1) = scan.box
-    result = dynamics.basins(here, (x0, x1, starts), (v0, v1, starts), limit=scan.patience)
-    periods = sorted({1, 2, *(a.orbit.periods for a in result.attractors if a.orbit is not None)})
+    result = dynamics.basins(here, (x0, x1, size.starts), (v0, v1, size.starts), limit=scan.patience)
+    known = [a for a in result.attractors if a.orbit is not None and a.share > 0.0]
+    edge = dynamics.basin_boundary(
+        here, known, scan.box, cells=size.cells, levels=size.levels, limit=scan.patience
+    )
+    periods = sorted({1, 2, *(a.orbit.periods for a in known if a.orbit is not None)})
     orbits = [o for o in dynamics.find_orbits(here, periods).orbits if not o.stable]
-    saddles = [o for o in orbits if not np.iscomplexobj(o.multipliers) and abs(o.multipliers[1]) < 1.0]
-    direct = [o for o in saddles if o.multipliers[0].real > 1.0][:4]
-    manifolds = [dynamics.manifold(o, "stable", scan.box, length=40.0, max_points=3000) for o in direct]
+    direct = [o for o in orbits if not np.iscomplexobj(o.multipliers) and o.multipliers[0] > 1.0][:4]
+    smooth = len(known) == len(result.attractors) > 1  # else the manifolds fill the plane
+    length = 60.0 if smooth else 12.0
+    manifolds = [dynamics.manifold(o, "stable", scan.box, length=length, max_points=6000) for o in direct]
     drawn = [(o.label, dynamics.period_map(here, o.state, o.periods).states) for o in orbits]
     shares = ", ".join(
         f"{a.label} {100 * a.share:.2f} +- {100 * a.share_error:.2f} %" for a in result.attractors
     )
     told = f"basins at {value:g}: {shares}; unstable: {', '.join(o.label for o in orbits) or 'none found'}"
-    return drawing.basin_figure(result, drawn, manifolds, f"{scan.parameter} = {value:g}"), [told]
+    title = f"{scan.parameter} = {value:g}"
+    if len(known) > 1 or result.labels.max() > 0:
+        low, high = (edge.dimension + sign * 1.96 * edge.dimension_error for sign in (-1, 1))
+        title += f"; boundary dimension {edge.dimension:.2f} ({low:.2f} to {high:.2f})"
+        told += f"; {edge.message}"
+    return drawing.basin_figure(result, drawn, manifolds, title), told
 
 
 if __name__ == "__main__":

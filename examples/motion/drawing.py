@@ -2,54 +2,74 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from dynamics import BasinResult, Diagram, Manifold, SweepResult, Trajectory
+from dynamics import BasinResult, Diagram, Manifold, MultiSweep, Trajectory
 
 MARKS = {"saddle-node": ("o", "tab:red"), "period-doubling": ("s", "tab:purple"), "grazing": ("x", "black")}
+DIRECTIONS = {
+    frozenset({"up"}): "tab:red", frozenset({"down"}): "tab:blue", frozenset({"up", "down"}): "tab:green",
+}  # fmt: skip
+UNSTABLE, LINES = ("^", "v", "s", "D", "x", "+"), ("-", "--", "-.", ":")
 SHADES = ("#9ecae1", "#fdae6b", "#a1d99b", "#bcbddc", "#fc9272", "#d9d9d9", "#fee391", "#c7e9b4")
 
 
-def diagram_figure(diagram: Diagram, sweeps: Sequence[SweepResult], symbol: str) -> Figure:
-    """Branches (stable solid, unstable dashed), special points, and the sweeps behind them."""
-    figure = Figure(figsize=(9, 5), layout="constrained")
+def diagram_figure(diagram: Diagram, met: MultiSweep, symbol: str) -> Figure:
+    """Branches (stable solid, unstable dashed), special points, and what sweeps from many starts met behind them."""
+    figure = Figure(figsize=(9, 5.2), layout="constrained")
     axes = figure.subplots()
-    for sweep, colour in zip(sweeps, ("tab:red", "tab:blue"), strict=True):
-        x = np.repeat(sweep.values, sweep.states.shape[1])
-        axes.plot(x, sweep.states[:, :, 0].ravel(), ",", color=colour, alpha=0.5, rasterized=True)
-        axes.plot([], [], ".", color=colour, label=f"{sweep.direction}")
+    for wanted, colour in DIRECTIONS.items():
+        motions = [
+            m for here in met.motions for m in here if m.directions == wanted and m.label != "diverged"
+        ]
+        if motions:
+            x = np.concatenate([np.full(len(m.states), m.value) for m in motions])
+            y = np.concatenate([m.states[:, 0] for m in motions])
+            axes.plot(x, y, ".", color=colour, markersize=1.5, markeredgewidth=0.0, rasterized=True)
+        axes.plot([], [], ".", color=colour, label=" and ".join(sorted(wanted, reverse=True)))
     for branch in diagram.branches:
-        for wanted, style in ((True, "-"), (False, "--")):
-            keep = branch.stable == wanted
-            keep[1:] |= branch.stable[:-1] == wanted
+        for wanted_stability, style in ((True, "-"), (False, "--")):
+            keep = branch.stable == wanted_stability
+            keep[1:] |= branch.stable[:-1] == wanted_stability
             x = np.where(keep, branch.states[:, 0], np.nan)
-            axes.plot(branch.values, x, style, color="black", linewidth=1.1 if wanted else 0.5)
+            axes.plot(branch.values, x, style, color="black", linewidth=0.9 if wanted_stability else 0.5)
         for point in branch.points:
             mark, colour = MARKS[point.kind]
-            axes.plot(point.parameter, point.state[0], mark, color=colour, markersize=3.5)
+            axes.plot(point.parameter, point.state[0], mark, color=colour, markersize=3.0)
     for kind, (mark, colour) in MARKS.items():
         axes.plot([], [], mark, color=colour, label=kind)
-    axes.set(xlabel=symbol, ylabel="X at tau = 0", xlim=diagram.bounds)
-    axes.legend(fontsize=7, ncols=5, loc="upper left")
+    axes.plot([], [], "-", color="black", label="stable")
+    axes.plot([], [], "--", color="black", linewidth=0.7, label="unstable")
+    axes.set(xlabel=symbol, ylabel="X at tau = 0", xlim=diagram.bounds, ylim=_span(met))
+    figure.legend(fontsize=7, ncols=8, loc="outside upper center")
     return figure
 
 
-def exponent_figure(
-    values: np.ndarray, exponents: Mapping[str, np.ndarray], errors: Mapping[str, np.ndarray], symbol: str
-) -> Figure:
-    """Largest Lyapunov exponent of the motions that the sweeps met, with its standard error."""
-    figure = Figure(figsize=(9, 3), layout="constrained")
+def _span(met: MultiSweep) -> tuple[float, float]:
+    """Range of X that all but the largest motions keep to: branches that grow without bound would hide the rest."""
+    x = np.concatenate([m.states[:, 0] for here in met.motions for m in here if m.label != "diverged"])
+    low, high = np.quantile(x, [0.005, 0.995])
+    return float(low - 0.1 * (high - low)), float(high + 0.1 * (high - low))
+
+
+def exponent_figure(spectra: Sequence[tuple[str, np.ndarray]], symbol: str) -> Figure:
+    """Both Lyapunov exponents of the motions that the sweeps met, the larger with its standard error."""
+    figure = Figure(figsize=(9, 3.4), layout="constrained")
     axes = figure.subplots()
-    for (name, found), colour in zip(exponents.items(), ("tab:red", "tab:blue"), strict=True):
-        axes.errorbar(values, found, errors[name], color=colour, linewidth=0.8, elinewidth=0.5, label=name)
+    for (name, rows), colour in zip(spectra, ("tab:red", "tab:blue"), strict=True):
+        value, first, second, error = rows.T
+        axes.errorbar(
+            value, first, error, color=colour, linewidth=0.8, elinewidth=0.5, label=f"larger, {name}"
+        )
+        axes.plot(value, second, ":", color=colour, linewidth=0.8, label=f"smaller, {name}")
     axes.axhline(0.0, color="grey", linewidth=0.7)
-    axes.set(xlabel=symbol, ylabel="largest Lyapunov exponent")
-    axes.legend(fontsize=7)
+    axes.set(xlabel=symbol, ylabel="Lyapunov exponents", xlim=(value.min(), value.max()))
+    figure.legend(fontsize=7, ncols=4, loc="outside upper center")
     return figure
 
 
@@ -68,6 +88,10 @@ def portrait_figure(motions: Sequence[tuple[str, Trajectory]], play: float) -> F
             axes.axvline(edge, color="grey", linestyle=":", linewidth=0.8)
         axes.set_title(title, fontsize=7)
         axes.tick_params(labelsize=6)
+    for axes in grid.ravel()[max(len(motions) - columns, 0) : len(motions)]:
+        axes.set_xlabel("X", fontsize=7)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("V", fontsize=7)
     return figure
 
 
@@ -75,30 +99,40 @@ def basin_figure(
     result: BasinResult, unstable: Sequence[tuple[str, np.ndarray]], manifolds: Sequence[Manifold], title: str
 ) -> Figure:
     """Basins, attractors, unstable orbits, and the stable manifolds that bound the basins."""
-    figure = Figure(figsize=(5.4, 5), layout="constrained")
+    figure = Figure(figsize=(6.6, 5), layout="constrained")
     axes = figure.subplots()
     box = (result.x[0], result.x[-1], result.v[0], result.v[-1])
+    shown = [i for i, a in enumerate(result.attractors) if a.share > 0.0]
     colours = ListedColormap([SHADES[i % len(SHADES)] for i in range(len(result.attractors))])
     axes.imshow(
         np.ma.masked_less(result.labels.T, 0), origin="lower", extent=box, aspect="auto", cmap=colours,
         vmin=-0.5, vmax=len(result.attractors) - 0.5, interpolation="nearest",
     )  # fmt: skip
-    for attractor in result.attractors:
-        size = 3.0 if attractor.orbit is not None else 0.8
-        name = f"{attractor.label}, {100 * attractor.share:.1f} %"
-        axes.plot(*attractor.states.T, "o", markersize=size, label=name)
-    for label, states in unstable:
-        axes.plot(*states.T, "^", color="black", markersize=4, label=label)
-    for manifold in manifolds:
-        for curve in manifold.curves:
-            axes.plot(*curve.T, color="black", linewidth=0.5)
-    axes.set(xlim=box[:2], ylim=box[2:], xlabel="X at tau = 0", ylabel="V at tau = 0", title=title)
-    axes.legend(fontsize=6, loc="upper right")
+    for i in shown:
+        attractor = result.attractors[i]
+        periodic = attractor.orbit is not None
+        axes.plot(
+            *attractor.states.T, "o" if periodic else ".", color=SHADES[i % len(SHADES)], markeredgecolor="black",
+            markersize=6.0 if periodic else 2.5, markeredgewidth=0.8 if periodic else 0.2,
+            label=f"{attractor.label}, {100 * attractor.share:.1f} %",
+        )  # fmt: skip
+    for k, (label, states) in enumerate(unstable[:10]):
+        axes.plot(*states.T, UNSTABLE[k % len(UNSTABLE)], color="black", markersize=4.5, label=label)
+    if len(unstable) > 10:
+        axes.plot([], [], " ", label=f"and {len(unstable) - 10} more unstable")
+    for k, manifold in enumerate(manifolds):
+        for j, curve in enumerate(manifold.curves):
+            label = f"stable manifold of {manifold.orbit.label}" if j == 0 else None
+            line = axes.plot(*curve.T, LINES[k % len(LINES)], color="black", linewidth=0.5, label=label)
+            line[0].set_rasterized(len(curve) > 5000)
+    axes.set(xlim=box[:2], ylim=box[2:], xlabel="X at tau = 0", ylabel="V at tau = 0")
+    axes.set_title(title, fontsize=9)
+    figure.legend(fontsize=7, loc="outside right upper")
     return figure
 
 
-def save(figure: Figure, folder: Path, name: str) -> Path:
-    """Write a figure as PNG."""
-    path = folder / f"{name}.png"
+def save(figure: Figure, folder: Path, name: str, ending: str) -> Path:
+    """Write a figure; what has very many points is an image of 150 dpi within a vector file."""
+    path = folder / f"{name}.{ending}"
     figure.savefig(path, dpi=150)
     return path

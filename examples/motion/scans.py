@@ -29,6 +29,8 @@ class Scan:
         Value at which an aperiodic motion is drawn.
     max_period : int
         Longest period that the diagram follows.
+    zooms : tuple of (float, float)
+        Ranges drawn once more by themselves.
     patience : int
         Periods after which a start of the basins without an attractor is looked at: chaotic transients last long.
     """
@@ -41,7 +43,8 @@ class Scan:
     box: tuple[tuple[float, float], tuple[float, float]]
     chaos: float
     max_period: int
-    patience: int = 1000
+    zooms: tuple[tuple[float, float], ...] = ()
+    patience: int = 500
 
 
 def _oscillator(
@@ -56,17 +59,20 @@ SCANS = {
     "6.1": Scan(
         _oscillator(0.18, 0.05, 0.1, 0.2, 0.6, 0.2), "frequency", (0.1, 2.1),
         ("1-0-0", "1-1-0", "1-1-1", "2-1-0", "2-1-1", "2-2-1", "3-3-2", "6-4-4", "4-3-0"),
-        (0.58, 0.60, 0.62, 0.64, 0.655, 1.10, 1.12, 1.14), ((-1.5, 1.5), (-1.5, 1.5)), 1.5, 8,
+        (0.58, 0.60, 0.62, 0.64, 0.655, 1.10, 1.12, 1.14), ((-1.5, 1.5), (-1.5, 1.5)), 1.6, 8,
+        ((0.55, 0.68),), 1500,
     ),
     "6.2": Scan(
         _oscillator(0.1, 0.01, 0.05, 0.2, 0.6, 1.0), "frequency", (0.1, 2.5),
         ("1-0-0", "1-1-0", "1-1-1", "2-2-0", "4-2-2", "3-1-1"),
         (0.3166, 0.3168, 1.0, 1.0012), ((-3.0, 3.0), (-3.0, 3.0)), 0.85, 4,
+        ((0.42, 0.56),),
     ),
     "6.3": Scan(
         _oscillator(0.5, 0.06, 0.1, 0.4, 0.4, 0.8), "error_amplitude", (0.1, 3.0),
         ("1-0-0", "1-1-0", "1-2-0", "2-4-0", "2-3-1", "2-3-2"),
-        (0.53, 0.555, 0.58, 0.589, 1.076), ((-3.0, 3.0), (-2.0, 2.0)), 0.67, 8,
+        (0.53, 0.555, 0.58, 0.589, 1.076), ((-3.0, 3.0), (-2.0, 2.0)), 0.69, 8,
+        ((0.5, 0.82),),
     ),
     "6.4": Scan(
         _oscillator(0.5, 0.06, 0.1, 0.4, 0.4, 0.4), "error_amplitude", (0.1, 4.0),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
+from crises import CRISES, located
 from events import EVENTS, WINDOWS, Event
 from scans import SCANS
 
@@ -47,7 +48,9 @@ def row(event: Event, diagram: dynamics.Diagram | None) -> str:
     if diagram is None:
         return f"{head} | | not reproduced: the article gives D alone, and the rest is not identified |"
     if event.kind == "crisis":
-        return f"{head} | | not reproduced: {event.tracked} |"
+        places = [place for place in CRISES if place.section == event.section]
+        ours = f"{located(places[0]).parameter:.7f}" if places else ""
+        return f"{head} {ours} | | not reproduced: {event.tracked} |"
     points = [p for p in diagram.special(event.kind) if p.label.removeprefix("U") in event.labels]
     point = min(points, key=lambda p: abs(p.parameter - event.value), default=None)
     if point is None or abs(point.parameter - event.value) > 0.02 * event.value:

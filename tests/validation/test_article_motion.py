@@ -11,7 +11,17 @@ import math
 import numpy as np
 import pytest
 
-from dynamics import FourierStiffness, GearOscillator, basins, find_orbit, period_map, sweep, trajectory
+from dynamics import (
+    FourierStiffness,
+    GearOscillator,
+    basins,
+    boundary_crisis,
+    find_orbit,
+    find_orbits,
+    period_map,
+    sweep,
+    trajectory,
+)
 
 
 def lubricated(frequency: float, phase: float = 0.0, kappa: float = 0.18) -> GearOscillator:
@@ -67,6 +77,33 @@ def test_stiffness_and_error_in_phase_cancel():
 @pytest.mark.parametrize("frequency", [0.3, 0.4, 0.5, 0.8, 1.4, 2.0])
 def test_motion_is_smaller_in_phase_than_in_opposition(frequency: float):
     assert peak_to_peak(frequency, 0.0) < peak_to_peak(frequency, math.pi)
+
+
+@pytest.mark.parametrize("frequency", [0.5, 0.8, 1.4])
+def test_least_motion_in_phase_greatest_in_opposition_all_around(frequency: float):
+    """Phases from 0 to 2 pi: the least motion is next to phi = 0, the greatest within 45 degrees of pi."""
+    phases = np.arange(16) * math.pi / 8.0
+    sizes = [peak_to_peak(frequency, phase) for phase in phases]
+    least, greatest = phases[int(np.argmin(sizes))], phases[int(np.argmax(sizes))]
+    assert min(least, 2.0 * math.pi - least) < 0.4
+    assert abs(greatest - math.pi) < 0.8
+
+
+@pytest.mark.slow
+def test_chaos_of_the_error_scan_ends_at_a_saddle():
+    """The article prints .68; ours ends at .7799045, told by a tangency and, apart from it, by whether chaos lasts."""
+
+    def lubricated_error(error: float) -> GearOscillator:
+        return GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, error, 0.4, 0.8)
+
+    saddle = next(o for o in find_orbits(lubricated_error(0.778), (1,)).orbits if o.label == "U1-1-0")
+    found = boundary_crisis(saddle, "error_amplitude", (0.77, 0.785), points=500, periods=90)
+    assert found.converged
+    assert found.parameter == pytest.approx(0.7799045, abs=5e-8)
+    assert (found.before, found.after) == ("aperiodic", "4-4-3")
+    for error, lasting in ((0.7795, True), (0.7820, False)):
+        grid = basins(lubricated_error(error), (0.9, 1.25, 5), (-0.2, 0.5, 5), limit=3000)
+        assert ("aperiodic" in {a.label for a in grid.attractors if a.share > 0.0}) is lasting
 
 
 def test_6_4_4_shares_with_chaos_after_a_crisis():
