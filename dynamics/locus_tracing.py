@@ -13,6 +13,7 @@ import numpy.typing as npt
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem, Point, passes
 from dynamics.crossings import match_extrema
+from dynamics.shooting import EPS
 
 __all__ = ["DoublePoint", "Tracer"]
 
@@ -33,7 +34,7 @@ class DoublePoint:
     state : ndarray, shape (2,)
         X and V at tau = 0.
     error : float
-        Largest change of a parameter, relative, from the last step of the search.
+        Error of a parameter, relative, that what is left of the second condition stands for.
     """
 
     kind: str
@@ -162,6 +163,7 @@ class Tracer:
         chord = b.u - a.u
         row = chord / np.linalg.norm(chord)
         seen: list[Point] = []
+        left: list[float] = []
 
         def measure(share: float) -> float:
             if share in (0.0, 1.0):
@@ -171,15 +173,16 @@ class Tracer:
             if found is None or not math.isfinite(value):
                 raise _LostError
             seen.append(found)
+            left.append(value)
             return value
 
         search: Callable[..., float] = brentq
         with contextlib.suppress(_LostError, RuntimeError):  # the last point then says how far it is
             measure(float(search(measure, 0.0, 1.0, xtol=1e-15, rtol=8.9e-16, maxiter=100)))
         if seen:
-            last, previous = seen[-1].values, (a.values if len(seen) < 3 else seen[-3].values)
-            error = float(np.max(np.abs(last - previous) / np.maximum(np.abs(last), 1e-300)))
-            self.double.append(DoublePoint(kind, last.copy(), seen[-1].state.copy(), error))
+            last, rest = seen[-1].values, abs(left[-1] / (after - before))
+            error = float(np.max(rest * np.abs(b.values - a.values) / np.maximum(np.abs(last), 1e-300)))
+            self.double.append(DoublePoint(kind, last.copy(), seen[-1].state.copy(), max(error, EPS)))
 
     def _again(self, kind: str, a: Point, b: Point, before: float) -> float:
         """The same test function at a point between, nan if it is not found again."""
