@@ -72,7 +72,9 @@ def draw(scan: Scan, folder: Path, size: Size, ending: str) -> tuple[list[Path],
         met = dynamics.multi_sweep(
             osc, parameter, np.linspace(*bounds, size.values), seeds=2 * size.searches, max_period=16
         )
-        diagram = dynamics.diagram(osc, parameter, bounds, searches=size.searches, max_period=longest)
+        diagram = dynamics.diagram(
+            osc, parameter, bounds, searches=size.searches, swept=min(size.values, 100), max_period=longest
+        )
         keep(drawing.diagram_figure(diagram, met, symbol), "diagram" if k == 0 else f"zoom_{bounds[0]:g}")
         told += [f"{bounds[0]:g} to {bounds[1]:g}: {diagram.message}", met.message, *diagram.left_out]
         if k == 0:
@@ -132,9 +134,6 @@ def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
     (x0, x1), (v0, v1) = scan.box
     result = dynamics.basins(here, (x0, x1, size.starts), (v0, v1, size.starts), limit=scan.patience)
     known = [a for a in result.attractors if a.orbit is not None and a.share > 0.0]
-    edge = dynamics.basin_boundary(
-        here, known, scan.box, cells=size.cells, levels=size.levels, limit=scan.patience
-    )
     periods = sorted({1, 2, *(a.orbit.periods for a in known if a.orbit is not None)})
     orbits = [o for o in dynamics.find_orbits(here, periods).orbits if not o.stable]
     direct = [o for o in orbits if not np.iscomplexobj(o.multipliers) and o.multipliers[0] > 1.0][:4]
@@ -147,7 +146,10 @@ def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
     )
     told = f"basins at {value:g}: {shares}; unstable: {', '.join(o.label for o in orbits) or 'none found'}"
     title = f"{scan.parameter} = {value:g}"
-    if len(known) > 1 or result.labels.max() > 0:
+    if known and sum(a.share > 0.0 for a in result.attractors) > 1:
+        edge = dynamics.basin_boundary(
+            here, known, scan.box, cells=size.cells, levels=size.levels, limit=scan.patience
+        )
         low, high = (edge.dimension + sign * 1.96 * edge.dimension_error for sign in (-1, 1))
         title += f"; boundary dimension {edge.dimension:.2f} ({low:.2f} to {high:.2f})"
         told += f"; {edge.message}"

@@ -65,7 +65,7 @@ def test_lubricated_frequency_scan_with_all_branches(tmp_path: Path):
 @pytest.mark.slow
 def test_ends_of_chaos():
     told = example("crises").main([])
-    assert sum("aperiodic |" in line for line in told) == 3
+    assert sum("| aperiodic |" in line for line in told) == 3
     assert "1.119740782" in told[3]
     assert not any("not seen" in line for line in told)
 
