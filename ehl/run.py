@@ -32,13 +32,13 @@ _SPIKE_SHRINK = 8.0  # most that the cluster narrows at once: a spike narrower t
 
 
 class Run:
-    """Counts what it does; ``plan`` is how the next grid is laid."""
+    """Counts what it does; ``plan`` is how the next grid is laid, ``own`` how this contact alone would have it."""
 
     def __init__(
         self, contact: LineContact, plan: Plan, supply: Supply | None, *, whole_spike: bool = False
     ) -> None:
         self.contact = contact
-        self.plan = plan
+        self.plan = self.own = plan
         self.supply = supply
         self.whole_spike = whole_spike
         self.most_cold = _MOST_COLD_NODES_DRY if plan.H_c < DRY else _MOST_COLD_NODES
@@ -104,6 +104,11 @@ class Run:
         self.attempts += 1
         if self.plan.spike is not None:
             self.plan = replace(self.plan, spike=None)
+            return self.warm(old, None, n)
+        if (
+            self.plan != self.own and not self.plan.fixed
+        ):  # grids laid for a neighbour need not suit this contact
+            self.plan = self.own
             return self.warm(old, None, n)
         return self.cold(n) if n <= self.most_cold else level
 

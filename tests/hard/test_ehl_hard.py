@@ -270,3 +270,20 @@ def test_a_few_random_supplies():
 @pytest.mark.slow
 def test_random_supplies():
     check_random_supplies(300)
+
+
+def test_grids_of_a_neighbour_give_way_to_own_ones():
+    """A third contact on the first one's grids: at 257 nodes those have no solution, its own have."""
+    oil = Lubricant(viscosity=0.075, pressure_viscosity=32.6e-9, density=910.0)
+    second = LineContact(
+        load=2.12729e5, entrainment=2.54357, radius=5.86887e-3, reduced_modulus=2.2e11, lubricant=oil
+    )
+    third = replace(second, load=2.15985e5, entrainment=2.54512, radius=5.91398e-3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EhlWarning)
+        first = solve(replace(second, load=0.858 * second.load))
+        found = solve(third, start=solve(second, start=first))
+        alone = solve(third)
+    assert found.converged, found.message
+    assert found.central_thickness == pytest.approx(alone.central_thickness, rel=0.005)
+    assert found.minimum_thickness == pytest.approx(alone.minimum_thickness, rel=0.005)
