@@ -81,11 +81,12 @@ def sampling_error(stiffness: Array) -> float:
 
 
 def peak_to_peak_error(curve: Array) -> float:
-    r"""Estimate the relative error of the peak-to-peak value of `curve` from the number of its samples.
+    r"""Bound the relative error of the peak-to-peak value of `curve` from the number of its samples.
 
-    At a cusp, such as the transmission error has where contact passes to the next pair, the extremum is
-    missed by an amount in proportion to the distance of the samples. Every third of :math:`3 n` midpoints are
-    midpoints again, with three times the distance; half the difference is the estimate.
+    At a cusp, such as the transmission error has where contact passes to the next pair, the extremum is missed by
+    up to half the distance h of the samples times the slope. The three sets of every third sample have three times
+    the distance; the worst of them misses the highest sample by about h times the slope, wherever the cusp lies
+    between samples. Half the largest difference is the bound.
 
     Parameters
     ----------
@@ -95,4 +96,4 @@ def peak_to_peak_error(curve: Array) -> float:
     whole = float(np.ptp(curve))
     if whole == 0.0:
         return 0.0
-    return abs(whole - float(np.ptp(curve[1::3]))) / (2 * whole)
+    return max(whole - float(np.ptp(curve[k::3])) for k in range(3)) / (2 * whole)

@@ -180,7 +180,11 @@ PEER = {
 def interpreter(folder: Path, body: str) -> Path:
     """Program that takes an interpreter's arguments and answers by itself."""
     path = folder / "python-of-peers"
-    path.write_text(f"#!{sys.executable}\nimport json, sys, time\ngiven = json.load(sys.stdin)\n{body}\n")
+    program = folder / "peer.py"
+    program.write_text(f"import json, sys, time\ngiven = json.load(sys.stdin)\n{body}\n")
+    path.write_text(
+        f'#!/bin/sh\nexec "{sys.executable}" "{program}"\n'
+    )  # a shebang takes no path with a space
     path.chmod(0o755)
     return path
 

@@ -47,7 +47,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
     scene = parse_scene(SCENE)
     engine = Engine(scene, STAGES, Cache(None))
-    for name in ("dry cycle", "film model", "mesh", "fields"):
+    for name in ("dry cycle", "mesh", "fields"):
         engine[name]
     write_data(folder, results_dataset(scene, engine.results()), {})
     cycle: fem.MeshCycle = engine["mesh"].contact
