@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.branch import GOOD_ENDS, KINDS, MEETS, UNBOUNDED, Branch
-from dynamics.corrector import OrbitProblem, Point, passes
-from dynamics.cost import Cost
-from dynamics.crossings import find_crossings, locate
+from dynamics.arclength import follow
+from dynamics.branch import Branch
+from dynamics.branch_problem import Steps, checked_range
+from dynamics.corrector import OrbitProblem, Point
+from dynamics.crossings import Crossing, find_crossings, locate
 from dynamics.errors import Faults
-from dynamics.shooting import Orbit, floquet_multipliers, is_stable, motion_label
+from dynamics.shooting import Orbit
 from dynamics.special import SpecialPoint
 
-__all__ = ["KINDS", "MEETS", "Branch", "continue_branch"]
+__all__ = ["continue_branch"]
 
 FloatArray = npt.NDArray[np.float64]
-LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
-ENDLESS = 1e4  # times its first size: a motion that grows without bound
 
 
 def continue_branch(
@@ -68,201 +65,78 @@ def continue_branch(
     DynamicsError
         If an argument is out of range, or the orbit has not converged or lies outside the bounds.
     """
-    began = time.perf_counter()
     faults = Faults()
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
-    if not low < high:
-        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+    steps = Steps(step, max_step, min_step, max_points)
+    value = orbit.oscillator.get(parameter)
+    low, high = checked_range(faults, bounds, parameter, value)
     if not orbit.converged:
         faults.add("orbit", orbit.message, "a converged orbit", "find the orbit first")
-    value = orbit.oscillator.get(parameter)
-    if not low <= value <= high:
-        faults.add("orbit", value, f"{parameter} within bounds", "widen the bounds")
-    for name, number in (("step", step), ("max_step", max_step), ("min_step", min_step)):
-        faults.number(name, number, "between 0 and 0.5", "0.005 is usual", lambda s: 0.0 < s < 0.5)
-    limit = faults.whole("max_points", max_points, 1, 10**7, "5000 is usual")
+    steps.check(faults)
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.half_backlash, 1e-300)
-    problem = OrbitProblem(
+    orbits = OrbitProblem(
         orbit.oscillator, (parameter,), orbit.periods, np.array([low]), np.array([high]), scale
     )
-    flat = np.array([0.0, 0.0, 1.0])
-    start = problem.correct(problem.unknowns(orbit.state, value), flat)
-    if start is None:
-        faults.add("orbit", value, "an orbit that can be continued", "at a fold, start beside it")
-        faults.raise_if_any()
-        raise AssertionError
-    walkers = []
-    for way in (-1.0, 1.0):
-        walker = _Walker(problem, start, way * flat, (step, max_step, min_step), limit, progress)
-        walker.run()
-        walkers.append(walker)
-        if walker.ended == "closed":
-            break
-    return _branch(problem, walkers, began)
+    return follow(_Exact(orbits), orbit.state, value, steps, progress)
 
 
-class _Walker:
-    """Steps from a start in one direction until a reason to end."""
+@dataclass(frozen=True)
+class _Exact:
+    """Orbits of the exact flow, as `dynamics.arclength` takes them."""
 
-    def __init__(
-        self, problem: OrbitProblem, start: Point, along: FloatArray, steps: tuple[float, float, float],
-        limit: int, progress: Callable[[int, float], None] | None,
-    ) -> None:  # fmt: skip
-        self.problem, self.limit, self.progress = problem, limit, progress
-        self.step, self.max_step, self.min_step = steps
-        self.first = problem.scale
-        self.points = [start]
-        self.special: list[SpecialPoint] = []
-        self.tangent = problem.tangent(start, along)
-        self.bend = np.zeros(3)
-        even = problem.periods % 2 == 0
-        self.phases = problem.phases(start)
-        self.half = problem.half_way(start) - start.u[:2] if even else np.zeros(2)
-        self.ended = ""
-        self.missed: list[float] = []
-        self.iterations = 0
-        self.refused = ""
+    orbits: OrbitProblem
+    maps: int = 3
 
-    def run(self) -> None:
-        """Step until the branch ends."""
-        while not self.ended:
-            if len(self.points) > self.limit:
-                self.ended = f"{self.limit} points: raise max_points"
-                return
-            last = self.points[-1]
-            step = self._try(last)
-            if step is None:
-                self.step *= 0.5
-                if self.step < self.min_step:
-                    self.ended = f"{self.refused} at a step of {self.step:.0e}"
-                continue
-            new = step.point
-            if self.problem.periods % 2 == 0:
-                half = self.problem.half_way(new) - new.u[:2]
-                if half @ self.half < 0.0:  # the two halves of the orbit have changed places
-                    self.ended = MEETS
-                    return
-                self.half = half
-            self._accept(step)
-            size = float(np.max(np.abs(new.u[:2])))
-            if len(self.points) > 3 and passes(last, new, self.phases):  # however small the loop
-                self.ended = "closed"
-            elif size * self.problem.scale > ENDLESS * self.first:
-                self.ended = UNBOUNDED
-            elif size > LARGE:
-                self._rescale(size)
+    @property
+    def parameter(self) -> str:
+        """What is varied."""
+        return self.orbits.parameters[0]
 
-    def _rescale(self, factor: float) -> None:
-        """Measure a motion that has grown by its new size: steps and tolerances are shares of it."""
-        last = self.points[-1]
-        larger = replace(self.problem, scale=factor * self.problem.scale)
-        again = larger.correct(larger.unknowns(last.state, last.value), np.array([0.0, 0.0, 1.0]))
-        if again is None:
-            return
-        self.problem, self.points[-1] = larger, again
-        shrink = np.array([1.0 / factor, 1.0 / factor, 1.0])
-        self.phases = (np.array(self.phases) * shrink).tolist()
-        self.bend = np.zeros(3)
-        self.half = self.half / factor
-        self.tangent = larger.tangent(again, self.tangent * shrink)
+    @property
+    def periods(self) -> int:
+        """Of the orbits."""
+        return self.orbits.periods
 
-    def _try(self, last: Point) -> _Step | None:
-        """Next point, or None if the step is too long; at a bound, the point on it."""
-        guess = last.u + self.step * (self.tangent + self.step * self.bend)
-        row = self.tangent
-        bound = 1.0 if guess[2] > 1.0 else 0.0 if guess[2] < 0.0 else math.nan
-        if not math.isnan(bound):
-            if last.u[2] == bound:
-                self.ended = "bound"
-                return None
-            guess = last.u + (bound - last.u[2]) / self.tangent[2] * self.tangent
-            guess[2] = bound
-            row = np.array([0.0, 0.0, 1.0])
-        self.refused = "Newton's method did not arrive"
-        new = self.problem.correct(guess, row)
-        if new is None or new.iterations > 8:
-            return None
-        chord = new.u - last.u
-        if math.sqrt(chord @ chord) > 2.0 * self.step and math.isnan(bound):
-            return None
-        tangent = self.problem.tangent(new, chord)
-        patient = self.step > 16.0 * self.min_step
-        self.refused = "the branch has a corner"
-        if tangent @ self.tangent < 0.9 and patient:
-            return None
-        self.refused = "the multipliers jump"
-        if abs(new.trace - last.trace) > 0.3 * max(1.0, abs(last.trace)) and patient:
-            return None
-        crossings, explained = find_crossings(self.problem, last, new)
-        if not explained and patient:
-            return None
-        between = [locate(self.problem, last, new, crossing) for crossing in crossings]
-        found = [p for p in between if p is not None]
-        self.refused = "a special point was not located"
-        if len(found) < len(between) and patient:
-            return None
-        found.sort(key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord))
-        return _Step(new, tangent, found, explained and len(found) == len(between))
+    @property
+    def low(self) -> float:
+        """Least value."""
+        return float(self.orbits.low[0])
 
-    def _accept(self, step: _Step) -> None:
-        """Take a point and what lies before it, choose the next step."""
-        new = step.point
-        length = math.dist(new.u, self.points[-1].u)
-        if not step.complete:
-            self.missed.append(new.value)
-        self.special += step.special
-        self.points.append(new)
-        self.iterations += new.iterations
-        # half the curvature, for the predictor: none from so short a step that the difference is rounding
-        self.bend = 0.5 / length * (step.tangent - self.tangent) if length > 1e-5 else np.zeros(3)
-        self.tangent = step.tangent
-        if new.u[2] in (0.0, 1.0):
-            self.ended = "bound"
-        if new.iterations <= 4:
-            self.step = min(1.4 * self.step, self.max_step)
-        if self.progress is not None:
-            self.progress(len(self.points), new.value)
+    @property
+    def high(self) -> float:
+        """Greatest value."""
+        return float(self.orbits.high[0])
 
+    @property
+    def scale(self) -> float:
+        """Size of the motion."""
+        return self.orbits.scale
 
-@dataclass(frozen=True, eq=False)
-class _Step:
-    """A step that may be taken."""
+    def correct(self, guess: FloatArray, across: FloatArray) -> Point | None:
+        """Orbit in a plane."""
+        return self.orbits.correct(guess, across)
 
-    point: Point
-    tangent: FloatArray
-    special: list[SpecialPoint]
-    complete: bool  # whether the special points explain all that changes
+    def tangent(self, point: Point, along: FloatArray) -> FloatArray:
+        """Unit vector along the branch."""
+        return self.orbits.tangent(point, along)
 
+    def phases(self, point: Point) -> list[list[float]]:
+        """Unknowns from each excitation period on."""
+        return self.orbits.phases(point)
 
-def _branch(problem: OrbitProblem, walkers: list[_Walker], began: float) -> Branch:
-    """Join the two directions into one record."""
-    back = walkers[0]
-    points, special = back.points[::-1], back.special[::-1]
-    ended = [back.ended]
-    if len(walkers) == 2:
-        points, special = points + walkers[1].points[1:], special + walkers[1].special
-    ended.append(walkers[-1].ended)
-    pairs = [floquet_multipliers(p.trace, p.determinant) for p in points]
-    stable = [is_stable(m) for m in pairs]
-    missed = [v for w in walkers for v in w.missed]
-    good = all(reason in GOOD_ENDS for reason in ended) and not missed
-    message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
-    if missed:
-        message += f"; not located near {problem.parameters[0]} = {missed[0]:.10g}: lower min_step"
-    iterations = sum(w.iterations for w in walkers)
-    return Branch(
-        problem.parameters[0],
-        problem.periods,
-        np.array([p.value for p in points]),
-        np.array([p.state for p in points]),
-        np.array(pairs, dtype=np.complex128),
-        np.array(stable),
-        tuple(motion_label(problem.periods, p.counts, s) for p, s in zip(points, stable, strict=True)),
-        tuple(special),
-        (ended[0], ended[1]),
-        max((p.error for p in special), default=0.0),
-        Cost(time.perf_counter() - began, 3, iterations, 3 * problem.periods * iterations),
-        good,
-        message,
-    )
+    def half_way(self, point: Point) -> FloatArray:
+        """State after half the orbit's period."""
+        return self.orbits.half_way(point)
+
+    def crossings(self, last: Point, new: Point) -> tuple[list[Crossing], bool]:
+        """Changes of sign between neighbours."""
+        return find_crossings(self.orbits, last, new)
+
+    def locate(self, last: Point, new: Point, crossing: Crossing) -> tuple[SpecialPoint | None, bool]:
+        """Special point of a crossing."""
+        point = locate(self.orbits, last, new, crossing)
+        return point, point is not None
+
+    def magnified(self, factor: float) -> _Exact:
+        """With a larger scale."""
+        return _Exact(replace(self.orbits, scale=factor * self.orbits.scale))

@@ -284,10 +284,10 @@ class _Store:
         return self.image, self.lin, self.bend, self.counts, self.turns
 
 
-def passes(last: Point, new: Point, places: list[list[float]]) -> bool:
-    """Tell whether the step from one point to another passes one of several places in the space of unknowns."""
-    start = last.u.tolist()
-    chord = [b - a for a, b in zip(start, new.u.tolist(), strict=True)]
+def passes(last: FloatArray, new: FloatArray, places: list[list[float]]) -> bool:
+    """Tell whether the step from one place to another in the space of unknowns passes one of several."""
+    start = last.tolist()
+    chord = [b - a for a, b in zip(start, new.tolist(), strict=True)]
     square = sum(c * c for c in chord)
     for place in places:
         back = [p - u for p, u in zip(place, start, strict=True)]

@@ -74,7 +74,7 @@ class Tracer:
                     self.ended = self._why(last)
                 continue
             self._accept(last, new)
-            if len(self.points) > 3 and passes(last, new, self.phases):  # however small the loop
+            if len(self.points) > 3 and passes(last.u, new.u, self.phases):  # however small the loop
                 self.ended = "closed"
 
     def _try(self, last: Point) -> Point | None:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.continuation import Branch, continue_branch
+from dynamics.branch import Branch
+from dynamics.continuation import continue_branch
 from dynamics.finding import find_orbits
 from dynamics.flow import period_map
 from dynamics.inverse.events import Event, Problem

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.continuation import KINDS
+from dynamics.branch import KINDS
 from dynamics.errors import Faults
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint

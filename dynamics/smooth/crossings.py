@@ -85,18 +85,16 @@ def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Sign], bool]:
     return found, change == [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
 
 
-def locate(
-    problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign
-) -> tuple[SpecialPoint | None, FloatArray | None, bool]:
-    """Special point between two neighbours, its unknowns, and whether the search arrived.
+def locate(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[SpecialPoint | None, bool]:
+    """Special point between two neighbours, and whether the search arrived.
 
     A determinant of one with real multipliers is no Neimark-Sacker point: then there is none, and that is no failure.
     """
     point, fraction = _bracket(problem, a, b, sign)
     if point is None:
-        return None, None, False
+        return None, False
     if sign.kind == "neimark-sacker" and abs(point.trace) >= 2.0:
-        return None, None, True
+        return None, True
     finer = problem.refined()
     ends = [correct(finer, p.u, (b.u - a.u) / np.linalg.norm(b.u - a.u)) for p in (a, b)]
     error = math.inf
@@ -113,7 +111,7 @@ def locate(
         sign.kind, point.value, point.u[:2] * problem.scale, multipliers, label,
         max(error / max(abs(point.value), 1e-300), EPS), problem.periods, (1, -1, 0)[sign.surface], **touch,
     )  # fmt: skip
-    return special, point.u, True
+    return special, True
 
 
 def _pairs(a: MapPoint, b: MapPoint) -> list[tuple[int, int]]:

@@ -18,9 +18,9 @@ from dynamics import (
     SmoothOscillator,
     SqueezeFilm,
     TabulatedContact,
-    continuation,
     smooth,
 )
+from dynamics.branch import MEETS
 from dynamics.smooth import MapPoint, Surface
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
@@ -73,7 +73,7 @@ def test_doubled_branch():
     doubled = smooth.doubled_orbit(ours(1.8), "frequency", point, (1.6, 1.9))
     assert doubled.periods == 2
     branch = smooth.continue_branch(doubled, "frequency", (1.72, 1.82), max_step=0.05)
-    assert continuation.MEETS in branch.ended
+    assert MEETS in branch.ended
     assert branch.values.max() == pytest.approx(point.parameter, abs=1e-3)
     at = int(np.argmin(np.abs(branch.values - 1.74)))
     theirs = dynamics.find_orbit(exact(branch.values[at]), branch.states[at], 2)
