@@ -160,7 +160,7 @@ class OrbitProblem:
 
     def evaluate(self, u: FloatArray, refinement: int = 1) -> Point | None:
         """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
-        from dynamics.kernels.sensitivity import evaluate
+        from dynamics.kernels.correcting import evaluate
 
         store = _Store(len(self.parameters), ROOM * self.periods)
         cells = self._cells(u, refinement)
@@ -183,7 +183,7 @@ class OrbitProblem:
 
         For one parameter.
         """
-        from dynamics.kernels.sensitivity import correct
+        from dynamics.kernels.correcting import correct
 
         store = _Store(1, ROOM * self.periods)
         cells = self._cells(guess, refinement)
