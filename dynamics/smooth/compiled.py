@@ -68,7 +68,7 @@ class CompiledLaw:
 
     Notes
     -----
-    Compiled anew in every session; one function makes one law however often its parameters are changed.
+    Compiled anew in every process; one function makes one law however often its parameters are changed.
     """
 
     force: Callable[..., Any]
