@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -80,12 +81,12 @@ def _table(head: tuple[str, ...], body: list[tuple[str, ...]]) -> list[str]:
     return [line(head), "|" + "---|" * len(head), *map(line, body)]
 
 
-class _Parsed(Directive):
+class _Parsed(Directive, ABC):
     """Lines of Markdown in place of the directive."""
 
+    @abstractmethod
     def lines(self) -> list[str]:
         """Lines of Markdown."""
-        raise NotImplementedError
 
     def run(self) -> list[nodes.Node]:
         """Parse the lines."""
