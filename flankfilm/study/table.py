@@ -47,11 +47,6 @@ class Line:
     values: tuple[str, ...]
 
 
-def read_rows(path: Path, columns: Columns) -> dict[int, RowResult]:
-    """Read the results that are there, by row; see `read_lines`."""
-    return {line.result.index: line.result for line in read_lines(path, columns)}
-
-
 def read_lines(path: Path, columns: Columns) -> list[Line]:
     """Read the rows that are there, and cut off a last line without its end.
 

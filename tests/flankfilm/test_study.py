@@ -19,7 +19,7 @@ from flankfilm.faults import InputError
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import read_plan
 from flankfilm.study.run import run_study
-from flankfilm.study.table import Columns, append, locked, read_rows
+from flankfilm.study.table import Columns, append, locked, read_lines
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -162,7 +162,7 @@ class TestRows:
         whole = path.read_bytes()
         for cut in range(1, len(whole.splitlines()[-1]) + 1):
             path.write_bytes(whole[:-cut])
-            assert len(read_rows(path, columns)) == 3
+            assert len(read_lines(path, columns)) == 3
             assert path.read_bytes().endswith(b"\n")
         again = run_study(plan, tmp_path / "out", workers=1, resume=True)
         assert again.computed == 1
@@ -175,7 +175,7 @@ class TestRows:
         for index, value in enumerate((math.pi, 1e-300, float("nan"), -0.0)):
             result = RowResult(index, (value, 1 / 3), 0.1, 'a "fault", of two words')
             append(tmp_path / "rows.csv", columns, (2.0,), result)
-        found = read_rows(tmp_path / "rows.csv", columns)
+        found = [line.result for line in read_lines(tmp_path / "rows.csv", columns)]
         assert found[0].values == (math.pi, 1 / 3)
         assert found[1].values[0] == 1e-300
         assert math.isnan(found[2].values[0])
