@@ -138,21 +138,7 @@ def sweep(
         If an argument is out of range.
     """
     began = time.perf_counter()
-    faults = Faults()
-    grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
-        faults.add(
-            "values", f"shape {grid.shape}", "finite numbers in one dimension", "give at least one value"
-        )
-    if direction not in ("up", "down"):
-        faults.add("direction", direction, "'up' or 'down'", "call twice for both")
-    longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
-    kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
-    wait = None if transient is None else faults.whole("transient", transient, 0, 10**9, "give 0 or more")
-    faults.raise_if_any()
-
-    ascending = np.argsort(grid, kind="stable")
-    order = ascending if direction == "up" else ascending[::-1]
+    grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
     state = rest_state(first) if initial is None else checked_state(initial, "initial")
     restart = state.copy()
@@ -183,6 +169,32 @@ def sweep(
     return SweepResult(
         parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
     )  # fmt: skip
+
+
+def checked_sweep(
+    values: npt.ArrayLike, direction: str, max_period: int, keep: int, transient: int | None
+) -> tuple[FloatArray, IntArray, int, int, int | None]:
+    """Values, the order in which they are visited, longest period, periods kept, and periods dropped if given.
+
+    Raises
+    ------
+    DynamicsError
+        With every argument that is out of range.
+    """
+    faults = Faults()
+    grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
+        faults.add(
+            "values", f"shape {grid.shape}", "finite numbers in one dimension", "give at least one value"
+        )
+    if direction not in ("up", "down"):
+        faults.add("direction", direction, "'up' or 'down'", "call twice for both")
+    longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
+    kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
+    wait = None if transient is None else faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+    faults.raise_if_any()
+    ascending = np.argsort(grid, kind="stable")
+    return grid, ascending if direction == "up" else ascending[::-1], longest, kept, wait
 
 
 def repeat_after(states: FloatArray, longest: int, tolerance: float = 1e-6) -> int:

@@ -17,7 +17,7 @@ from dynamics.shooting import motion_label
 from dynamics.smooth.flow import REASONS, FlowMap, finer, follow
 from dynamics.smooth.oscillator import Engine, SmoothOscillator
 from dynamics.smooth.shooting import find_orbit
-from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, repeat_after
+from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, checked_sweep, repeat_after
 
 __all__ = ["force", "lyapunov_exponents", "rest_state", "sweep"]
 
@@ -121,18 +121,7 @@ def sweep(
         If an argument is out of range.
     """
     began = time.perf_counter()
-    faults = Faults()
-    grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
-        faults.add("values", grid.shape, "finite numbers in one dimension", "give at least one value")
-    if direction not in ("up", "down"):
-        faults.add("direction", direction, "'up' or 'down'", "call twice for both")
-    longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
-    kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
-    wait = None if transient is None else faults.whole("transient", transient, 0, 10**9, "give 0 or more")
-    faults.raise_if_any()
-    ascending = np.argsort(grid, kind="stable")
-    order = ascending if direction == "up" else ascending[::-1]
+    grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
     state = rest_state(first) if initial is None else checked_state(initial, "initial")
     restart = state.copy()
