@@ -18,7 +18,7 @@ from fem.contact import mesh_cycle
 from fem.errors import Fault, FemError
 from fem.loaded_gears import LoadedGear, loaded_gears
 from meshes.abaqus import mesh_text, number
-from meshes.atomic import replacing
+from base.files import replacing
 from meshes.msh import write_msh
 
 if TYPE_CHECKING:

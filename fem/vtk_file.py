@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.atomic import replacing
+from base.files import replacing
 
 __all__ = ["VERTEX", "Grid", "write_grid", "write_series"]
 

@@ -22,7 +22,7 @@ from importlib import metadata, util
 from pathlib import Path
 from typing import Any
 
-from meshes.atomic import replacing, sweep_temporaries
+from base.files import replacing, sweep_temporaries
 
 _LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
@@ -69,7 +69,7 @@ def keep_compiled_code() -> None:
     """
     if "NUMBA_CACHE_DIR" in os.environ:
         return
-    folder = user_cache() / "compiled" / code_digest(("ehl", "dynamics"))[:16]
+    folder = user_cache() / "compiled" / code_digest(("base", "ehl", "dynamics"))[:16]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.atomic import replacing
+from base.files import replacing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,5 +102,5 @@ def provenance(scene_json: str) -> dict[str, str]:
         "versions_json": json.dumps(
             {"python": platform.python_version(), **{n: version(n) for n in libraries}}
         ),
-        "code_sha256": code_digest(("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")),
+        "code_sha256": code_digest(("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")),
     }

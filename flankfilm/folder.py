@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flankfilm.faults import Fault, InputError
-from meshes.atomic import sweep_temporaries
+from base.files import sweep_temporaries
 
 
 def claim(folder: Path) -> None:

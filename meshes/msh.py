@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.annulus import GearMesh
-from meshes.atomic import replacing
+from base.files import replacing
 
 __all__ = ["write_msh"]
 

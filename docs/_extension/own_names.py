@@ -14,7 +14,7 @@ from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
-PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
+PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 
 
 def _exists(name: str) -> bool:

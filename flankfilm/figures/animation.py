@@ -15,7 +15,7 @@ from flankfilm.faults import Fault, InputError, SolverError, shorten
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
 from flankfilm.figures.view import View
-from meshes.atomic import replacing
+from base.files import replacing
 
 if TYPE_CHECKING:
     import xarray as xr

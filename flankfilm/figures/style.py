@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from meshes.atomic import replacing
+from base.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,7 +12,7 @@ from flankfilm.dataset import write_text
 from flankfilm.faults import Fault, InputError
 from flankfilm.study.table import ROWS, Columns, Line, read_lines
 
-PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
+PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 
 Work = Literal["study", "optimisation"]
 

@@ -9,7 +9,7 @@ import pytest
 
 from flankfilm.cache import Cache, CacheWarning, code_digest
 from flankfilm.dataset import write_text
-from meshes.atomic import replacing
+from base.files import replacing
 
 
 def test_a_kept_value_comes_back(tmp_path):

@@ -18,7 +18,7 @@ from flankfilm.run import run_scene
 from flankfilm.scene import parse_scene
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("flankfilm", "gears", "meshes", "fem", "ehl", "dynamics")
+PACKAGES = ("flankfilm", "base", "gears", "meshes", "fem", "ehl", "dynamics")
 
 # nothing that numba compiles, which would take most of the time
 SMALL = """

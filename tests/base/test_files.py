@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from meshes.atomic import replacing
+from base.files import replacing
 
 
 def test_a_write_that_fails_leaves_the_old_file_and_no_other(tmp_path):

@@ -1,0 +1,49 @@
+"""Below all packages, on numpy alone: faults and limits, cost, what every result has, whole files, units."""
+
+from base.arrays import Array, Booleans, Integers
+from base.cost import Cost, Stopwatch, unclocked
+from base.faults import (
+    Fault,
+    FlankfilmError,
+    FlankfilmWarning,
+    InputError,
+    RangeWarning,
+    SolverError,
+    shorten,
+)
+from base.files import replacing, sweep_temporaries
+from base.limits import Faults, Limit
+from base.results import Figure, Quantity, Result, described, quantities, quantity, record, show_with
+
+__all__ = [
+    "Array",
+    "Booleans",
+    "Cost",
+    "Fault",
+    "Faults",
+    "Figure",
+    "FlankfilmError",
+    "FlankfilmWarning",
+    "InputError",
+    "Integers",
+    "Limit",
+    "Quantity",
+    "RangeWarning",
+    "Result",
+    "SolverError",
+    "Stopwatch",
+    "described",
+    "quantities",
+    "quantity",
+    "record",
+    "replacing",
+    "shorten",
+    "show_with",
+    "sweep_temporaries",
+    "unclocked",
+]
+
+
+def __dir__() -> list[str]:
+    """Public names."""
+    return list(__all__)

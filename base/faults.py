@@ -1,0 +1,84 @@
+"""What is wrong with an input: where, what was found, what must hold, what to do; all of it at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+__all__ = [
+    "Fault",
+    "FlankfilmError",
+    "FlankfilmWarning",
+    "InputError",
+    "RangeWarning",
+    "SolverError",
+    "shorten",
+]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that is wrong with an input.
+
+    Attributes
+    ----------
+    where : str
+        Path of the value as its giver knows it: ``pinion.teeth``, ``pair.pinion.bore_mm``, a file.
+    value : str
+        What was given, as text; empty where nothing was.
+    allowed : str
+        What must hold, as the rest of the sentence: ``must be at most 3``, ``is required by the film``.
+    remedy : str
+        What to do about it; may be empty.
+    """
+
+    where: str
+    value: str
+    allowed: str
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        """One line: where, value, what must hold, remedy."""
+        found = f" = {self.value}" if self.value else ""
+        remedy = f". {self.remedy[:1].upper()}{self.remedy[1:]}" if self.remedy else ""
+        return f"{self.where}{found}: {self.allowed}{remedy}"
+
+
+class FlankfilmError(Exception):
+    """Base of everything that these packages raise for their user's sake."""
+
+
+class InputError(FlankfilmError, ValueError):
+    """An input that cannot be used.
+
+    Parameters
+    ----------
+    faults : iterable of Fault
+        All that were found; kept as the tuple ``faults``.
+    """
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults: tuple[Fault, ...] = tuple(faults)
+        super().__init__(self.faults)  # what pickle hands back, so that the error survives a worker's end
+
+    def __str__(self) -> str:
+        """Each fault on a line of its own."""
+        return "\n".join(str(fault) for fault in self.faults)
+
+
+class SolverError(FlankfilmError, RuntimeError):
+    """A solver did not reach a result that it believes; the message holds the remedy."""
+
+
+class FlankfilmWarning(UserWarning):
+    """Base of the packages' warnings."""
+
+
+class RangeWarning(FlankfilmWarning):
+    """A model used outside the range for which it was derived or fitted, or a result to be read with care."""
+
+
+def shorten(value: object, limit: int = 60) -> str:
+    """Text of a value for a message, cut to `limit` characters."""
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."

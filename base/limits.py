@@ -1,0 +1,142 @@
+"""Limits of single values, and a collector that raises all faults of an input together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import TypeVar
+
+import numpy as np
+
+from base.faults import Fault, InputError, shorten
+
+__all__ = ["Faults", "Limit"]
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Interval that a number must lie in.
+
+    Parameters
+    ----------
+    low, high : float
+        Bounds; infinite where there is none.
+    unit : str
+        For the message.
+    remedy : str
+        What to do about a value outside.
+    low_open, high_open : bool
+        Whether the bound itself is refused.
+    whole : bool
+        Whether the number must be an integer.
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    unit: str = ""
+    remedy: str = ""
+    low_open: bool = False
+    high_open: bool = False
+    whole: bool = False
+
+    def __str__(self) -> str:
+        """What must hold, in words."""
+        unit = f" {self.unit}" if self.unit else ""
+        bounds = []
+        if math.isfinite(self.low):
+            bounds.append(f"{'more than' if self.low_open else 'at least'} {self.low:.6g}")
+        if math.isfinite(self.high):
+            bounds.append(f"{'less than' if self.high_open else 'at most'} {self.high:.6g}")
+        kind = "a whole number" if self.whole else "a finite number"
+        return f"must be {kind}" + (f", {' and '.join(bounds)}{unit}" if bounds else "")
+
+    def holds(self, value: float) -> bool:
+        """Whether the interval contains `value`; never for nan."""
+        above = value > self.low if self.low_open else value >= self.low
+        below = value < self.high if self.high_open else value <= self.high
+        return above and below and math.isfinite(value)
+
+    def faults(self, where: str, value: object) -> tuple[Fault, ...]:
+        """Faults of one value: no number, not finite, not whole, outside; a boolean is no number.
+
+        Parameters
+        ----------
+        where : str
+            Path of the value.
+        value : object
+            As given.
+
+        Returns
+        -------
+        tuple of Fault
+            Empty where the value is in order.
+        """
+        kind = Integral if self.whole else Real
+        if isinstance(value, bool) or not isinstance(value, kind):
+            return (Fault(where, shorten(value), str(self), self.remedy or "give a number"),)
+        if not self.holds(float(value)):
+            return (Fault(where, f"{value!s}", str(self), self.remedy),)
+        return ()
+
+    def in_unit(self, factor: float, unit: str) -> Limit:
+        """The same limit for numbers in another unit, `factor` of this one's."""
+        return Limit(
+            self.low / factor,
+            self.high / factor,
+            unit,
+            self.remedy,
+            self.low_open,
+            self.high_open,
+            self.whole,
+        )
+
+
+class Faults:
+    """Collects the faults of one input, to raise them together.
+
+    Examples
+    --------
+    >>> found = Faults()
+    >>> found.number("tolerance", 0.005, Limit(0.0, 0.2, low_open=True))
+    0.005
+    >>> found.raise_if_any()
+    """
+
+    def __init__(self) -> None:
+        self.found: list[Fault] = []
+
+    def add(self, where: str, value: object, allowed: str, remedy: str = "") -> None:
+        """Note a fault; a text is shown as it is, anything else by its representation."""
+        self.found.append(Fault(where, value if isinstance(value, str) else shorten(value), allowed, remedy))
+
+    def extend(self, faults: Iterable[Fault]) -> None:
+        """Note faults that were found elsewhere."""
+        self.found.extend(faults)
+
+    def number(self, where: str, value: object, limit: Limit) -> float:
+        """Return the value as a float; where it breaks `limit`, note that and return nan."""
+        faults = limit.faults(where, value)
+        self.found.extend(faults)
+        return math.nan if faults else float(value)  # type: ignore[arg-type]
+
+    def whole(self, where: str, value: object, low: int, high: int, remedy: str = "") -> int:
+        """Return the value as an int; where it is none within [low, high], note that and return `low`."""
+        if isinstance(value, float | np.floating) and value.is_integer():
+            value = int(value)
+        number = self.number(where, value, Limit(low, high, remedy=remedy, whole=True))
+        return low if math.isnan(number) else int(number)
+
+    def choice(self, where: str, value: T, options: Sequence[T], remedy: str = "") -> T:
+        """Return the value; where it is none of `options`, note that."""
+        if value not in options:
+            self.add(where, shorten(value), f"must be {' or '.join(map(repr, options))}", remedy)
+        return value
+
+    def raise_if_any(self, kind: type[InputError] = InputError) -> None:
+        """Raise all faults noted, if there are any."""
+        if self.found:
+            raise kind(self.found)

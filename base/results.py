@@ -1,0 +1,255 @@
+"""What every result has: figures that describe themselves, a line that one can read, a view in notebooks.
+
+A figure's unit, axes and meaning stand where the figure does, once: as `quantity` for a field and `described` for a
+property. Datasets, tables, labels and the class's own documentation follow from there.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any, Protocol, TypeVar, dataclass_transform, runtime_checkable
+
+import numpy as np
+
+from base.cost import Cost
+from base.units import factor
+
+__all__ = [
+    "Figure",
+    "Quantity",
+    "Result",
+    "described",
+    "headline",
+    "quantities",
+    "quantity",
+    "record",
+    "show_with",
+]
+
+T = TypeVar("T")
+LONGEST_LINE = 200
+
+
+@runtime_checkable
+class Result(Protocol):
+    """What a solver gives back: its figures, and these."""
+
+    @property
+    def error(self) -> float | None:
+        """Estimated relative error of the headline figures; None where it is unknown."""
+
+    @property
+    def cost(self) -> Cost:
+        """What the result cost."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the solver believes its figures."""
+
+    @property
+    def message(self) -> str:
+        """What happened, with a remedy where it did not converge."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What a figure is.
+
+    Attributes
+    ----------
+    unit : str
+        Of the value, SI; "1" for pure numbers, "" for text.
+    meaning : str
+        In words, as a label.
+    dims : tuple of str
+        Names of its axes, none for a single number.
+    shown : str
+        Unit that people read it in; the SI one unless given.
+    error : str
+        Name of the record's figure that holds its relative error; empty where that is unknown.
+    """
+
+    unit: str
+    meaning: str
+    dims: tuple[str, ...] = ()
+    shown: str = ""
+    error: str = ""
+
+    @property
+    def read_in(self) -> str:
+        """Unit that people read it in."""
+        return self.shown or self.unit
+
+    def in_shown(self, value: Any) -> Any:
+        """Value in the unit that people read."""
+        return value if self.read_in == self.unit else np.asarray(value) / factor(self.read_in)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A figure with its name and value."""
+
+    name: str
+    figure: Figure
+    value: Any
+
+
+def quantity(
+    unit: str,
+    meaning: str,
+    dims: str = "",
+    *,
+    shown: str = "",
+    error: str = "",
+    default: Any = dataclasses.MISSING,
+    default_factory: Any = dataclasses.MISSING,
+) -> Any:
+    """Field of a `record` that is a figure.
+
+    Parameters
+    ----------
+    unit, meaning, shown, error : str
+        As of `Figure`.
+    dims : str
+        Names of its axes, separated by blanks.
+    default, default_factory
+        As of `dataclasses.field`.
+    """
+    about = {"figure": Figure(unit, meaning, tuple(dims.split()), shown, error)}
+    if default_factory is not dataclasses.MISSING:
+        return field(default_factory=default_factory, metadata=about)
+    return field(default=default, metadata=about)
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def described(unit: str, dims: str = "", *, shown: str = "", error: str = "") -> Callable[[F], F]:
+    """Mark the function of a property as a figure; its docstring's first line is the meaning.
+
+    Examples
+    --------
+    >>> @record
+    ... class Contact:
+    ...     load: float = quantity("N/m", "force per length of face")
+    ...     radius: float = quantity("m", "radius of relative curvature", shown="mm")
+    ...
+    ...     @property
+    ...     @described("N/m2", shown="")
+    ...     def stress(self) -> float:
+    ...         '''Load over radius.'''
+    ...         return self.load / self.radius
+    >>> Contact(10.0, 0.5).stress
+    20.0
+    """
+
+    def mark(function: F) -> F:
+        meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
+        function.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error)  # type: ignore[attr-defined]
+        return function
+
+    return mark
+
+
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(quantity, field))
+def record(cls: type[T]) -> type[T]:
+    """Make a class a frozen record: a dataclass compared by identity, shown in one line, documented by its fields.
+
+    ``headline``, a tuple of names, says which figures its line shows; the first few that are single numbers unless
+    given.
+    """
+    made = dataclass(frozen=True, eq=False, repr=False)(cls)
+    if "__repr__" not in cls.__dict__:
+        made.__repr__ = headline  # type: ignore[method-assign]
+    if "_repr_html_" not in cls.__dict__:
+        made._repr_html_ = _view  # type: ignore[attr-defined]
+    made.__doc__ = _documented(made)
+    return made
+
+
+def figures(cls: type) -> dict[str, Figure]:
+    """Figures of a record's class by name: fields in their order, then properties."""
+    found = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
+    for name in (name for base in reversed(cls.__mro__) for name in vars(base)):
+        function = getattr(getattr(cls, name, None), "fget", None) or getattr(
+            getattr(cls, name, None), "func", None
+        )
+        if (figure := getattr(function, "__figure__", None)) is not None:
+            found[name] = figure
+    return found
+
+
+def quantities(result: object) -> dict[str, Quantity]:
+    """Figures of a record with their values; those that are None are left out."""
+    values = {name: (figure, getattr(result, name)) for name, figure in figures(type(result)).items()}
+    return {
+        name: Quantity(name, figure, value) for name, (figure, value) in values.items() if value is not None
+    }
+
+
+def headline(result: object) -> str:
+    """One line of at most 200 characters: headline figures, error, whether it converged, seconds."""
+    known = figures(type(result))
+    names = getattr(type(result), "headline", None) or list(known)[:4]
+    parts = [
+        f"{name} {_text(value)}{_unit(known.get(name))}"
+        for name in names
+        if np.ndim(value := getattr(result, name)) == 0 and value is not None
+    ]
+    if isinstance(error := getattr(result, "error", None), float):
+        parts.append(f"error {error:.1e}")
+    if isinstance(converged := getattr(result, "converged", None), bool):
+        parts.append("converged" if converged else "not converged")
+    if isinstance(cost := getattr(result, "cost", None), Cost):
+        parts.append(f"{cost.seconds:.3g} s")
+    line = f"{type(result).__name__}({', '.join(parts)})"
+    return line if len(line) <= LONGEST_LINE else f"{line[: LONGEST_LINE - 4]}...)"
+
+
+def _text(value: Any) -> str:
+    return f"{value:.5g}" if isinstance(value, float | np.floating) else str(value)[:60]
+
+
+def _unit(figure: Figure | None) -> str:
+    return f" {figure.unit}" if figure is not None and figure.unit not in ("", "1") else ""
+
+
+def _documented(cls: type) -> str:
+    """Docstring with a section of attributes for what `quantity` describes, where there is none written."""
+    text = (cls.__doc__ or "").rstrip()
+    told = [f for f in dataclasses.fields(cls) if "figure" in f.metadata]
+    if not told or "Attributes\n" in text:
+        return text
+    lines = ["", "", "    Attributes", "    ----------"]
+    for one in told:
+        figure: Figure = one.metadata["figure"]
+        shape = f", ({', '.join(figure.dims)})" if figure.dims else ""
+        unit = f" [{figure.unit}]" if figure.unit not in ("", "1") else ""
+        lines += [f"    {one.name} : {one.type}{shape}", f"        {figure.meaning}{unit}."]
+    return text + "\n".join(lines) + "\n    "
+
+
+_VIEWS: dict[str, str] = {}
+
+
+def show_with(views: Mapping[str, str]) -> None:
+    """Register how records show themselves in notebooks, both by name, so that neither loads the other.
+
+    Parameters
+    ----------
+    views : mapping
+        ``"package.module:Class"`` to ``"package.module:function"``, a function of the record that returns HTML.
+    """
+    _VIEWS.update(views)
+
+
+def _view(result: object) -> str | None:
+    """HTML of a record by the view registered for its class; None where there is none, and its line is shown."""
+    for cls in type(result).__mro__:
+        if (place := _VIEWS.get(f"{cls.__module__}:{cls.__qualname__}")) is not None:
+            module, _, name = place.partition(":")
+            return str(getattr(import_module(module), name)(result))
+    return None

@@ -1,0 +1,78 @@
+"""Units at the edges: what a number in a file or on a page is in SI.
+
+Inside, everything is SI and carries no unit. A scene's key ends in its unit (``module_mm``), so does a column of a
+CSV file (``transmission_error_um``); both are spelt by `suffix`.
+"""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["FACTORS", "factor", "suffix"]
+
+FACTORS = {
+    "1": 1.0,
+    "%": 1e-2,
+    "m": 1.0,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "s": 1.0,
+    "K": 1.0,
+    "kg": 1.0,
+    "kg m2": 1.0,
+    "kg/m3": 1.0,
+    "N": 1.0,
+    "N m": 1.0,
+    "N/m": 1.0,
+    "N/mm": 1e3,
+    "N/(mm um)": 1e9,
+    "N m/rad": 1.0,
+    "N s/m": 1.0,
+    "Pa": 1.0,
+    "MPa": 1e6,
+    "GPa": 1e9,
+    "1/Pa": 1.0,
+    "1/GPa": 1e-9,
+    "Pa s": 1.0,
+    "m2/s": 1.0,
+    "mm2/s": 1e-6,
+    "1/mm2": 1e6,
+    "m/s": 1.0,
+    "W": 1.0,
+    "Hz": 1.0,
+    "rad": 1.0,
+    "rad/s": 1.0,
+    "deg": math.pi / 180.0,
+    "rpm": math.pi / 30.0,
+}
+"""SI value of one of each unit; ``N/(mm um)`` is of a stiffness per face width."""
+
+
+def factor(unit: str) -> float:
+    """SI value of one `unit`.
+
+    Raises
+    ------
+    KeyError
+        For a unit that is not in the table.
+
+    Examples
+    --------
+    >>> factor("um")
+    1e-06
+    """
+    return FACTORS[unit]
+
+
+def suffix(unit: str) -> str:
+    """Spelling of a unit as the end of a name; empty for pure numbers.
+
+    Examples
+    --------
+    >>> [suffix(unit) for unit in ("N/(mm um)", "1/GPa", "N m/rad", "%", "1")]
+    ['N_per_mm_um', 'per_GPa', 'Nm_per_rad', 'percent', '']
+    """
+    if unit == "1":
+        return ""
+    text = unit.replace("%", "percent").replace("N m", "Nm").replace("(", "").replace(")", "")
+    return text.removeprefix("1").replace("/", "_per_").strip("_").replace(" ", "_")
