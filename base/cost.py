@@ -69,7 +69,13 @@ _ASIDE = _Aside()
 
 @contextmanager
 def unclocked() -> Iterator[None]:
-    """Hide what happens inside, an import or a compilation, from the stopwatches that are running."""
+    """Hide what happens inside, an import or a compilation, from the stopwatches that are running.
+
+    Examples
+    --------
+    >>> with unclocked():
+    ...     import decimal
+    """
     if _ASIDE.depth == 0:
         _ASIDE.began = perf_counter()
     _ASIDE.depth += 1

@@ -79,6 +79,12 @@ class RangeWarning(FlankfilmWarning):
 
 
 def shorten(value: object, limit: int = 60) -> str:
-    """Text of a value for a message, cut to `limit` characters."""
+    """Text of a value for a message, cut to `limit` characters.
+
+    Examples
+    --------
+    >>> shorten([1, 2, 3, 4, 5, 6], limit=12)
+    '[1, 2, 3,...'
+    """
     text = repr(value)
     return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -19,6 +19,13 @@ def replacing(path: Path) -> Iterator[Path]:
 
     The new file is flushed to the disk before the rename, so that a power cut leaves the old
     file or the whole new one. When the block raises, the temporary file is removed.
+
+    Examples
+    --------
+    >>> with replacing(Path("figures.txt")) as beside:
+    ...     _ = beside.write_text("14.83")
+    >>> Path("figures.txt").read_text()
+    '14.83'
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{path.stem}.{secrets.token_hex(6)}{path.suffix}")
@@ -32,7 +39,12 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def sweep_temporaries(folder: Path, older_than: float = 3600.0) -> None:
-    """Remove what killed runs left beside their targets, once it is older than `older_than` seconds."""
+    """Remove what killed runs left beside their targets, once it is older than `older_than` seconds.
+
+    Examples
+    --------
+    >>> sweep_temporaries(Path())
+    """
     for path in folder.iterdir():
         if _TEMPORARY.fullmatch(path.name):
             with suppress(FileNotFoundError):  # another run may sweep, or rename, at the same time

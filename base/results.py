@@ -117,6 +117,14 @@ def quantity(
         Names of its axes, separated by blanks.
     default, default_factory
         As of `dataclasses.field`.
+
+    Examples
+    --------
+    >>> @record
+    ... class Film:
+    ...     minimum: float = quantity("m", "least film", shown="um")
+    >>> Film(0.5e-6)
+    Film(minimum 5e-07 m)
     """
     about = {"figure": Figure(unit, meaning, tuple(dims.split()), shown, error)}
     if default_factory is not dataclasses.MISSING:
@@ -160,6 +168,16 @@ def record(cls: type[T]) -> type[T]:
 
     ``headline``, a tuple of names, says which figures its line shows; the first few that are single numbers unless
     given.
+
+    Examples
+    --------
+    >>> @record
+    ... class Load:
+    ...     '''A load.'''
+    ...
+    ...     force: float = quantity("N", "normal force")
+    >>> "normal force [N]." in Load.__doc__
+    True
     """
     made = dataclass(frozen=True, eq=False, repr=False)(cls)
     if "__repr__" not in cls.__dict__:
@@ -183,7 +201,17 @@ def figures(cls: type) -> dict[str, Figure]:
 
 
 def quantities(result: object) -> dict[str, Quantity]:
-    """Figures of a record with their values; those that are None are left out."""
+    """Figures of a record with their values; those that are None are left out.
+
+    Examples
+    --------
+    >>> @record
+    ... class Contact:
+    ...     load: float = quantity("N/m", "force per length of face")
+    >>> found = quantities(Contact(1e5))["load"]
+    >>> found.value, found.figure.unit, found.figure.meaning
+    (100000.0, 'N/m', 'force per length of face')
+    """
     values = {name: (figure, getattr(result, name)) for name, figure in figures(type(result)).items()}
     return {
         name: Quantity(name, figure, value) for name, (figure, value) in values.items() if value is not None
@@ -242,6 +270,10 @@ def show_with(views: Mapping[str, str]) -> None:
     ----------
     views : mapping
         ``"package.module:Class"`` to ``"package.module:function"``, a function of the record that returns HTML.
+
+    Examples
+    --------
+    >>> show_with({"gears.pair:GearPair": "gears.notebook:pair_html"})
     """
     _VIEWS.update(views)
 

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.files import replacing
 from fem.compliance import Compliance
 from fem.contact import mesh_cycle
 from fem.errors import Fault, FemError
 from fem.loaded_gears import LoadedGear, loaded_gears
 from meshes.abaqus import mesh_text, number
-from base.files import replacing
 from meshes.msh import write_msh
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.annulus import GearMesh
 from base.files import replacing
+from meshes.annulus import GearMesh
 
 __all__ = ["write_msh"]
 
