@@ -13,8 +13,8 @@ import warnings
 
 import numpy as np
 
+from base import InputError, SolverError
 from flankfilm.cache import Cache
-from flankfilm.faults import InputError, SolverError
 from flankfilm.scene import Scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import STAGES

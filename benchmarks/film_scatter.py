@@ -13,8 +13,8 @@ import warnings
 import numpy as np
 from closed_form_scatter import ordinary
 
+from base import InputError, SolverError
 from flankfilm.cache import Cache, keep_compiled_code
-from flankfilm.faults import InputError, SolverError
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine

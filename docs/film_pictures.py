@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from runs import EXAMPLES, example, results, save
 
+from base import SolverError
 from flankfilm import figures
-from flankfilm.faults import SolverError
 from flankfilm.scene.reader import validated
 from flankfilm.study.plan import read_plan
 

@@ -7,11 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
 
+import base
+
 __all__ = ["DynamicsError", "DynamicsWarning", "Fault", "Faults"]
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(base.Fault):
     """One fault of an input.
 
     Parameters
@@ -36,7 +38,7 @@ class Fault:
         return f"{self.where} = {self.value}: allowed {self.allowed}; {self.remedy}"
 
 
-class DynamicsError(ValueError):
+class DynamicsError(base.InputError):
     """Input that cannot be computed; lists every fault found.
 
     Parameters
@@ -44,14 +46,6 @@ class DynamicsError(ValueError):
     faults : tuple of Fault
         All faults of the input.
     """
-
-    def __init__(self, faults: tuple[Fault, ...]) -> None:
-        self.faults = tuple(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
-
-    def __reduce__(self) -> tuple[type[DynamicsError], tuple[tuple[Fault, ...]]]:
-        """Pickle by the faults, so that the error survives its way back from a worker process."""
-        return type(self), (self.faults,)
 
 
 class DynamicsWarning(UserWarning):

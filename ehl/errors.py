@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
+
+import base
 
 __all__ = ["EhlInputError", "EhlWarning", "Fault"]
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(base.Fault):
     """One thing that is wrong with the input.
 
     Parameters
@@ -35,16 +36,8 @@ class Fault:
         return f"{self.where} = {self.value}: must be {self.allowed}; {self.remedy}"
 
 
-class EhlInputError(ValueError):
+class EhlInputError(base.InputError):
     """Input that the solver refuses, with every fault at once in ``faults``."""
-
-    def __init__(self, faults: Iterable[Fault]) -> None:
-        self.faults: tuple[Fault, ...] = tuple(faults)
-        super().__init__("\n".join(str(f) for f in self.faults))
-
-    def __reduce__(self) -> tuple[type[EhlInputError], tuple[tuple[Fault, ...]]]:
-        """Rebuild from the faults, so that the error survives a process boundary."""
-        return (type(self), (self.faults,))
 
 
 class EhlWarning(UserWarning):

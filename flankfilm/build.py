@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene.schema import (
     DeviationsSection,
     ElasticSection,
@@ -19,7 +19,6 @@ from flankfilm.scene.schema import (
 if TYPE_CHECKING:
     from fem import Support
     from gears import BasicRack, Gear, GearDeviations, GearPair, Material
-    from gears import Fault as GearFault
 
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.4, 0.39)}
 """Profiles of ISO 53:1998, annex A: addendum, dedendum and tip radius, times the module."""
@@ -200,7 +199,7 @@ _KEYS = {
 """The scene's keys for the attributes that a geometry fault names."""
 
 
-def _scene_fault(fault: GearFault) -> Fault:
+def _scene_fault(fault: Fault) -> Fault:
     owner, _, attribute = (
         fault.where.partition(".")
         if fault.where.startswith(("pinion", "wheel", "rack"))

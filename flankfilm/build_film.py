@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene.film_schema import LubricantSection
 from flankfilm.scene.schema import Scene
 

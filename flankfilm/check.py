@@ -7,7 +7,6 @@ import warnings
 from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
-from flankfilm.faults import told_by_a_floor
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import STAGES, goals
 from flankfilm.stages.decide import Plan
@@ -46,17 +45,8 @@ def check_scene(scene: Scene) -> list[str]:
         )
         told += [f"Warning: {warning.message}" for warning in caught]
     if "dry cycle" in (wanted := goals(scene)) or (scene.stiffness.model != "given" and "fourier" in wanted):
-        plan = _plan(scene)
+        plan: Plan = Engine(scene, STAGES, Cache(None))["plan"]  # models and shares, from cheap estimates
         told += [decision.line for decision in plan.decisions]
         told.append(plan.line)
     told.append("A run computes: " + ", ".join(STAGES[name].title for name in wanted) + ".")
     return told
-
-
-def _plan(scene: Scene) -> Plan:
-    """Models and shares, which cheap estimates decide."""
-    try:
-        found: Plan = Engine(scene, STAGES, Cache(None))["plan"]
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
-    return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter, validators
 
-from flankfilm.faults import Fault, InputError, SolverError
+from base import Fault, InputError, SolverError
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from base import Fault, InputError
 from base.files import sweep_temporaries
-from flankfilm.faults import Fault, InputError
 
 
 def claim(folder: Path) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from flankfilm.faults import Fault, InputError, shorten
+from base import Fault, InputError, shorten
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import LARGEST_FILE, bounded, validated
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from flankfilm.cache import Cache, user_cache
-from flankfilm.faults import told_by_a_floor
 from flankfilm.folder import claim
 from flankfilm.outputs import results_dataset, results_tables, write_data
 from flankfilm.progress import Progress, silent
@@ -54,11 +53,8 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         progress(stage.title, len(done) - 1, max(len(done), len(wanted) + 2))
 
     engine = Engine(scene, STAGES, Cache(user_cache() / "results" if use_cache else None), announce)
-    try:
-        for name in wanted:
-            engine[name]
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
+    for name in wanted:
+        engine[name]
     values = engine.results()
     dataset = results_dataset(scene, values)
     files = engine.timed(

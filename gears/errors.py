@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+
+import base
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(base.Fault):
     """One thing that is wrong with an input.
 
     Parameters
@@ -32,7 +33,7 @@ class Fault:
         return f"{self.where} = {self.value}: allowed {self.allowed}; {self.remedy}"
 
 
-class GearsError(ValueError):
+class GearsError(base.InputError):
     """Base of the package's exceptions.
 
     Parameters
@@ -40,14 +41,6 @@ class GearsError(ValueError):
     faults : iterable of Fault
         All faults that were found; kept as the tuple ``faults``.
     """
-
-    def __init__(self, faults: Iterable[Fault]) -> None:
-        self.faults: tuple[Fault, ...] = tuple(faults)
-        super().__init__(self.faults)
-
-    def __str__(self) -> str:
-        """Each fault on a line of its own."""
-        return "\n".join(str(fault) for fault in self.faults)
 
 
 class GeometryError(GearsError):

@@ -13,6 +13,6 @@ class MeshError(GearsError):
     def __init__(self, *faults: Fault) -> None:
         super().__init__(faults)
 
-    def __reduce__(self) -> tuple[type, tuple[Fault, ...]]:
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         """Let workers hand the error back: its faults are its arguments."""
         return type(self), self.faults

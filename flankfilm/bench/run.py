@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
+from base import Fault, InputError
 from flankfilm.bench.case import Case
 from flankfilm.bench.catalogue import SOLVERS
 from flankfilm.bench.first_call import FirstCall, first_call
 from flankfilm.bench.machine import Machine, load, this_machine
 from flankfilm.bench.measuring import CaseResult, measure, quiet, steps
 from flankfilm.bench.peers import PeerRow, ask
-from flankfilm.faults import Fault, InputError
 from flankfilm.folder import claim
 from flankfilm.progress import Progress, silent
 

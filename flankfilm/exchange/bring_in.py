@@ -7,11 +7,11 @@ import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
+from base import Fault, InputError
 from flankfilm.build import ISO_53, gear_pair
 from flankfilm.exchange.draft import Draft, scene_text
 from flankfilm.exchange.rexs_file import read_model
 from flankfilm.exchange.rexs_pair import draft_of
-from flankfilm.faults import Fault, InputError
 from flankfilm.scene import parse_scene
 
 

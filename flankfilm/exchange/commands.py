@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 
 
 def import_gears(
@@ -97,7 +97,6 @@ def export_profile(
     """
     from flankfilm.build import gear_pair
     from flankfilm.exchange.profile_files import write_drawing, write_points
-    from flankfilm.faults import told_by_a_floor
     from flankfilm.scene import read_scene
     from gears.contour import contour
 
@@ -105,10 +104,7 @@ def export_profile(
         raise InputError([Fault("--teeth", teeth, "must be a whole number, or all", "Such as --teeth 3")])
     pair = gear_pair(read_scene(scene))
     profile = pair.teeth_profiles[("pinion", "wheel").index(gear)]
-    try:
-        drawn = contour(profile, None if teeth == "all" else int(teeth), 1e-6 * tolerance_um)
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
+    drawn = contour(profile, None if teeth == "all" else int(teeth), 1e-6 * tolerance_um)
     target = out if out is not None else Path(f"{scene.stem}-{gear}.{format}")
     if format == "dxf":
         count = write_drawing(target, drawn, (f"{gear}, {profile.teeth} teeth",))
@@ -142,7 +138,6 @@ def export_mesh(
     from fem.export import export_position
     from flankfilm.build import pinion_torque
     from flankfilm.cache import Cache, user_cache
-    from flankfilm.faults import told_by_a_floor
     from flankfilm.folder import claim
     from flankfilm.reproduce import scene_in
     from flankfilm.stages.catalogue import STAGES
@@ -152,20 +147,17 @@ def export_mesh(
     claim(out)
     if not 0 <= refinements <= 4:
         raise InputError([Fault("--refinements", str(refinements), "must be 0 to 4", "1 suits most checks")])
-    try:
-        engine = Engine(wanted, STAGES, Cache(user_cache() / "results"))
-        files = export_position(
-            out,
-            engine["pair"],
-            pinion_torque(wanted),
-            position,
-            format,
-            engine["compliance"],
-            wanted.stiffness.plane,
-            refinements,
-        )
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
+    engine = Engine(wanted, STAGES, Cache(user_cache() / "results"))
+    files = export_position(
+        out,
+        engine["pair"],
+        pinion_torque(wanted),
+        position,
+        format,
+        engine["compliance"],
+        wanted.stiffness.plane,
+        refinements,
+    )
     for path in files:
         print(f"{path} is written.")
     return 0

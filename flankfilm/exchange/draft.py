@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from flankfilm.faults import Fault
+from base import Fault
 
 OPEN = math.nan
 """Stands for a value that the file lacks: no scene takes it, so that it cannot be overlooked."""

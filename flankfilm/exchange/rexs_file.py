@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers import expat
 
-from flankfilm.faults import Fault, InputError, shorten
+from base import Fault, InputError, shorten
 
 LARGEST_FILE = 50_000_000
 """Bytes; a gear unit with all its bearings and results is a few megabytes."""

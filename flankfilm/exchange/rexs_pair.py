@@ -11,9 +11,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from base import Fault, InputError, shorten
 from flankfilm.exchange.draft import OPEN, Draft, GearDraft, MaterialDraft, RackDraft
 from flankfilm.exchange.rexs_file import Component, Model, Relation
-from flankfilm.faults import Fault, InputError, shorten
 
 LENGTH = {"mm": 1.0, "mum": 1e-3}  # mm
 ANGLE = {"deg": 1.0, "°": 1.0, "rad": 180.0 / math.pi}  # deg

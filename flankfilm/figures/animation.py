@@ -11,8 +11,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from base import Fault, InputError, SolverError, shorten
 from base.files import replacing
-from flankfilm.faults import Fault, InputError, SolverError, shorten
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
 from flankfilm.figures.view import View

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.faults import SolverError
+from base import SolverError
 from flankfilm.folder import claim
 from flankfilm.optimise.search import FAILED, front, search
 from flankfilm.optimise.task import Task

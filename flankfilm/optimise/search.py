@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.optimise.task import Task
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, validated
 from flankfilm.scene.schema import Scene

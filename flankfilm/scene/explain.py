@@ -10,7 +10,7 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-from flankfilm.faults import Fault, shorten
+from base import Fault, shorten
 
 _ALLOWED = {
     "greater_than": "must be greater than {gt:g}",
@@ -45,7 +45,7 @@ def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> l
     joined: dict[str, Fault] = {}
     for fault in (explain(item, model) for item in items):
         if len(joined) >= MOST_FAULTS:
-            joined["more"] = Fault("the rest", "", "has more faults", "Mend these first")
+            joined["more"] = Fault("the rest", "", "has more faults", "Fix these first")
             break
         same = joined.get(fault.where)
         if same is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flankfilm.faults import Fault, shorten
+from base import Fault, shorten
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""

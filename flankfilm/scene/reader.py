@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.needs import missing_sections
 from flankfilm.scene.schema import Scene

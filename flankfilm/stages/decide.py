@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
-from flankfilm.faults import SolverError
+from base import SolverError
 from flankfilm.stages import film_choice, stiffness_choice
 from flankfilm.stages.decisions import Candidate, Decision, per_cent, signed
 from flankfilm.tolerance import CostLaw, Shares, split, step_below

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.faults import SolverError
+from base import SolverError
 from flankfilm.film_law import FilmLaw
 from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.stages import film_pitch

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import SolverError
 from flankfilm.cache import Cache
-from flankfilm.faults import SolverError
 from flankfilm.stages.teeth import plain_flanks
 from flankfilm.tolerance import CostLaw
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from base import SolverError
 from flankfilm.build import pinion_speed
 from flankfilm.build_film import lubricant, roughness, supply_of
-from flankfilm.faults import SolverError
 from flankfilm.film_law import FilmLaw, HeldMeniscus
 from flankfilm.mesh_stiffness import MeshStiffness
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from base import SolverError
 from flankfilm.build import pinion_torque
-from flankfilm.faults import SolverError
 from flankfilm.stages.teeth import flanks
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import SolverError
 from flankfilm.build import pinion_torque
-from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.stages.series_choice import asked_order, choose_order, left_out
 

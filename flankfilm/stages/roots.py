@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from base import SolverError
 from flankfilm.build import gear_pair, pinion_torque
-from flankfilm.faults import SolverError
 from flankfilm.stages.teeth import plain_flanks
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from flankfilm.faults import SolverError
+from base import SolverError
 
 if TYPE_CHECKING:
     from dynamics import SweepResult

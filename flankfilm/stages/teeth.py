@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from base import SolverError
 from flankfilm.build import deviations, gear_pair, pinion_torque, supports, tip_roundings
-from flankfilm.faults import SolverError
 from flankfilm.mesh_stiffness import MeshStiffness, peak_to_peak_error, sampling_error
 from flankfilm.stages.separate_pairs import separate_pairs_cycle
 

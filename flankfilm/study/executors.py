@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 
 Kind = Literal["processes", "dask", "mpi"]
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
+from base import Fault, InputError
 from flankfilm.cache import code_digest
 from flankfilm.dataset import write_text
-from flankfilm.faults import Fault, InputError
 from flankfilm.study.table import ROWS, Columns, Line, read_lines
 
 PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")

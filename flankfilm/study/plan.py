@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
 from flankfilm.scene.section import Section

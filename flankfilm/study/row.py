@@ -58,8 +58,8 @@ def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
 
 def compute_row(row: Row) -> RowResult:
     """Compute the outputs of a row; whatever goes wrong becomes its fault."""
+    from base import InputError, SolverError
     from flankfilm.cache import Cache, keep_compiled_code, user_cache
-    from flankfilm.faults import InputError, SolverError, told_by_a_floor
 
     keep_compiled_code()
     from flankfilm.scene.reader import validated
@@ -77,8 +77,7 @@ def compute_row(row: Row) -> RowResult:
     except (InputError, SolverError) as fault:
         return failed(row, str(fault), time.perf_counter() - start)
     except Exception as fault:  # noqa: BLE001 - one row must not end a study of thousands; its fault is kept
-        told = told_by_a_floor(fault) if isinstance(fault, ValueError) else None
         place = traceback.extract_tb(fault.__traceback__)[-1]
         where = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"
-        return failed(row, str(told or where), time.perf_counter() - start)
+        return failed(row, where, time.perf_counter() - start)
     return RowResult(row.index, values, time.perf_counter() - start)

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.study.row import RowResult
 
 ROWS = "rows.csv"

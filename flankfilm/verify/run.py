@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from base import Fault, InputError
 from flankfilm.cache import Cache, user_cache
-from flankfilm.faults import Fault, InputError, told_by_a_floor
 from flankfilm.folder import claim
 from flankfilm.progress import Progress, silent
 from flankfilm.scene import Scene
@@ -54,10 +54,6 @@ def verify_scene(
         done.append(title)
         progress(title, len(done) - 1, 3)
 
-    try:
-        found: Verification = Engine(scene, STAGES, cache, lambda stage: announce(stage.title))[
-            "verification"
-        ]
-    except ValueError as error:
-        raise told_by_a_floor(error) or error from error
+    engine = Engine(scene, STAGES, cache, lambda stage: announce(stage.title))
+    found: Verification = engine["verification"]
     return found

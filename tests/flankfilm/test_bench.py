@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base import InputError
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level, true_error
 from flankfilm.bench.catalogue import SOLVERS
 from flankfilm.bench.gear_cases import enclosed_area, example_pair
@@ -22,7 +23,6 @@ from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
 from flankfilm.bench.tables import read_bench, remarks, summaries, write_tables
-from flankfilm.faults import InputError
 from flankfilm.figures.bench import error_against_cost
 
 SCRIPT = Path(sys.executable).with_name("flankfilm")

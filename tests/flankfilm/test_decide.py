@@ -13,9 +13,9 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
+from base import SolverError
 from flankfilm.cache import Cache
 from flankfilm.check import check_scene
-from flankfilm.faults import SolverError
 from flankfilm.report.contents import summary
 from flankfilm.run import run_scene
 from flankfilm.scene import Scene, read_scene

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from base import InputError
 from flankfilm.build import gear_pair
 from flankfilm.exchange.bring_in import imported
 from flankfilm.exchange.draft import Draft, GearDraft, RackDraft, scene_text
 from flankfilm.exchange.rexs_file import parse_model
 from flankfilm.exchange.rexs_pair import draft_of, stages
 from flankfilm.exchange.rexs_write import rexs_text
-from flankfilm.faults import InputError
 from flankfilm.scene import parse_scene
 from gears import BasicRack, Gear, GearPair, Material, TipRelief
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base import InputError
 from flankfilm.cache import Cache
-from flankfilm.faults import InputError
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine

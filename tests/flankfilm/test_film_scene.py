@@ -6,9 +6,9 @@ import warnings
 
 import pytest
 
+from base import InputError
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import lubricant, roughness, supply_of
-from flankfilm.faults import InputError
 from flankfilm.scene import parse_scene, template
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine

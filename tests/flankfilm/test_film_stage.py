@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base import InputError
 from flankfilm.cache import Cache
-from flankfilm.faults import InputError
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine

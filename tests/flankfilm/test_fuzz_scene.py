@@ -15,8 +15,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
+from base import InputError
 from flankfilm.check import check_scene
-from flankfilm.faults import InputError
 from flankfilm.scene import Scene, parse_scene, template
 from flankfilm.study.plan import StudyFile, read_plan
 

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from flankfilm.faults import InputError
+from base import InputError
 from flankfilm.scene import parse_scene
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "real_flanks.toml"

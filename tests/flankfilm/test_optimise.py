@@ -12,8 +12,8 @@ import pandas as pd
 import pytest
 from scipy.optimize import brentq
 
+from base import InputError, SolverError
 from flankfilm.build import gear_pair
-from flankfilm.faults import InputError, SolverError
 from flankfilm.optimise.files import phases
 from flankfilm.optimise.run import Evaluation, Optimum, optimise
 from flankfilm.optimise.search import front

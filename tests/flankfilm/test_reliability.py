@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flankfilm.faults import InputError
+from base import InputError
 from flankfilm.reproduce import scene_in
 from flankfilm.run import run_scene
 from flankfilm.scene import parse_scene

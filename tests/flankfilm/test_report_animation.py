@@ -12,9 +12,9 @@ import pytest
 from PIL import Image
 
 import fem
+from base import InputError, SolverError
 from fem.vtk import write_vtk_series
 from flankfilm.cache import Cache
-from flankfilm.faults import InputError, SolverError
 from flankfilm.figures import animate_cycle, animation, tooth_picture
 from flankfilm.outputs import results_dataset, write_data
 from flankfilm.scene import parse_scene

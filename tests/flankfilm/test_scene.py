@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
 
-from flankfilm.faults import Fault, InputError
+from base import Fault, InputError
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.explain import _model_in
 

@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from flankfilm.faults import InputError
+from base import InputError
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import read_plan
 from flankfilm.study.run import run_study
