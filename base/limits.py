@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -122,6 +123,24 @@ class Faults:
         faults = limit.faults(where, value)
         self.found.extend(faults)
         return math.nan if faults else float(value)  # type: ignore[arg-type]
+
+    def fields(self, record: Any, limits: Mapping[str, Limit], path: str = "") -> None:
+        """Note the faults of a dataclass's numbers; fields whose default is None may be None.
+
+        Parameters
+        ----------
+        record : dataclass instance
+            Its attributes are checked.
+        limits : mapping
+            Name of a field to its limit.
+        path : str
+            What stands before the names: ``"roughness."``.
+        """
+        optional = {f.name for f in dataclasses.fields(record) if f.default is None}
+        for name, limit in limits.items():
+            value = getattr(record, name)
+            if not (value is None and name in optional):
+                self.number(path + name, value, limit)
 
     def whole(self, where: str, value: object, low: int, high: int, remedy: str = "") -> int:
         """Return the value as an int; where it is none within [low, high], note that and return `low`."""

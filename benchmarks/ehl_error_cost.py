@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ehl import DEFINITIONS, EhlWarning, Film, LineContact, Lubricant, solve, solve_path
+from base import RangeWarning
+from ehl import DEFINITIONS, Film, LineContact, Lubricant, solve, solve_path
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
@@ -66,7 +67,7 @@ def stiffnesses() -> None:
 
 
 def main() -> None:
-    warnings.simplefilter("ignore", EhlWarning)
+    warnings.simplefilter("ignore", RangeWarning)
     start = time.perf_counter()
     solve(PITCH)
     print(f"first solution, with the kernels loaded or compiled: {time.perf_counter() - start:.2f} s\n")

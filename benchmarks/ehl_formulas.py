@@ -12,8 +12,8 @@ import warnings
 
 import numpy as np
 
+from base import RangeWarning
 from ehl import (
-    EhlWarning,
     LineContact,
     dowson_higginson_minimum,
     dowson_toyoda_central,
@@ -75,7 +75,7 @@ def figure(found: dict[str, np.ndarray], path: str) -> None:
 
 
 def main() -> None:
-    warnings.simplefilter("ignore", EhlWarning)
+    warnings.simplefilter("ignore", RangeWarning)
     found = errors()
     table(found)
     if len(sys.argv) > 1:

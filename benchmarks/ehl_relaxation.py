@@ -20,7 +20,8 @@ import warnings
 import numpy as np
 from numba import njit
 
-from ehl import EhlWarning, LineContact, Lubricant, solve
+from base import RangeWarning
+from ehl import LineContact, Lubricant, solve
 from ehl.kernels import log_potential
 
 CASES = {
@@ -112,7 +113,7 @@ def newton(contact: LineContact, n: int) -> tuple[float, float]:
 
 def main() -> None:
     warnings.simplefilter("ignore")
-    warnings.simplefilter("ignore", EhlWarning)
+    warnings.simplefilter("ignore", RangeWarning)
     print(
         f"{'contact':18}{'nodes':>6}{'relaxed ms':>12}{'sweeps':>8}{'error':>9}{'Newton ms':>11}{'error':>9}"
     )

@@ -10,7 +10,8 @@ from __future__ import annotations
 import warnings
 from dataclasses import replace
 
-from ehl import EhlWarning, Film, LineContact, Lubricant, Meniscus, OilLayer, solve
+from base import RangeWarning
+from ehl import Film, LineContact, Lubricant, Meniscus, OilLayer, solve
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
@@ -68,7 +69,7 @@ def supplies() -> None:
 
 
 def main() -> None:
-    warnings.simplefilter("ignore", EhlWarning)
+    warnings.simplefilter("ignore", RangeWarning)
     trends()
     supplies()
 

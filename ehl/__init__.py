@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ehl.asperities import Roughness
     from ehl.contact import LineContact
-    from ehl.errors import EhlInputError, EhlWarning, Fault
     from ehl.film import DEFINITIONS, Cost, Film, FilmErrors, Spike, hertz_approach
     from ehl.lubricant import Lubricant
     from ehl.mixed import MixedFilm, solve_mixed
@@ -47,9 +46,6 @@ __all__ = [
     "Cost",
     "DensityLaw",
     "DowsonHigginson",
-    "EhlInputError",
-    "EhlWarning",
-    "Fault",
     "Film",
     "FilmErrors",
     "FormulaFilm",
@@ -81,7 +77,6 @@ _ROOMS = {
     "asperities": ("Roughness",),
     "mixed": ("MixedFilm", "solve_mixed"),
     "contact": ("LineContact",),
-    "errors": ("EhlInputError", "EhlWarning", "Fault"),
     "film": ("DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"),
     "lubricant": ("Lubricant",),
     "rheology": (

@@ -6,13 +6,20 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ehl.errors import EhlInputError, Fault, number_fault
+from base import Array, Faults, Limit
 
-__all__ = ["Roughness", "height_integral", "zhao_fit"]
+__all__ = ["LAWS", "LIMITS", "Roughness", "height_integral", "zhao_fit"]
 
-Array = NDArray[np.float64]
+LAWS = ("greenwood-tripp", "greenwood-williamson")
+LIMITS = {
+    "deviation": Limit(0.0, 1e-3, "m", "sigma in m, 1e-7 is a tenth of a micrometre", low_open=True),
+    "density": Limit(0.0, 1e18, "1/m2", "1e10 to 1e12 are usual", low_open=True),
+    "tip_radius": Limit(0.0, 1.0, "m", "1e-6 to 1e-4 are usual", low_open=True),
+    "offset": Limit(0.0, 3.0, remedy="1.15 is usual"),
+}
+"""What the numbers of a roughness may be."""
 
 _FAR = 8.0  # standard deviations beyond which no asperity is met
 
@@ -87,21 +94,10 @@ class Roughness:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        remedy = "sigma in m, 1e-7 is a tenth of a micrometre"
-        faults = number_fault("roughness.deviation", self.deviation, low=0.0, high=1e-3, remedy=remedy)
-        remedy = "per m^2, 1e10 to 1e12 are usual"
-        faults += number_fault("roughness.density", self.density, low=0.0, high=1e18, remedy=remedy)
-        remedy = "in m, 1e-6 to 1e-4 are usual"
-        faults += number_fault("roughness.tip_radius", self.tip_radius, low=0.0, high=1.0, remedy=remedy)
-        remedy = "1.15 is usual"
-        faults += number_fault(
-            "roughness.offset", self.offset, low=0.0, high=3.0, remedy=remedy, open_low=False
-        )
-        if self.law not in ("greenwood-tripp", "greenwood-williamson"):
-            allowed = "greenwood-tripp or greenwood-williamson"
-            faults.append(Fault("roughness.law", repr(self.law), allowed, "choose one"))
-        if faults:
-            raise EhlInputError(faults)
+        found = Faults()
+        found.fields(self, LIMITS, "roughness.")
+        found.choice("roughness.law", self.law, LAWS)
+        found.raise_if_any()
 
     def pressure(self, separation: ArrayLike, reduced_modulus: float) -> tuple[Array, Array]:
         """Pressure of the asperities [Pa] and its derivative by the separation [Pa/m].

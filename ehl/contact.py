@@ -5,11 +5,42 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ehl.errors import EhlInputError, Fault, number_fault
+from base import Faults, Limit
 from ehl.lubricant import Lubricant
 from ehl.rheology import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE
 
-__all__ = ["LineContact"]
+__all__ = ["LIMITS", "LineContact"]
+
+LIMITS = {
+    "load": Limit(
+        0.0,
+        1e15,
+        "N/m",
+        "a pair without load has no film to solve: leave it out, or give its small load in N/m",
+        low_open=True,
+    ),
+    "entrainment": Limit(
+        0.0,
+        1e9,
+        "m/s",
+        "without entrainment no steady film exists: take the contact as dry; "
+        "if both surfaces move backwards, give the magnitude and mirror x",
+        low_open=True,
+    ),
+    "radius": Limit(0.0, 1e6, "m", "give R in m", low_open=True),
+    "reduced_modulus": Limit(0.0, 1e14, "Pa", "give E' in Pa, 2.26e11 for steel", low_open=True),
+}
+"""What the numbers of a line contact may be."""
+
+_MOES = "Moes' numbers of line contacts lie between 0.01 and 5000 (M), 0 and 30 (L)"
+_MOES_LIMITS = {
+    "M": Limit(0.0, 1e9, remedy=_MOES, low_open=True),
+    "L": Limit(0.0, 1e3, remedy=_MOES),
+    "roelands_z": Limit(0.1, 2.0, remedy="oils lie between 0.2 and 1"),
+    "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa", "for a constant viscosity give L = 0", low_open=True),
+    "reduced_modulus": LIMITS["reduced_modulus"],
+    "radius": LIMITS["radius"],
+}
 
 _SPEED_PARAMETER = 1e-11  # U2 taken by from_moes when alpha = 0 leaves it free
 
@@ -33,7 +64,7 @@ class LineContact:
 
     Raises
     ------
-    EhlInputError
+    InputError
         With every fault at once. A load or an entrainment of zero is refused: without load there is no
         contact to solve (the film stiffness is zero), and without entrainment a steady film does not exist
         (the contact is dry: the film props the bodies apart by nothing).
@@ -47,35 +78,11 @@ class LineContact:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        faults = number_fault(
-            "load",
-            self.load,
-            low=0.0,
-            high=1e15,
-            remedy="a pair without load has no film to solve: leave it out, or give its small load in N/m",
-        )
-        faults += number_fault(
-            "entrainment",
-            self.entrainment,
-            low=0.0,
-            high=1e9,
-            remedy="without entrainment no steady film exists: take the contact as dry; "
-            "if both surfaces move backwards, give the magnitude and mirror x",
-        )
-        faults += number_fault("radius", self.radius, low=0.0, high=1e6, remedy="give R in m")
-        faults += number_fault(
-            "reduced_modulus",
-            self.reduced_modulus,
-            low=0.0,
-            high=1e14,
-            remedy="give E' in Pa, 2.26e11 for steel",
-        )
+        found = Faults()
+        found.fields(self, LIMITS)
         if not isinstance(self.lubricant, Lubricant):
-            faults.append(
-                Fault("lubricant", repr(self.lubricant), "a Lubricant", "build one with ehl.Lubricant")
-            )
-        if faults:
-            raise EhlInputError(faults)
+            found.add("lubricant", self.lubricant, "must be a Lubricant", "build one with ehl.Lubricant")
+        found.raise_if_any()
 
     @classmethod
     def from_moes(
@@ -107,25 +114,13 @@ class LineContact:
         reduced_modulus, radius : float
             E' [Pa] and R [m].
         """
-        remedy = "Moes' numbers of line contacts lie between 0.01 and 5000 (M), 0 and 30 (L)"
-        faults = number_fault("M", M, low=0.0, high=1e9, remedy=remedy)
-        faults += number_fault("L", L, low=0.0, high=1e3, open_low=False, remedy=remedy)
-        faults += number_fault(
-            "roelands_z", roelands_z, low=0.1, high=2.0, open_low=False, remedy="oils lie between 0.2 and 1"
-        )
-        faults += number_fault(
-            "pressure_viscosity",
-            pressure_viscosity,
-            low=0.0,
-            high=1e-7,
-            remedy="for a constant viscosity give L=0",
-        )
-        faults += number_fault("reduced_modulus", reduced_modulus, low=0.0, high=1e14, remedy="give E' in Pa")
-        faults += number_fault("radius", radius, low=0.0, high=1e6, remedy="give R in m")
-        if not faults and 0.0 < L < 1e-6:
-            faults.append(Fault("L", repr(L), "0 or at least 1e-6", "give L=0 for a constant viscosity"))
-        if faults:
-            raise EhlInputError(faults)
+        found = Faults()
+        values = (M, L, roelands_z, pressure_viscosity, reduced_modulus, radius)
+        for (name, limit), value in zip(_MOES_LIMITS.items(), values, strict=True):
+            found.number(name, value, limit)
+        if not found.found and 0.0 < L < 1e-6:
+            found.add("L", L, "must be 0 or at least 1e-6", "give L = 0 for a constant viscosity")
+        found.raise_if_any()
         alpha = pressure_viscosity if L > 0 else 0.0
         speed = (L / (alpha * reduced_modulus)) ** 4 if L > 0 else _SPEED_PARAMETER
         viscosity = math.exp(pressure_viscosity * ROELANDS_PRESSURE / roelands_z + ROELANDS_LN_VISCOSITY)

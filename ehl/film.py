@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Faults
 from ehl.contact import LineContact
-from ehl.errors import EhlInputError, Fault
 from ehl.regressions import dowson_higginson_minimum, dowson_toyoda_central
 
 if TYPE_CHECKING:
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
     from ehl.supply import Supply
 
 __all__ = ["DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"]
-
-Array = NDArray[np.float64]
 
 DEFINITIONS = ("approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum")
 
@@ -140,13 +137,13 @@ class Film:
 
         Raises
         ------
-        EhlInputError
+        InputError
             For any other name.
         """
         w = self.contact.load
-        if definition not in DEFINITIONS:
-            allowed = "one of " + ", ".join(DEFINITIONS)
-            raise EhlInputError([Fault("definition", repr(definition), allowed, "choose one of these")])
+        found = Faults()
+        found.choice("definition", definition, DEFINITIONS)
+        found.raise_if_any()
         without_formula = definition.startswith("dowson") and (self.contact.G == 0.0 or self.starved)
         if not self.converged or without_formula:
             return math.nan

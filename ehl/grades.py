@@ -7,18 +7,29 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ehl.errors import EhlInputError, EhlWarning, Fault, number_fault
+from base import Faults, Limit, RangeWarning
 
-__all__ = ["GRADES", "GradedOil", "gold_coefficient", "graded_oil", "viscosity_index", "walther"]
-
-Array = NDArray[np.float64]
+__all__ = ["GRADES", "LIMITS", "GradedOil", "gold_coefficient", "graded_oil", "viscosity_index", "walther"]
 
 GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
 """Grades of ISO 3448: mid-point kinematic viscosity at 40 degC [mm^2/s]."""
 
 _ZERO = 273.15  # K at 0 degC
+LIMITS = {
+    "vg": Limit(7.0, 1e4, "mm2/s", "give the grade's number, 7 to 3200 mm2/s at 40 degC"),
+    "temperature": Limit(
+        _ZERO - 20.0,
+        _ZERO + 150.0,
+        "K",
+        "give the oil's temperature in kelvin, degC + 273.15",
+        low_open=True,
+    ),
+    "viscosity_index": Limit(0.0, 250.0, remedy="mineral oils have about 95, synthetic oils 140 to 250"),
+    "density_15": Limit(500.0, 2000.0, "kg/m3", "of the oil at 15 degC", low_open=True),
+}
+"""What the numbers of a graded oil may be."""
+
 _T40, _T100, _T15 = 313.15, 373.15, 288.15  # K
 _BASES = {  # s [1/GPa at 1 mm^2/s] and t of Gold's formula, density at 15 degC [kg/m^3], expansion [kg/m^3 K]
     "mineral": (9.904, 0.1390, 885.0, 0.64),
@@ -164,33 +175,29 @@ def graded_oil(
 
     Raises
     ------
-    EhlInputError
+    InputError
         With every fault at once.
 
     Warns
     -----
-    EhlWarning
+    RangeWarning
         Where ``vg`` is no grade of ISO 3448.
     """
-    remedy = "give the grade's number, 7 to 3200 mm^2/s at 40 degC"
-    faults = number_fault("vg", vg, low=7.0, high=1e4, remedy=remedy, open_low=False)
-    remedy = "give the oil's temperature in kelvin, degC + 273.15"
-    faults += number_fault("temperature", temperature, low=_ZERO - 20.0, high=_ZERO + 150.0, remedy=remedy)
-    remedy = "mineral oils have about 95, synthetic oils 140 to 250"
-    faults += number_fault("viscosity_index", index, low=0.0, high=250.0, remedy=remedy, open_low=False)
-    if base not in _BASES:
-        faults.append(Fault("base", repr(base), "one of " + ", ".join(_BASES), "choose the nearest"))
+    found = Faults()
+    found.number("vg", vg, LIMITS["vg"])
+    found.number("temperature", temperature, LIMITS["temperature"])
+    found.number("viscosity_index", index, LIMITS["viscosity_index"])
+    found.choice("base", base, tuple(_BASES), "choose the nearest")
     if density_15 is not None:
-        faults += number_fault("density_15", density_15, low=500.0, high=2000.0, remedy="in kg/m^3")
-    nu_100 = math.nan if faults else _nu_100(vg, index)
-    if not faults and math.isnan(nu_100):
-        allowed = f"at least {viscosity_index(vg, 2.0):.0f} for VG {vg:g}"
+        found.number("density_15", density_15, LIMITS["density_15"])
+    nu_100 = math.nan if found.found else _nu_100(vg, index)
+    if not found.found and math.isnan(nu_100):
+        allowed = f"must be at least {viscosity_index(vg, 2.0):.0f} for VG {vg:g}"
         remedy = "below that the viscosity at 100 degC leaves the standard's range; give a higher index"
-        faults.append(Fault("viscosity_index", repr(index), allowed, remedy))
-    if faults:
-        raise EhlInputError(faults)
+        found.add("viscosity_index", index, allowed, remedy)
+    found.raise_if_any()
     if vg not in GRADES:
-        warnings.warn(f"VG {vg:g} is no grade of ISO 3448", EhlWarning, stacklevel=3)
+        warnings.warn(f"VG {vg:g} is no grade of ISO 3448", RangeWarning, stacklevel=3)
     nu = walther(temperature, vg, nu_100)
     _, _, typical, expansion = _BASES[base]
     density = (typical if density_15 is None else density_15) - expansion * (temperature - _T15)

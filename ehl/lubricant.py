@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ehl.errors import EhlInputError, EhlWarning, Fault, number_fault
+from base import Array, Faults, Limit, RangeWarning
 from ehl.rheology import (
     ROELANDS_LN_VISCOSITY,
     Barus,
@@ -23,9 +23,15 @@ from ehl.rheology import (
     roelands_index,
 )
 
-__all__ = ["Lubricant"]
+__all__ = ["LIMITS", "Lubricant"]
 
-Array = NDArray[np.float64]
+LIMITS = {
+    "viscosity": Limit(0.0, 1e100, "Pa s", "give eta0 in Pa s", low_open=True),
+    "pressure_viscosity": Limit(0.0, 1e-6, "1/Pa", "give alpha in 1/Pa, near 2e-8 for mineral oil"),
+    "density": Limit(0.0, 1e5, "kg/m3", "give rho0 in kg/m3", low_open=True),
+    "roelands_z": Limit(0.0, 2.0, remedy="leave it out to derive it from alpha", low_open=True),
+}
+"""What the numbers of a lubricant may be."""
 
 
 @dataclass(frozen=True)
@@ -61,12 +67,12 @@ class Lubricant:
 
     Raises
     ------
-    EhlInputError
+    InputError
         With every fault at once.
 
     Warns
     -----
-    EhlWarning
+    RangeWarning
         If z lies outside 0.2 to 1, where mineral and synthetic oils are not found.
     """
 
@@ -80,32 +86,24 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        faults = number_fault("viscosity", self.viscosity, low=0.0, high=1e100, remedy="give eta0 in Pa s")
-        faults += number_fault(
-            "pressure_viscosity",
-            self.pressure_viscosity,
-            low=0.0,
-            high=1e-6,
-            open_low=False,
-            remedy="give alpha in 1/Pa, near 2e-8 for mineral oil",
-        )
-        faults += number_fault("density", self.density, low=0.0, high=1e5, remedy="give rho0 in kg/m^3")
+        found = Faults()
+        found.fields(self, LIMITS)
         if not isinstance(self.compressible, bool | np.bool_):
-            faults.append(Fault("compressible", repr(self.compressible), "True or False", "choose one"))
-        if self.roelands_z is not None:
-            remedy = "leave it out to derive it from alpha"
-            faults += number_fault("roelands_z", self.roelands_z, low=0.0, high=2.0, remedy=remedy)
-        faults += self._law_faults()
-        if not faults and self._needs_index() and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
-            allowed = "above 6.3e-5 Pa s where Roelands' index is derived"
-            faults.append(Fault("viscosity", repr(self.viscosity), allowed, "give roelands_z"))
-        if faults:
-            raise EhlInputError(faults)
+            found.add("compressible", self.compressible, "must be True or False")
+        self._check_laws(found)
+        if not found.found and self._needs_index() and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
+            found.add(
+                "viscosity",
+                self.viscosity,
+                "must be more than 6.3e-5 Pa s where Roelands' index is derived from it",
+                "give roelands_z",
+            )
+        found.raise_if_any()
         if isinstance(self.law, Roelands) and not 0.2 <= self.z <= 1.0:
             warnings.warn(
                 f"Roelands index z = {self.z:.3g} lies outside 0.2 to 1, where oils are found; "
                 "check viscosity and pressure_viscosity",
-                EhlWarning,
+                RangeWarning,
                 stacklevel=3,
             )
 
@@ -113,21 +111,20 @@ class Lubricant:
         """Whether Roelands' index has to be derived."""
         return self.viscosity_law is None and self.roelands_z is None and self.pressure_viscosity > 0
 
-    def _law_faults(self) -> list[Fault]:
-        """Faults of given laws."""
-        faults = []
+    def _check_laws(self, found: Faults) -> None:
+        """Note the faults of given laws."""
         if self.viscosity_law is not None:
             if self.roelands_z is not None:
-                remedy = "put the index into the law"
-                faults.append(Fault("roelands_z", repr(self.roelands_z), "absent beside a given law", remedy))
-            if not math.isclose(self.viscosity_law.slope, self.pressure_viscosity, rel_tol=1e-6):
-                allowed = f"the given law's slope at ambient pressure, {self.viscosity_law.slope!r}"
+                allowed = "must be left out beside a given law"
+                found.add("roelands_z", self.roelands_z, allowed, "put the index into the law")
+            slope = self.viscosity_law.slope
+            if not math.isclose(slope, self.pressure_viscosity, rel_tol=1e-6):
+                allowed = f"must be {slope!r}, the slope of the given law at ambient pressure"
                 remedy = "the film's groups are built on it"
-                faults.append(Fault("pressure_viscosity", repr(self.pressure_viscosity), allowed, remedy))
+                found.add("pressure_viscosity", self.pressure_viscosity, allowed, remedy)
         if self.density_law is not None and not self.compressible:
-            allowed = "True beside a given density law"
-            faults.append(Fault("compressible", "False", allowed, "leave one of them out"))
-        return faults
+            allowed = "must be True beside a given density law"
+            found.add("compressible", False, allowed, "leave one of them out")
 
     @cached_property
     def law(self) -> ViscosityLaw:

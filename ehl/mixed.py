@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from base import Faults
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
-from ehl.errors import EhlInputError, Fault
 from ehl.film import Film
 from ehl.solver import solve
 from ehl.supply import Supply
@@ -135,7 +135,7 @@ def solve_mixed(
 
     Raises
     ------
-    EhlInputError
+    InputError
         With every fault of the arguments.
 
     Notes
@@ -149,8 +149,9 @@ def solve_mixed(
     lubrication, Wear 19 (1972) 91-108.
     """
     if not isinstance(roughness, Roughness):
-        fault = Fault("roughness", repr(roughness), "a Roughness", "build one with ehl.Roughness")
-        raise EhlInputError([fault])
+        found = Faults()
+        found.add("roughness", roughness, "must be a Roughness", "build one with ehl.Roughness")
+        found.raise_if_any()
     search = _Search(contact, roughness, tolerance, supply, start)
     smooth = search.film_at(0.0)
     if not smooth.converged:

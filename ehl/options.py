@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from dataclasses import dataclass, replace
 
-import numpy as np
-
+from base import Faults, Limit, RangeWarning
 from ehl.contact import LineContact
-from ehl.errors import EhlInputError, EhlWarning, Fault, number_fault
 from ehl.regressions import moes_central
 from ehl.supply import Meniscus, OilLayer, Supply
 
@@ -21,6 +18,11 @@ ARTICLE_NODES = 130
 ARTICLE_DOMAIN = (-4.0, 1.2)
 """The grid of a published study of spur gears: 130 equal nodes, criterion 1e-6 on the pressure."""
 
+_LIMITS = {
+    "tolerance": Limit(0.0, 0.2, remedy="0.005 is 0.5 %", low_open=True),
+    "spike": Limit(0.0, 0.2, remedy="0.01 is 1 %", low_open=True),
+}
+_NODES = (32, 4097, "129 is usual; leave it out to let the tolerance decide")
 _SHARP_TOLERANCE = 1e-3  # below this the film feels a spike that falls between the nodes
 
 
@@ -37,9 +39,9 @@ class Options:
 
     def checked(self, contact: object) -> Options:
         """Raise every fault at once; otherwise return the options with the article's grid spelt out."""
-        faults = self._faults(contact)
-        if faults:
-            raise EhlInputError(faults)
+        found = Faults()
+        self._check(contact, found)
+        found.raise_if_any()
         if self.grid == "article":
             return replace(self, grid="uniform", nodes=ARTICLE_NODES, domain=ARTICLE_DOMAIN)
         return self
@@ -50,65 +52,46 @@ class Options:
         fine = self.nodes is None and self.tolerance < _SHARP_TOLERANCE
         return self.grid == "graded" and (self.spike is not None or fine)
 
-    def _faults(self, contact: object) -> list[Fault]:
-        faults: list[Fault] = []
+    def _check(self, contact: object, found: Faults) -> None:
         if not isinstance(contact, LineContact):
-            faults.append(Fault("contact", repr(contact), "a LineContact", "build one with ehl.LineContact"))
-        faults += number_fault(
-            "tolerance", self.tolerance, low=0.0, high=0.2, remedy="0.005 is half a per cent"
-        )
+            found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
+        found.fields(self, _LIMITS)
         if self.nodes is not None:
-            faults += self._node_faults()
-        if self.grid not in GRIDS:
-            remedy = "'graded' resolves inlet and pressure spike"
-            faults.append(Fault("grid", repr(self.grid), "one of " + ", ".join(GRIDS), remedy))
+            found.whole("nodes", self.nodes, *_NODES)
+        found.choice("grid", self.grid, GRIDS, "'graded' resolves inlet and pressure spike")
         if self.grid == "article" and not (self.nodes is None and self.domain is None):
             remedy = "it has 130 nodes on [-4, 1.2]; take grid='uniform' for others"
-            faults.append(Fault("grid", "'article'", "given without nodes and domain", remedy))
-        if self.domain is not None:
-            faults += _domain_faults(self.domain)
+            found.add("grid", repr(self.grid), "must be given without nodes and domain", remedy)
+        if self.domain is not None and not _in_order(self.domain):
+            allowed = "must be (inlet, outlet) in half-widths, inlet at most -1 and outlet more than 0"
+            found.add("domain", self.domain, allowed, "(-15, 2.5) is usual")
         if self.supply is not None:
-            faults += self._supply_faults(contact)
-        if self.spike is not None:
-            faults += number_fault("spike", self.spike, low=0.0, high=0.2, remedy="0.01 is one per cent")
-            if self.grid != "graded":
-                remedy = "only a graded grid follows the spike"
-                faults.append(Fault("spike", repr(self.spike), "absent on uniform grids", remedy))
-        return faults
+            self._check_supply(contact, found)
+        if self.spike is not None and self.grid != "graded":
+            remedy = "only a graded grid follows the spike"
+            found.add("spike", self.spike, "must be left out on uniform grids", remedy)
 
-    def _node_faults(self) -> list[Fault]:
-        if isinstance(self.nodes, bool) or not isinstance(self.nodes, int | np.integer):
-            return [
-                Fault("nodes", repr(self.nodes), "a whole number", "give none to let the tolerance decide")
-            ]
-        return number_fault("nodes", self.nodes, low=32, high=4097, remedy="129 is usual", open_low=False)
-
-    def _supply_faults(self, contact: object) -> list[Fault]:
+    def _check_supply(self, contact: object, found: Faults) -> None:
         if not isinstance(self.supply, Meniscus | OilLayer):
-            allowed = "None (flooded), ehl.Meniscus or ehl.OilLayer"
-            return [Fault("supply", repr(self.supply), allowed, "say what is held constant")]
-        if self.domain is not None or self.grid == "article":
-            return [
-                Fault("supply", repr(self.supply), "given without domain", "the supply decides the inlet")
-            ]
-        if isinstance(self.supply, Meniscus) and isinstance(contact, LineContact):
+            allowed = "must be None (flooded), ehl.Meniscus or ehl.OilLayer"
+            found.add("supply", self.supply, allowed, "say what is held constant")
+        elif self.domain is not None or self.grid == "article":
+            allowed = "must be given without domain"
+            found.add("supply", self.supply, allowed, "the supply decides the inlet")
+        elif isinstance(self.supply, Meniscus) and isinstance(contact, LineContact):
             edge = contact.half_width
             if self.supply.position > -edge:
-                allowed = f"at most {-edge:.6g} m, the edge of the dry contact at this load"
-                remedy = "nearer in no film forms: move the meniscus out, or take the contact as dry (prop 0)"
-                return [Fault("supply.position", repr(self.supply.position), allowed, remedy)]
-        return []
+                allowed = f"must be at most {-edge:.6g} m, the edge of the dry contact at this load"
+                remedy = "nearer in no film forms: move the meniscus out, or take the contact as dry (separation 0)"
+                found.add("supply.position", self.supply.position, allowed, remedy)
 
 
-def _domain_faults(domain: object) -> list[Fault]:
+def _in_order(domain: object) -> bool:
     try:
         left, right = (float(v) for v in domain)  # type: ignore[attr-defined]
     except (TypeError, ValueError):
-        left = right = math.nan
-    if -1e9 <= left <= -1.0 and 0.0 < right <= 1e9:
-        return []
-    allowed = "(inlet <= -1, outlet > 0) in half-widths"
-    return [Fault("domain", repr(domain), allowed, "(-15, 2.5) is usual")]
+        return False
+    return -1e9 <= left <= -1.0 and 0.0 < right <= 1e9
 
 
 def warn_of_range(contact: LineContact) -> None:
@@ -118,13 +101,13 @@ def warn_of_range(contact: LineContact) -> None:
         warnings.warn(
             f"Hertz pressure {contact.peak_pressure / 1e9:.2f} GPa: above about {limit / 1e9:g} GPa the "
             "viscosity law is an extrapolation; film thickness, decided in the inlet, suffers little",
-            EhlWarning,
+            RangeWarning,
             stacklevel=4,
         )
     if moes_central(contact) > 1e-3 * contact.radius:
         warnings.warn(
             f"film of about {moes_central(contact):.2g} m at a radius of {contact.radius:.2g} m: the "
             "parabola that stands for the cylinders no longer holds over the whole inlet",
-            EhlWarning,
+            RangeWarning,
             stacklevel=4,
         )

@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 
-from ehl.errors import EhlWarning
+from base import RangeWarning
 from ehl.film import Film, FilmErrors, Spike
 from ehl.levels import Level, State, figures, spike_of
 from ehl.plan import Plan
@@ -37,7 +37,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     message = "converged"
     if found.P[-2] > 0.0:
         message = "converged; the film reaches the outlet of the domain, which cuts it off there"
-        warnings.warn(message, EhlWarning, stacklevel=5)
+        warnings.warn(message, RangeWarning, stacklevel=5)
     return Film(
         contact=contact,
         x=x,

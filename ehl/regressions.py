@@ -6,8 +6,8 @@ import math
 import warnings
 from dataclasses import dataclass
 
+from base import Fault, InputError, RangeWarning
 from ehl.contact import LineContact
-from ehl.errors import EhlInputError, EhlWarning, Fault
 
 __all__ = [
     "FormulaFilm",
@@ -161,16 +161,15 @@ class FormulaFilm:
     def stiffness(self, definition: str = "dowson-central") -> float:
         """Film stiffness [N/m per m of face], a tangent since the formulas are powers of the load.
 
-        ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise EhlInputError.
+        ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise InputError.
         """
         if definition == "dowson-central":
             return 10.0 * self.contact.load / self.central_thickness
         if definition == "dowson-minimum":
             return self.contact.load / (0.13 * self.minimum_thickness)
-        allowed = "dowson-central or dowson-minimum"
-        raise EhlInputError(
-            [Fault("definition", repr(definition), allowed, "solve the contact for the others")]
-        )
+        allowed = "must be 'dowson-central' or 'dowson-minimum'"
+        remedy = "solve the contact for the others"
+        raise InputError([Fault("definition", repr(definition), allowed, remedy)])
 
 
 def dowson(contact: LineContact) -> FormulaFilm:
@@ -178,23 +177,23 @@ def dowson(contact: LineContact) -> FormulaFilm:
 
     Raises
     ------
-    EhlInputError
+    InputError
         For a constant viscosity, which the formulas do not know.
 
     Warns
     -----
-    EhlWarning
+    RangeWarning
         Outside the elastic, piezoviscous regime, taken here as alpha p_H < 1, where the formulas do not hold.
     """
     if contact.G == 0.0:
-        allowed = "above 0 for Dowson's film formulas"
-        raise EhlInputError([Fault("pressure_viscosity", "0", allowed, "solve the contact with ehl.solve")])
+        allowed = "must be more than 0 for Dowson's film formulas"
+        raise InputError([Fault("pressure_viscosity", "0", allowed, "solve the contact with ehl.solve")])
     if contact.lubricant.pressure_viscosity * contact.peak_pressure < 1.0:
         warnings.warn(
             f"Dowson's film formulas at alpha p_H = "
             f"{contact.lubricant.pressure_viscosity * contact.peak_pressure:.2g}: the contact is not in the "
             "elastic, piezoviscous regime; use ehl.solve",
-            EhlWarning,
+            RangeWarning,
             stacklevel=2,
         )
     return FormulaFilm(contact, dowson_toyoda_central(contact), dowson_higginson_minimum(contact))

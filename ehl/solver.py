@@ -78,12 +78,12 @@ def solve(
 
     Raises
     ------
-    EhlInputError
+    InputError
         With every fault of the arguments.
 
     Warns
     -----
-    EhlWarning
+    RangeWarning
         Above the range of the viscosity law (1 GPa of Hertz pressure for Roelands), at films thicker than a
         thousandth of the radius, and where the film reaches the outlet of a given domain.
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ehl.errors import EhlInputError, number_fault
+from base import Faults, Limit
 from ehl.film import DEFINITIONS, Film
 
 __all__ = ["StiffnessRow", "stiffness_table"]
 
+_FACE_WIDTH = Limit(0.0, 1e3, "m", "give b in m", low_open=True)
+_BODIES = Limit(0.0, 1e18, "N/m", "give it at the whole face", low_open=True)
 _KINDS = {
     "approach": "tangent, -1/(d prop/dw): the film's yielding beyond the dry contact",
     "tangent": "tangent, -dw/dh_cen",
@@ -52,14 +54,14 @@ def stiffness_table(
 
     Raises
     ------
-    EhlInputError
+    InputError
         For a face width or a stiffness that is no positive number.
     """
-    faults = number_fault("face_width", face_width, low=0.0, high=1e3, remedy="give b in m")
+    found = Faults()
+    found.number("face_width", face_width, _FACE_WIDTH)
     if bodies is not None:
-        faults += number_fault("bodies", bodies, low=0.0, high=1e18, remedy="give N/m at the whole face")
-    if faults:
-        raise EhlInputError(faults)
+        found.number("bodies", bodies, _BODIES)
+    found.raise_if_any()
     errors = {"approach": film.errors.approach_stiffness, "tangent": film.errors.tangent_stiffness}
     rows = []
     for definition in DEFINITIONS:

@@ -12,13 +12,17 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ehl.errors import EhlInputError, number_fault
+from base import Array, Faults, Limit
 
-__all__ = ["Meniscus", "OilLayer", "Supply", "dry_gap", "inlet_of_layer", "starved_film"]
+__all__ = ["LIMITS", "Meniscus", "OilLayer", "Supply", "dry_gap", "inlet_of_layer", "starved_film"]
 
-Array = NDArray[np.float64]
+_FLOODED = "leave the supply out for a flooded inlet"
+LIMITS = {
+    "position": Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True),
+    "thickness": Limit(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}", low_open=True),
+}
+"""What the numbers of a supply may be."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +39,9 @@ class Meniscus:
 
     def __post_init__(self) -> None:
         """Check the position."""
-        remedy = "x in m, ahead of the line of centres; leave the supply out for a flooded inlet"
-        faults = number_fault("supply.position", self.position, low=-1e6, high=-1e-15, remedy=remedy)
-        if faults:
-            raise EhlInputError(faults)
+        found = Faults()
+        found.number("supply.position", self.position, LIMITS["position"])
+        found.raise_if_any()
 
 
 @dataclass(frozen=True)
@@ -56,10 +59,9 @@ class OilLayer:
 
     def __post_init__(self) -> None:
         """Check the thickness."""
-        remedy = "h_oil in m; leave the supply out for a flooded inlet"
-        faults = number_fault("supply.thickness", self.thickness, low=0.0, high=1.0, remedy=remedy)
-        if faults:
-            raise EhlInputError(faults)
+        found = Faults()
+        found.number("supply.thickness", self.thickness, LIMITS["thickness"])
+        found.raise_if_any()
 
 
 Supply = Meniscus | OilLayer

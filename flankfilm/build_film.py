@@ -127,12 +127,9 @@ def _graded(oil: LubricantSection) -> Lubricant:
 
 def _explained(build: Callable[[], T]) -> T:
     """Build, with the faults of the film's solver under the scene's keys."""
-    from ehl import EhlInputError
-
     try:
         return build()
-    except EhlInputError as error:
+    except InputError as error:
         raise InputError(
-            Fault(_KEYS.get(f.where, f.where), f.value, f"must be {f.allowed}", f.remedy)
-            for f in error.faults
+            Fault(_KEYS.get(f.where, f.where), f.value, f.allowed, f.remedy) for f in error.faults
         ) from error

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehl import EhlInputError, LineContact, Lubricant
+from base import InputError
+from ehl import LineContact, Lubricant
 
 OIL = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
 SECTION_2 = LineContact(load=1e5, entrainment=1.0, radius=0.015, reduced_modulus=2.2e11, lubricant=OIL)
@@ -41,7 +42,7 @@ def test_without_piezoviscosity():
 
 
 def test_all_faults_are_listed_at_once_and_survive_a_process_boundary():
-    with pytest.raises(EhlInputError) as caught:
+    with pytest.raises(InputError) as caught:
         LineContact(load=0.0, entrainment=0.0, radius=-1.0, reduced_modulus=math.inf, lubricant="oil")
     error = pickle.loads(pickle.dumps(caught.value))
     assert [f.where for f in error.faults] == [
@@ -55,8 +56,8 @@ def test_all_faults_are_listed_at_once_and_survive_a_process_boundary():
 
 
 def test_from_moes_lists_its_faults():
-    with pytest.raises(EhlInputError) as caught:
+    with pytest.raises(InputError) as caught:
         LineContact.from_moes(M=-1.0, L=float("nan"), roelands_z=0.0)
     assert [f.where for f in caught.value.faults] == ["M", "L", "roelands_z"]
-    with pytest.raises(EhlInputError, match="constant viscosity"):
+    with pytest.raises(InputError, match="constant viscosity"):
         LineContact.from_moes(M=1.0, L=1e-300)

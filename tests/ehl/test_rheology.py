@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from base import InputError
 from ehl import (
     Barus,
     ConstantDensity,
     ConstantViscosity,
     DowsonHigginson,
-    EhlInputError,
     LineContact,
     Lubricant,
     Roelands,
@@ -83,7 +83,7 @@ def test_a_law_from_outside_is_solved_with_the_same_newton_method():
 
 
 def test_a_given_law_has_to_match():
-    with pytest.raises(EhlInputError) as caught:
+    with pytest.raises(InputError) as caught:
         Lubricant(
             0.05,
             3e-8,

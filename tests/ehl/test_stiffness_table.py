@@ -3,10 +3,9 @@ import warnings
 
 import pytest
 
+from base import InputError, RangeWarning
 from ehl import (
     DEFINITIONS,
-    EhlInputError,
-    EhlWarning,
     LineContact,
     Lubricant,
     OilLayer,
@@ -21,7 +20,7 @@ TOOTH = 5.6e8
 @pytest.fixture(scope="module")
 def film():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         return solve(PITCH, tolerance=1e-3)
 
 
@@ -48,7 +47,7 @@ def test_without_bodies_there_is_no_loss(film):
 
 def test_formulas_do_not_hold_for_starved_contacts():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         starved = solve(PITCH, supply=OilLayer(0.2e-6))
         flooded = solve(PITCH, supply=OilLayer(1e-3))
     assert starved.starved
@@ -58,6 +57,6 @@ def test_formulas_do_not_hold_for_starved_contacts():
 
 
 def test_bad_arguments(film):
-    with pytest.raises(EhlInputError) as caught:
+    with pytest.raises(InputError) as caught:
         stiffness_table(film, -1.0, 0.0)
     assert len(caught.value.faults) == 2

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ehl import EhlWarning, LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
+from base import RangeWarning
+from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
@@ -17,7 +18,7 @@ SECTION_2 = LineContact(1e5, 1.0, 0.015, 2.2e11, Lubricant(0.06, 22.6e-9, 910.0)
 @pytest.fixture(autouse=True)
 def _known_warnings():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         yield
 
 
@@ -280,7 +281,7 @@ def test_grids_of_a_neighbour_give_way_to_own_ones():
     )
     third = replace(second, load=2.15985e5, entrainment=2.54512, radius=5.91398e-3)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         first = solve(replace(second, load=0.858 * second.load))
         found = solve(third, start=solve(second, start=first))
         alone = solve(third)

@@ -4,8 +4,8 @@ import warnings
 
 import pytest
 
+from base import RangeWarning
 from ehl import (
-    EhlWarning,
     LineContact,
     Lubricant,
     dowson,
@@ -27,7 +27,7 @@ def test_formulas_by_hand():
 
 def test_the_formulas_come_near_the_solver_in_their_range():
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         film = solve(PITCH)
     formula = dowson(PITCH)
     assert formula.central_thickness == pytest.approx(film.central_thickness, rel=0.25)

@@ -8,7 +8,8 @@ import math
 
 import pytest
 
-from ehl import EhlInputError, EhlWarning, Lubricant
+from base import InputError, RangeWarning
+from ehl import Lubricant
 from ehl.grades import GRADES, gold_coefficient, graded_oil, viscosity_index, walther
 
 
@@ -73,11 +74,11 @@ def test_gold_by_hand():
 
 
 def test_faults_together_and_other_viscosities_warned_of():
-    with pytest.raises(EhlInputError) as caught:
+    with pytest.raises(InputError) as caught:
         Lubricant.from_iso_vg(1, 90.0, viscosity_index=500, base="water", density_15=-1)
     where = [f.where for f in caught.value.faults]
     assert where == ["vg", "temperature", "viscosity_index", "base", "density_15"]
-    with pytest.raises(EhlInputError, match="higher index"):
+    with pytest.raises(InputError, match="higher index"):
         graded_oil(7, 313.15, 0.0)
-    with pytest.warns(EhlWarning, match="no grade"):
+    with pytest.warns(RangeWarning, match="no grade"):
         graded_oil(200, 313.15)

@@ -4,8 +4,8 @@ import warnings
 
 import pytest
 
+from base import RangeWarning
 from ehl import (
-    EhlWarning,
     LineContact,
     Lubricant,
     moes_central,
@@ -18,7 +18,7 @@ from ehl import (
 
 def quiet(contact, **options):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         return solve(contact, **options)
 
 

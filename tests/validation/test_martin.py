@@ -11,12 +11,13 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from ehl import EhlWarning, LineContact, Lubricant, solve
+from base import RangeWarning
+from ehl import LineContact, Lubricant, solve
 
 
 def quiet(contact, **options):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", EhlWarning)
+        warnings.simplefilter("ignore", RangeWarning)
         return solve(contact, **options)
 
 
