@@ -67,7 +67,7 @@ class LineContact:
     InputError
         With every fault at once. A load or an entrainment of zero is refused: without load there is no
         contact to solve (the film stiffness is zero), and without entrainment a steady film does not exist
-        (the contact is dry: the film props the bodies apart by nothing).
+        (the contact is dry: the film separation is zero).
     """
 
     load: float

@@ -1,4 +1,4 @@
-"""The solved film: thickness, pressure, what it props the bodies apart by, and its stiffness."""
+"""The solved film: thickness, pressure, separation of the bodies and stiffness."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class FilmErrors:
     """Estimated relative errors, from the grid of half as many cells and from the length of the inlet."""
 
     film: float  # of central and minimum film
-    prop: float
+    separation: float
     approach_stiffness: float
     tangent_stiffness: float
     inlet: float  # share of the film lost to the finite inlet; 0 where the caller fixed the domain
@@ -69,8 +69,8 @@ class Film:
     minimum_position: float  # x of the least h [m]
     inlet: float  # x where the domain begins [m]
     outlet: float  # x where the film ends [m]
-    prop: float  # approach of the dry contact minus approach of the film [m]
-    prop_slope: float  # d prop/d load at fixed speed [m per N/m]
+    separation: float  # approach of the dry contact minus approach of the film [m]
+    separation_slope: float  # d separation/d load at fixed speed [m per N/m]
     central_slope: float  # d h_cen/d load at fixed speed [m per N/m]
     flow: float  # mass flow over rho0 u [m]: the film that leaves the contact at ambient pressure
     flux_error: float  # largest deviation of the mass flow inside the film, relative
@@ -111,10 +111,10 @@ class Film:
     def approach(self) -> float:
         """Approach of the two bodies with the film between them [m], on the datum of :func:`hertz_approach`.
 
-        It is the dry approach less ``prop``; the difference of two approaches of contacts with different
+        It is the dry approach less ``separation``; the difference of two approaches of contacts with different
         loads means something on one common datum only, which this property takes as R.
         """
-        return hertz_approach(self.contact) - self.prop
+        return hertz_approach(self.contact) - self.separation
 
     def stiffness(self, definition: str = "approach") -> float:
         """Film stiffness per length of face [N/m per m] at fixed speed.
@@ -122,7 +122,7 @@ class Film:
         Parameters
         ----------
         definition : str
-            - ``"approach"``: -1/(d prop/dw), the film's extra yielding beyond the dry contact: the one to put
+            - ``"approach"``: -1/(d separation/dw), the film's extra yielding beyond the dry contact: the one to put
               in series with a tooth whose stiffness already holds the dry contact.
             - ``"tangent"``: -dw/dh_cen.
             - ``"nodal-sum"``: int p/h dx over the film, a secant.
@@ -148,7 +148,7 @@ class Film:
         if not self.converged or without_formula:
             return math.nan
         if definition == "approach":
-            return -1.0 / self.prop_slope
+            return -1.0 / self.separation_slope
         if definition == "tangent":
             return -1.0 / self.central_slope
         if definition == "nodal-sum":

@@ -69,7 +69,7 @@ class Figures:
     minimum: float
     position: float
     outlet: float
-    prop: float
+    separation: float
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def figures(level: Level) -> Figures:
         minimum=lowest * groups.gap,
         position=float(grid.nodes[i] + shift) * groups.length,
         outlet=_outlet(grid.nodes, found.P) * groups.length,
-        prop=(found.H0 + dry_approach(grid)) * groups.gap,
+        separation=(found.H0 + dry_approach(grid)) * groups.gap,
     )
 
 

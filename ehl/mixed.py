@@ -30,7 +30,7 @@ class MixedFilm:
     """A film between rough surfaces. Figures are NaN when ``converged`` is False.
 
     The stiffnesses are those of springs in parallel, at fixed speed and fixed width of the contact. A contact that
-    asperities carry widens with the load, which makes it stiffer again by up to two: ``prop_slope`` and
+    asperities carry widens with the load, which makes it stiffer again by up to two: ``separation_slope`` and
     ``central_slope`` are the derivatives with all of that, -1/slope the whole stiffness.
     """
 
@@ -39,7 +39,7 @@ class MixedFilm:
     film: Film  # of the load and modulus that are left to the film; its half-width is that of `contact`
     asperity_share: float  # s, share of the load that the asperities carry [-]
     asperity_stiffness: float  # -dw_a/dh of the asperities at the contact's width [N/m per m of face]
-    prop_slope: float  # d prop/d load of film and asperities together at fixed speed [m per N/m]
+    separation_slope: float  # d separation/d load of film and asperities together at fixed speed [m per N/m]
     central_slope: float  # d h_cen/d load likewise [m per N/m]
     error: float  # estimated relative error of the film
     rounds: int  # films solved
@@ -67,9 +67,9 @@ class MixedFilm:
         return self.asperity_share * self.contact.load
 
     @property
-    def prop(self) -> float:
-        """What film and asperities prop the bodies apart by [m]."""
-        return self.film.prop
+    def separation(self) -> float:
+        """Approach of the dry contact less that of film and asperities together [m]."""
+        return self.film.separation
 
     def film_stiffness(self, definition: str = "approach") -> float:
         """Stiffness of the film at its own share of the load [N/m per m of face]."""
@@ -233,7 +233,7 @@ class _Search:
         """Return the shared load, with the asperities' stiffness at the contact's width and both derivatives."""
         if not film.converged:
             return self.failed(film, film.message)
-        stiffness, slopes = 0.0, (film.prop_slope, film.central_slope)
+        stiffness, slopes = 0.0, (film.separation_slope, film.central_slope)
         if share > 0.0:
             pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
             steep = float(slope) / float(pressure)
@@ -256,7 +256,7 @@ class _Search:
         )
 
     def slopes(self, film: Film, share: float, steep: float) -> tuple[float, float]:
-        """Derivatives of prop and central film by the load, the share moving along.
+        """Derivatives of separation and central film by the load, the share moving along.
 
         ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw; the film's own derivatives by w are known, those by s are
         differences of two films at neighbouring odds.
@@ -266,11 +266,11 @@ class _Search:
         for side in sides:
             if not side.converged:
                 raise _NoFilmError(side.message)
-        prop_s, central_s = (
+        separation_s, central_s = (
             (getattr(sides[1], name) - getattr(sides[0], name)) / (2.0 * _ODDS_STEP)
-            for name in ("prop", "central_thickness")
+            for name in ("separation", "central_thickness")
         )
-        prop_w, central_w = (1.0 - share) * film.prop_slope, (1.0 - share) * film.central_slope
+        separation_w, central_w = (1.0 - share) * film.separation_slope, (1.0 - share) * film.central_slope
 
         def asked(load: float, at: float) -> float:
             contact = replace(self.contact, load=load)
@@ -280,7 +280,7 @@ class _Search:
         by_load = (asked(load * (1 + step), odds) - asked(load * (1 - step), odds)) / (2 * step * load)
         by_odds = (asked(load, odds + step) - asked(load, odds - step)) / (2 * step)
         follow = (by_load - steep * central_w) / (steep * central_s - by_odds)
-        return prop_w + prop_s * follow, central_w + central_s * follow
+        return separation_w + separation_s * follow, central_w + central_s * follow
 
     def failed(self, film: Film, reason: str) -> MixedFilm:
         """Return no figures."""

@@ -17,7 +17,7 @@ from ehl.run import DRY, Run
 __all__ = ["failed_film", "film_of"]
 
 _GRID_FACTOR = 0.4  # as for the film
-_PROP_LOSS = 20.0  # times the film's own error by the finite inlet
+_SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 
 
 def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
@@ -27,9 +27,11 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     errors = FilmErrors(
         film=error,
-        prop=_GRID_FACTOR * abs(before.prop / shown.prop - 1.0) + _PROP_LOSS * inlet,
-        approach_stiffness=abs(slope_before.prop / slope.prop - 1.0) + slope.ripple + _PROP_LOSS * inlet,
-        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + _PROP_LOSS * inlet,
+        separation=_GRID_FACTOR * abs(before.separation / shown.separation - 1.0) + _SEPARATION_LOSS * inlet,
+        approach_stiffness=abs(slope_before.separation / slope.separation - 1.0)
+        + slope.ripple
+        + _SEPARATION_LOSS * inlet,
+        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + _SEPARATION_LOSS * inlet,
         inlet=inlet,
     )
     groups = fine.groups
@@ -48,8 +50,8 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         minimum_position=shown.position,
         inlet=float(x[0]),
         outlet=shown.outlet,
-        prop=shown.prop,
-        prop_slope=slope.prop / contact.load,
+        separation=shown.separation,
+        separation_slope=slope.separation / contact.load,
         central_slope=slope.central / contact.load,
         flow=fine.flow,
         flux_error=found.flux_error,
@@ -95,8 +97,8 @@ def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> 
         minimum_position=nan,
         inlet=float(fine.grid.nodes[0] * length),
         outlet=nan,
-        prop=nan,
-        prop_slope=nan,
+        separation=nan,
+        separation_slope=nan,
         central_slope=nan,
         flow=nan,
         flux_error=nan,
@@ -115,7 +117,7 @@ def _remedy(run: Run, plan: Plan) -> str:
     if plan.fixed and plan.domain[0] > -1.05:
         return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
     if plan.H_c < DRY:
-        return "the film is too thin beside the flattening to be resolved; take the contact as dry (prop 0)"
+        return "the film is too thin beside the flattening to be resolved; take the contact as dry (separation 0)"
     if run.whole_spike:
         return (
             "with this oil and load the spike is narrower than grids resolve; leave out spike, the film stays"

@@ -154,8 +154,8 @@ class FormulaFilm:
     error: float = math.nan
 
     @property
-    def prop(self) -> float:
-        """What the film props the bodies apart [m], taken as h_c; -1/(d prop/dw) is ``stiffness()``."""
+    def separation(self) -> float:
+        """Film separation [m], taken as h_c; -1/(d separation/dw) is ``stiffness()``."""
         return self.central_thickness
 
     def stiffness(self, definition: str = "dowson-central") -> float:

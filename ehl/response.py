@@ -39,8 +39,8 @@ class Slopes:
     """Derivatives by the logarithm of the load at fixed speed and supply [m]."""
 
     central: float
-    prop: float
-    ripple: float  # relative difference between the two ways of differentiating the propping
+    separation: float
+    ripple: float  # relative difference between the two ways of differentiating the separation
 
 
 @dataclass(frozen=True)
@@ -48,23 +48,23 @@ class _Response:
     """Derivatives by one parameter [m]."""
 
     central: float
-    prop: float
+    separation: float
     flow: float  # NaN where it was not asked for
 
     def less(self, other: _Response, factor: float) -> _Response:
         return _Response(
             self.central - factor * other.central,
-            self.prop - factor * other.prop,
+            self.separation - factor * other.separation,
             self.flow - factor * other.flow,
         )
 
 
 def slopes(level: Level, supply: Supply | None) -> Slopes:
-    """Differentiate central film and propping by ln w.
+    """Differentiate central film and separation by ln w.
 
-    Without a supply the nodes keep their x/b for the central film. For the propping they move as the plan has
+    Without a supply the nodes keep their x/b for the central film. For the separation they move as the plan has
     it for the changed load, so that they stay where they are on the pressure spike: at fixed x/b the spike runs
-    over them, and the ripple this makes, 1e-4 of the propping, is several per cent of its derivative. With a
+    over them, and the ripple this makes, 1e-4 of the separation, is several per cent of its derivative. With a
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
@@ -74,9 +74,9 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     moving = _along(level, before, heavier, growth, supply)
     if supply is None or not plan.fixed:
         still = _differentiate(level, before, heavier, level.grid)
-        return Slopes(still.central, moving.prop, abs(still.prop / moving.prop - 1.0))
+        return Slopes(still.central, moving.separation, abs(still.separation / moving.separation - 1.0))
     still = _along(level, before, heavier, 1.0, supply)
-    return Slopes(moving.central, moving.prop, abs(still.prop / moving.prop - 1.0))
+    return Slopes(moving.central, moving.separation, abs(still.separation / moving.separation - 1.0))
 
 
 def _along(
@@ -126,7 +126,7 @@ def _differentiate(
         carried = _flow_slope(level, before, by_step, dP, dH0)
     return _Response(
         central=(changed.centre - before.centre) / _STEP + (dH0 - by_pressure) * groups.gap,
-        prop=explicit + dH0 * groups.gap,
+        separation=explicit + dH0 * groups.gap,
         flow=carried,
     )
 

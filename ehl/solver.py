@@ -22,7 +22,7 @@ _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257
 _MOST_NODES = 2049
-_REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the propping below 1e-3
+_REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 _GRID_FACTOR = (
     0.4  # error of N nodes over its difference from (N+1)/2 nodes: 1/3 at second order, with a margin
@@ -203,7 +203,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     """Estimated relative error of central and minimum film on the finer of two grids.
 
     The changes of central film, of minimum film, of the film between them (root mean square over the dry
-    contact's width) and of what it props the bodies apart by are added, since any one of them may be small by
+    contact's width) and of the separation are added, since any one of them may be small by
     accident.
     """
     before, after = figures(coarse), figures(fine)
@@ -212,7 +212,9 @@ def film_error(coarse: Level, fine: Level) -> float:
     change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     central, minimum = before.central / after.central - 1.0, before.minimum / after.minimum - 1.0
-    return _GRID_FACTOR * (abs(central) + abs(minimum) + profile + abs(before.prop / after.prop - 1.0))
+    return _GRID_FACTOR * (
+        abs(central) + abs(minimum) + profile + abs(before.separation / after.separation - 1.0)
+    )
 
 
 def spike_error(coarse: Level, fine: Level) -> float:

@@ -13,7 +13,7 @@ __all__ = ["StiffnessRow", "stiffness_table"]
 _FACE_WIDTH = Limit(0.0, 1e3, "m", "give b in m", low_open=True)
 _BODIES = Limit(0.0, 1e18, "N/m", "give it at the whole face", low_open=True)
 _KINDS = {
-    "approach": "tangent, -1/(d prop/dw): the film's yielding beyond the dry contact",
+    "approach": "tangent, -1/(d separation/dw): the film's yielding beyond the dry contact",
     "tangent": "tangent, -dw/dh_cen",
     "nodal-sum": "secant, int p/h dx",
     "dowson-central": "tangent of a formula, 10 w/h_c",

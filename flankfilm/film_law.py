@@ -1,6 +1,6 @@
-r"""What films prop two flanks apart by, as a function of place and force, around solved films.
+r"""Film separation of two flanks as a function of place and force, around solved films.
 
-Near a film solved at the force :math:`F_0` the prop follows
+Near a film solved at the force :math:`F_0` the separation follows
 
 .. math:: s(F) = s_0 \, (F/F_0)^{-n}, \qquad n = F_0 / (k \, s_0),
 
@@ -11,7 +11,7 @@ can turn negative at small forces.
 Behind a meniscus that stays in place n is up to hundreds, since a heavier contact widens towards it: the dry
 contact's edge, :math:`b \propto \sqrt{F}`, comes nearer, by the distance :math:`d(F) = X (F/F_0)^{-1/2} - 1` in
 half-widths, X the meniscus' place at :math:`F_0`. Where the edge reaches it the film ends; a lighter contact leaves
-it behind and is flooded, with the prop :math:`S_0 (F/F_0)^{-m}`. In between
+it behind and is flooded, with the separation :math:`S_0 (F/F_0)^{-m}`. In between
 
 .. math:: s(F) = \frac{S_0 \, (F/F_0)^{-m}}{1 + c \, (d_0/d)^q},
    \qquad c = \frac{S_0}{s_0} - 1, \quad q = 2 (n - m) \frac{1 + c}{c} \frac{X - 1}{X},
@@ -45,20 +45,20 @@ class HeldMeniscus:
     ----------
     place : ndarray, shape (n,)
         X, distance of the meniscus from the middle of the contact, over the half-width [-]; above one.
-    flooded_prop, flooded_exponent : ndarray, shape (n,)
+    flooded_separation, flooded_exponent : ndarray, shape (n,)
         S_0 [m] and m [-] of the flooded contact.
     """
 
     place: Array
-    flooded_prop: Array
+    flooded_separation: Array
     flooded_exponent: Array
 
     def bound(
-        self, film: NDArray[np.intp], prop: Array, exponent: Array, ratio: Array
+        self, film: NDArray[np.intp], separation: Array, exponent: Array, ratio: Array
     ) -> tuple[Array, Array]:
         """Prop [m] and its local exponent at forces over solved ones."""
-        flooded, slow, place = self.flooded_prop[film], self.flooded_exponent[film], self.place[film]
-        lacking = flooded / prop - 1.0
+        flooded, slow, place = self.flooded_separation[film], self.flooded_exponent[film], self.place[film]
+        lacking = flooded / separation - 1.0
         bounds = (lacking > 0.0) & (exponent > slow) & (place > 1.0)
         c, first = np.where(bounds, lacking, 1.0), np.where(bounds, place, 2.0)
         q = np.where(bounds, 2.0 * (exponent - slow) * (1.0 + c) / c * (first - 1.0) / first, 0.0)
@@ -67,7 +67,7 @@ class HeldMeniscus:
         choked = c * np.exp(np.minimum(q * np.log((first - 1.0) / distance), _LARGEST_LOGARITHM))
         held = np.where(edge > 1.0, flooded * ratio**-slow / (1.0 + choked), 0.0)
         steep = slow + q * choked / (1.0 + choked) * edge / (2.0 * distance)
-        plain = prop * ratio ** np.where(bounds, 0.0, -exponent)
+        plain = separation * ratio ** np.where(bounds, 0.0, -exponent)
         return np.where(bounds, held, plain), np.where(bounds, steep, exponent)
 
 
@@ -81,18 +81,18 @@ class FilmLaw:
         Curvature radius of the pinion's flank at the films, rising [m].
     force : ndarray, shape (n,)
         Force at which each film was solved [N].
-    prop : ndarray, shape (n,)
+    separation : ndarray, shape (n,)
         Prop there [m].
     exponent : ndarray, shape (n,)
         n, at least zero [-].
     held : HeldMeniscus, optional
-        For films behind a meniscus. Where its flooded prop is no larger than the prop, or its exponent no
+        For films behind a meniscus. Where its flooded separation is no larger than the separation, or its exponent no
         less than n, the plain power law stands.
     """
 
     rho1: Array
     force: Array
-    prop: Array
+    separation: Array
     exponent: Array
     held: HeldMeniscus | None = None
 
@@ -116,14 +116,14 @@ class FilmLaw:
         films = (first, second)
         solved = [self.force[film] if self.held is None else between for film in films]
         told = [self._one(film, forces, at) for film, at in zip(films, solved, strict=True)]
-        prop, slope = ((1 - share) * a + share * b for a, b in zip(*told, strict=True))
+        separation, slope = ((1 - share) * a + share * b for a, b in zip(*told, strict=True))
         some = np.isfinite(rho1)
-        return np.where(some, prop, 0.0), np.where(some, slope, 0.0)
+        return np.where(some, separation, 0.0), np.where(some, slope, 0.0)
 
     def stiffness(self, rho1: Array) -> Array:
         """Film stiffness at the solved forces, infinite at NaN [N/m]."""
         (first, second), share = self._neighbours(rho1)
-        yielding = self.exponent * self.prop / self.force
+        yielding = self.exponent * self.separation / self.force
         between = np.where(np.isfinite(rho1), (1 - share) * yielding[first] + share * yielding[second], 0.0)
         return np.divide(1.0, between, out=np.full_like(between, np.inf), where=between > 0)
 
@@ -142,11 +142,11 @@ class FilmLaw:
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
         below = np.minimum(forces - ratio * solved, 0.0)
         if self.held is not None:
-            prop, local = self.held.bound(film, self.prop[film], exponent, ratio)
+            separation, local = self.held.bound(film, self.separation[film], exponent, ratio)
         else:
-            prop, local = self.prop[film] * ratio**-exponent, exponent
-        slope = -local * prop / (ratio * solved)
-        return prop + slope * below, slope
+            separation, local = self.separation[film] * ratio**-exponent, exponent
+        slope = -local * separation / (ratio * solved)
+        return separation + slope * below, slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,5 +161,5 @@ class PlacedFilm:
         return self.law(self.rho1, force)[0]
 
     def slope(self, force: Array) -> Array:
-        """Derivative of the prop by the force, shape (positions, pairs) [m/N]."""
+        """Derivative of the separation by the force, shape (positions, pairs) [m/N]."""
         return self.law(self.rho1, force)[1]

@@ -174,13 +174,13 @@ def _with_film(engine: Engine, law: FilmLaw, label: str) -> MeshStiffness:
 def _secant(cycle: MeshStiffness, law: FilmLaw) -> Array:
     r"""Force over deflection, the film's yielding counted along its tangent from zero force.
 
-    A film props the flanks apart most where the force is least, so that the approach D itself is less
+    A film separates the flanks most where the force is least, so that the approach D itself is less
     than without film and F/D would call a film stiffer than no film. What yields is the bodies'
     deflection :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and
     the mean over the pairs weighted by their shares, a stiff film gives the dry secant back.
     """
-    prop, slope = law(cycle.rho1, cycle.forces)
-    yielding = prop - cycle.forces * slope
+    separation, slope = law(cycle.rho1, cycle.forces)
+    yielding = separation - cycle.forces * slope
     added = np.sum(cycle.load_share * yielding, axis=1)
     return np.asarray(cycle.secant * cycle.transmission_error / (cycle.transmission_error + added))
 

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 LEAST_SHARE = 1e-3
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
-props them apart by moves the load share by less than their own part."""
+separates them by moves the load share by less than their own part."""
 
 
 @dataclass(frozen=True)
@@ -141,22 +141,22 @@ def film_inside(film: Solved) -> Film:
 def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
     """Gather the films along the path into a law."""
     force = np.array([face_width * film.contact.load for film in path.films])
-    props = np.array([film.prop for film in path.films])
-    if np.any(props <= 0.0):
-        where = 1e3 * path.rho1[int(np.argmin(props))]
+    separations = np.array([film.separation for film in path.films])
+    if np.any(separations <= 0.0):
+        where = 1e3 * path.rho1[int(np.argmin(separations))]
         raise SolverError(
-            f"the film at rho1 = {where:.3f} mm props the flanks apart by less than its error: it is as good "
+            f"the film at rho1 = {where:.3f} mm separates the flanks by less than its error: it is as good "
             'as dry; take film.model = "none"'
         )
     exponent = np.array([_exponent(film, definition) for film in path.films])
     if not path.flooded or not any(_by_meniscus(film) for film in path.films):
-        return FilmLaw(path.rho1, force, props, exponent)
+        return FilmLaw(path.rho1, force, separations, exponent)
     held = HeldMeniscus(
         np.array([-film.inlet / film.contact.half_width for film in map(film_inside, path.films)]),
-        np.array([film.prop for film in path.flooded]),
+        np.array([film.separation for film in path.flooded]),
         np.array([_exponent(film, "approach") for film in path.flooded]),
     )
-    return FilmLaw(path.rho1, force, props, exponent, held)
+    return FilmLaw(path.rho1, force, separations, exponent, held)
 
 
 def _by_meniscus(film: Solved) -> bool:
@@ -166,11 +166,11 @@ def _by_meniscus(film: Solved) -> bool:
 
 
 def _exponent(film: Solved, definition: str) -> float:
-    """Exponent by which a film's prop falls with the load.
+    """Exponent by which a film's separation falls with the load.
 
     At light loads of thin, soft contacts a film's slope can vanish or turn within its error: then a constant.
     """
-    slope = getattr(film, "prop_slope", None)
+    slope = getattr(film, "separation_slope", None)
     if definition != "approach" or slope is None:
         slope = -1.0 / film.stiffness(definition)
-    return max(-slope * film.contact.load / film.prop, 0.0)
+    return max(-slope * film.contact.load / film.separation, 0.0)

@@ -59,8 +59,8 @@ def _with_asperities(
         )
         for row in table
     ]
-    whole = -face_width / film.prop_slope
-    meaning = "-1/(d prop/dw) of film and asperities, the contact widening with the load"
+    whole = -face_width / film.separation_slope
+    meaning = "-1/(d separation/dw) of film and asperities, the contact widening with the load"
     rows.append(replace(table[0], definition="whole", meaning=meaning, stiffness=whole, error=math.nan,
                         loss=bodies / (bodies + whole)))  # fmt: skip
     return tuple(rows)

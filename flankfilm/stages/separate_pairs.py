@@ -80,7 +80,7 @@ def separate_pairs_cycle(
 
     ``independent``: each pair's secant stiffness, in series with its film's, and the force in
     proportion. ``coupled``: one approach for all loaded pairs, with the gaps that tip relief leaves
-    and the film's prop as a function of its force; the gear body couples them in finite elements alone.
+    and the film's separation as a function of its force; the gear body couples them in finite elements alone.
     """
     from gears import independent_pairs, share_load
 

@@ -65,7 +65,9 @@ def test_the_film_depends_on_the_groups_alone(M, L, radius, modulus, alpha):
     other = scaled(radius=radius, reduced_modulus=modulus)
     assert other.central_moes == pytest.approx(one.central_moes, rel=1e-9)
     assert other.minimum_moes == pytest.approx(one.minimum_moes, rel=1e-9)
-    assert other.prop / other.central_thickness == pytest.approx(one.prop / one.central_thickness, rel=1e-8)
+    assert other.separation / other.central_thickness == pytest.approx(
+        one.separation / one.central_thickness, rel=1e-8
+    )
     barus = [
         scaled_barus.central_moes
         for scaled_barus in (

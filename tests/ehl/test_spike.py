@@ -57,7 +57,7 @@ def test_stiffness_on_a_grid_around_the_spike():
     film, step = quiet(PITCH, spike=0.01), 0.02
     light, heavy = (quiet(replace(PITCH, load=PITCH.load * f), tolerance=5e-4) for f in (1 - step, 1 + step))
     change = 2 * step * PITCH.load
-    assert film.stiffness() == pytest.approx(-change / (heavy.prop - light.prop), rel=0.01)
+    assert film.stiffness() == pytest.approx(-change / (heavy.separation - light.separation), rel=0.01)
     tangent = -change / (heavy.central_thickness - light.central_thickness)
     assert film.stiffness("tangent") == pytest.approx(tangent, rel=0.01)
 

@@ -43,8 +43,10 @@ def test_stiffnesses_agree_with_differences_of_solutions(contact):
     film = quiet(contact, nodes=129)
     light, heavy = (quiet(replace(contact, load=contact.load * f), nodes=129) for f in (1 - step, 1 + step))
     change = 2 * step * contact.load
-    # the propping on nodes that follow the film: a solution from nothing at each load
-    assert film.stiffness("approach") == pytest.approx(-change / (heavy.prop - light.prop), rel=5e-3)
+    # the separation on nodes that follow the film: a solution from nothing at each load
+    assert film.stiffness("approach") == pytest.approx(
+        -change / (heavy.separation - light.separation), rel=5e-3
+    )
     # the central film on nodes at the same x/b: a start keeps them
     light, heavy = (
         quiet(replace(contact, load=contact.load * f), nodes=129, start=film) for f in (1 - step, 1 + step)
@@ -54,20 +56,20 @@ def test_stiffnesses_agree_with_differences_of_solutions(contact):
 
 
 def test_approach_stiffness_is_the_slope_over_a_wide_range_of_load():
-    # the propping integrated from its slopes, against its values: no difference of neighbours, no ripple
+    # the separation integrated from its slopes, against its values: no difference of neighbours, no ripple
     loads = PITCH.load * np.geomspace(0.25, 1.0, 17)
     films = [quiet(replace(PITCH, load=w), tolerance=2e-3) for w in loads]
     slopes = np.array([-1 / f.stiffness("approach") for f in films]) * loads
     change = np.trapezoid(slopes, np.log(loads))
-    assert change == pytest.approx(films[-1].prop - films[0].prop, rel=0.01)
+    assert change == pytest.approx(films[-1].separation - films[0].separation, rel=0.01)
 
 
-def test_the_propping_is_independent_of_the_datum_and_near_the_film():
+def test_the_separation_is_independent_of_the_datum_and_near_the_film():
     film = quiet(PITCH)
-    assert film.prop == pytest.approx(hertz_approach(PITCH) - film.approach, rel=1e-6)
-    assert film.prop / film.central_thickness == pytest.approx(1.07, abs=0.02)
+    assert film.separation == pytest.approx(hertz_approach(PITCH) - film.approach, rel=1e-6)
+    assert film.separation / film.central_thickness == pytest.approx(1.07, abs=0.02)
     rigid = quiet(LineContact.from_moes(0.001, 0.0))
-    assert rigid.prop == pytest.approx(rigid.central_thickness, rel=1e-3)
+    assert rigid.separation == pytest.approx(rigid.central_thickness, rel=1e-3)
 
 
 def test_hertz_approach_by_quadrature():
@@ -104,7 +106,7 @@ def test_load_exponent_of_the_central_film():
     assert film.central_slope * PITCH.load / film.central_thickness == pytest.approx(-0.13, abs=0.025)
 
 
-def test_the_propping_falls_with_load_where_the_central_film_does_not():
+def test_the_separation_falls_with_load_where_the_central_film_does_not():
     # between the rigid and the elastic regime h(x = 0) rises with the load
     film = quiet(LineContact.from_moes(2.0, 5.0))
     assert film.stiffness("tangent") < 0
@@ -132,7 +134,7 @@ def test_formula_film():
         assert formula.stiffness(definition) == film.stiffness(definition)
     step = 1e-5
     light, heavy = (dowson(replace(PITCH, load=PITCH.load * f)) for f in (1 - step, 1 + step))
-    slope = (heavy.prop - light.prop) / (2 * step * PITCH.load)
+    slope = (heavy.separation - light.separation) / (2 * step * PITCH.load)
     assert formula.stiffness() == pytest.approx(-1 / slope, rel=1e-6)
     slope = (heavy.minimum_thickness - light.minimum_thickness) / (2 * step * PITCH.load)
     assert formula.stiffness("dowson-minimum") == pytest.approx(-1 / slope, rel=1e-6)

@@ -78,7 +78,7 @@ def test_stiffness_with_the_meniscus_held(X, load):
         quiet(replace(contact, load=load * f), nodes=257, supply=supply) for f in (1 - step, 1 + step)
     )
     change = 2 * step * load
-    by_difference = -change / (heavy.prop - light.prop)
+    by_difference = -change / (heavy.separation - light.separation)
     assert film.stiffness("approach") == pytest.approx(by_difference, rel=5e-3)
     by_difference = -change / (heavy.central_thickness - light.central_thickness)
     assert film.stiffness("tangent") == pytest.approx(by_difference, rel=5e-3)
@@ -93,7 +93,7 @@ def test_stiffness_with_the_layer_held(share):
     )
     change = 2 * step * PITCH.load
     # the film hardly yields, hundredths of a flooded one: errors of the grid count as much more of it
-    by_difference = -change / (heavy.prop - light.prop)
+    by_difference = -change / (heavy.separation - light.separation)
     assert film.stiffness("approach") == pytest.approx(by_difference, rel=1e-2)
     by_difference = -change / (heavy.central_thickness - light.central_thickness)
     assert film.stiffness("tangent") == pytest.approx(by_difference, rel=5e-3)

@@ -133,7 +133,7 @@ def test_tip_relief_is_a_gap():
 
 
 def test_film_is_in_series_with_each_pair_before_sharing(article_pair, article_bodies, path_only):
-    """A film as a linear spring of k_f: each pair's flexibility grows by 1/k_f, its prop cancels out."""
+    """A film as a linear spring of k_f: each pair's flexibility grows by 1/k_f, its separation cancels out."""
     k_film = 2e9
 
     class Spring:

@@ -14,25 +14,27 @@ from flankfilm.stages.engine import Engine
 
 
 def law(
-    prop: float, exponent: float, place: float = 1.1, flooded: float = 7e-7, slow: float = 0.12
+    separation: float, exponent: float, place: float = 1.1, flooded: float = 7e-7, slow: float = 0.12
 ) -> FilmLaw:
     one = np.ones(1)
     held = HeldMeniscus(place * one, flooded * one, slow * one)
-    return FilmLaw(1e-3 * one, 1000 * one, prop * one, exponent * one, held)
+    return FilmLaw(1e-3 * one, 1000 * one, separation * one, exponent * one, held)
 
 
 def at(found: FilmLaw, force: float) -> tuple[float, float]:
-    prop, slope = found(np.array([[1e-3]]), np.array([[force]]))
-    return float(prop[0, 0]), float(slope[0, 0])
+    separation, slope = found(np.array([[1e-3]]), np.array([[force]]))
+    return float(separation[0, 0]), float(slope[0, 0])
 
 
-@pytest.mark.parametrize("prop", [1e-8, 1e-7, 6.9e-7])
+@pytest.mark.parametrize("separation", [1e-8, 1e-7, 6.9e-7])
 @pytest.mark.parametrize(("exponent", "place"), [(0.3, 2.0), (4.0, 1.1), (15.0, 1.03), (600.0, 1.001)])
-def test_value_and_slope_are_met_and_the_slope_is_the_derivative(prop: float, exponent: float, place: float):
-    found = law(prop, exponent, place)
+def test_value_and_slope_are_met_and_the_slope_is_the_derivative(
+    separation: float, exponent: float, place: float
+):
+    found = law(separation, exponent, place)
     value, slope = at(found, 1000.0)
-    assert value == pytest.approx(prop, rel=1e-9)
-    assert slope == pytest.approx(-exponent * prop / 1000.0, rel=1e-9)
+    assert value == pytest.approx(separation, rel=1e-9)
+    assert slope == pytest.approx(-exponent * separation / 1000.0, rel=1e-9)
     edge = 1000.0 * place**2  # where the dry contact reaches the meniscus
     for force in (30.0, 300.0, 990.0, 1000.0 + 0.5 * (edge - 1000.0)):
         step = 1e-4 * (edge - force)
@@ -43,8 +45,8 @@ def test_value_and_slope_are_met_and_the_slope_is_the_derivative(prop: float, ex
 def test_the_film_ends_where_the_contact_reaches_the_meniscus():
     found = law(1e-7, 4.0, place=1.1)
     forces = np.linspace(1000.0, 1215.0, 200)
-    props = np.array([at(found, force)[0] for force in forces])
-    assert np.all(np.diff(props) <= 0.0)
+    separations = np.array([at(found, force)[0] for force in forces])
+    assert np.all(np.diff(separations) <= 0.0)
     assert at(found, 1209.999)[0] < 1e-11
     assert at(found, 1211.0) == (0.0, 0.0)
 
@@ -61,12 +63,12 @@ def test_where_a_pair_lets_go_the_law_goes_on_along_its_tangent():
     """Value and slope without a jump: Newton's method of the load sharing would step to and fro across one."""
     for found in (law(7e-7, 0.2), law(1e-7, 4.0)):
         edge = 10.0
-        (prop, _), (before, slope) = at(found, edge), at(found, edge * (1 + 1e-7))
+        (separation, _), (before, slope) = at(found, edge), at(found, edge * (1 + 1e-7))
         for force in (edge * (1 - 1e-7), 5.0, 0.0):
             told, steep = at(found, force)
-            assert told == pytest.approx(prop + slope * (force - edge), rel=1e-5)
+            assert told == pytest.approx(separation + slope * (force - edge), rel=1e-5)
             assert steep == pytest.approx(slope, rel=1e-5)
-        assert before == pytest.approx(prop, rel=1e-6)
+        assert before == pytest.approx(separation, rel=1e-6)
 
 
 def test_relieved_teeth_with_a_film_share_their_load():
@@ -98,7 +100,7 @@ def test_relieved_teeth_with_a_film_share_their_load():
 def test_without_lack_of_oil_the_power_law_stands():
     for found in (law(7e-7, 0.2), law(8e-7, 0.2), law(3e-7, 0.05)):
         exponent = float(found.exponent[0])
-        assert at(found, 500.0)[0] == pytest.approx(float(found.prop[0]) * 0.5**-exponent, rel=1e-12)
+        assert at(found, 500.0)[0] == pytest.approx(float(found.separation[0]) * 0.5**-exponent, rel=1e-12)
 
 
 def test_the_law_follows_films_behind_a_meniscus_that_stays():
@@ -111,9 +113,9 @@ def test_the_law_follows_films_behind_a_meniscus_that_stays():
     middle = 2.5e5
     held = Meniscus(-1.1 * contact(middle).half_width)
     film, flooded = solve(contact(middle), supply=held), solve(contact(middle))
-    n, m = (-f.prop_slope * middle / f.prop for f in (film, flooded))
-    bounded = law(film.prop, n, 1.1, flooded.prop, m)
+    n, m = (-f.separation_slope * middle / f.separation for f in (film, flooded))
+    bounded = law(film.separation, n, 1.1, flooded.separation, m)
     for factor, allowed in ((0.97, 0.002), (1.03, 0.002), (0.9, 0.01), (0.5, 0.1), (0.3, 0.15)):
-        true = solve(contact(factor * middle), supply=held).prop
+        true = solve(contact(factor * middle), supply=held).separation
         error = abs(at(bounded, 1000.0 * factor)[0] / true - 1)
         assert error < allowed

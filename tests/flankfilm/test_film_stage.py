@@ -169,7 +169,7 @@ def test_the_stiffness_table_is_of_the_contact_nearest_to_c(flooded: FilmStage):
 
 
 def test_a_meniscus_at_the_contacts_edge_is_solved(flooded: FilmStage):
-    """A thousandth of a half-width ahead: props fall as the six-hundredth power of the load."""
+    """A thousandth of a half-width ahead: separations fall as the six-hundredth power of the load."""
     tight = stage('supply = "meniscus"\nmeniscus_half_widths = 1.001\n')
     assert tight.mismatch < 1e-4
     assert tight.central.max() < 0.01 * flooded.central.min()

@@ -124,8 +124,8 @@ def test_load_towards_zero():
         film = sound(solve(replace(PITCH, load=w)))
         martin = 4.896 * 0.075 * 2.579 * PITCH.radius / w
         assert film.minimum_thickness == pytest.approx(martin, rel=0.06 if w > 100 else 0.002)
-        assert film.prop == pytest.approx(film.central_thickness, rel=0.2)
-        assert film.stiffness() == pytest.approx(w / film.prop, rel=0.2)
+        assert film.separation == pytest.approx(film.central_thickness, rel=0.2)
+        assert film.stiffness() == pytest.approx(w / film.separation, rel=0.2)
 
 
 def test_film_as_soft_as_the_tooth():
@@ -138,8 +138,8 @@ def test_film_as_soft_as_the_tooth():
         assert (np.diff(stiffness[soft]) > 0).all()
         found = np.exp(np.interp(np.log(5.6e8), np.log(stiffness[soft]), np.log(forces[soft])))
         assert found == pytest.approx(crossing, rel=0.05)
-    # where the bodies begin to flatten the propping hardly depends on the load: the film is nearly rigid
-    slopes = np.array([f.prop_slope * f.contact.load / f.prop for f in films])
+    # where the bodies begin to flatten the separation hardly depends on the load: the film is nearly rigid
+    slopes = np.array([f.separation_slope * f.contact.load / f.separation for f in films])
     assert (slopes < 0).all()
     assert slopes.max() > -0.05
 
@@ -183,8 +183,8 @@ def check_random_contacts(number, sample, reference):
     films = [solve(random_contact(rng)) for _ in range(number)]
     for film in films:
         sound(film)
-        # the propping falls with the load; near M = 0.8, L = 20 it stands still and the film is rigid
-        assert film.prop_slope * film.contact.load / film.prop < 0.02
+        # the separation falls with the load; near M = 0.8, L = 20 it stands still and the film is rigid
+        assert film.separation_slope * film.contact.load / film.separation < 0.02
     beyond = above_half = compared = 0
     for film in films[:sample]:
         fine = solve(film.contact, nodes=reference)
