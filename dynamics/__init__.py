@@ -18,16 +18,12 @@ if TYPE_CHECKING:
     from dynamics.boundary import share_interval as share_interval
     from dynamics.branch import Branch as Branch
     from dynamics.continuation import continue_branch as continue_branch
-    from dynamics.cost import Cost as Cost
     from dynamics.crises import Crisis as Crisis
     from dynamics.crises import boundary_crises as boundary_crises
     from dynamics.crises import boundary_crisis as boundary_crisis
     from dynamics.diagrams import Diagram as Diagram
     from dynamics.diagrams import diagram as diagram
     from dynamics.edges import edge_saddles as edge_saddles
-    from dynamics.errors import DynamicsError as DynamicsError
-    from dynamics.errors import DynamicsWarning as DynamicsWarning
-    from dynamics.errors import Fault as Fault
     from dynamics.exponents import LyapunovResult as LyapunovResult
     from dynamics.exponents import LyapunovScan as LyapunovScan
     from dynamics.exponents import lyapunov_exponents as lyapunov_exponents
@@ -98,11 +94,7 @@ _HOMES = {
     "lyapunov_exponents": "exponents",
     "lyapunov_scan": "exponents",
     "ContactGrazing": "grazing",
-    "Cost": "cost",
     "edge_saddles": "edges",
-    "DynamicsError": "errors",
-    "DynamicsWarning": "errors",
-    "Fault": "errors",
     "FourierFit": "fourier",
     "FourierStiffness": "stiffness",
     "GearOscillator": "oscillator",

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch
 from dynamics.branch_problem import BranchPoint, BranchProblem, Steps
 from dynamics.corrector import passes
-from dynamics.cost import Cost
-from dynamics.errors import Faults
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
@@ -37,14 +35,14 @@ def follow(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If Newton's method does not arrive at the start.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     start = problem.correct(_unknowns(problem, state, value), FLAT)
     if start is None:
         faults = Faults()
-        faults.add("orbit", value, "an orbit that can be continued", "at a fold, start beside it")
+        faults.add("orbit", value, "must be an orbit that can be continued", "at a fold, start beside it")
         faults.raise_if_any()
     walkers = []
     for way in (-1.0, 1.0):
@@ -53,7 +51,7 @@ def follow(
         walkers.append(walker)
         if walker.ended == "closed":
             break
-    return _joined(walkers, began)
+    return _joined(walkers, watch)
 
 
 def _unknowns(problem: BranchProblem, state: FloatArray, value: float) -> FloatArray:
@@ -204,7 +202,7 @@ class _Walker:
             self.progress(len(self.points), new.value)
 
 
-def _joined(walkers: list[_Walker], began: float) -> Branch:
+def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
     """Join the directions into one record."""
     back, problem = walkers[0], walkers[0].problem
     points, states, special = back.points[::-1], back.states[::-1], back.special[::-1]
@@ -231,7 +229,7 @@ def _joined(walkers: list[_Walker], began: float) -> Branch:
         tuple(special),
         ended,
         max((p.error for p in special), default=0.0),
-        Cost(time.perf_counter() - began, 3, iterations, problem.maps * problem.periods * iterations),
+        Cost(watch.seconds, 3, iterations, problem.maps * problem.periods * iterations),
         good,
         message,
     )

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.exponents import stretch_rate
 from dynamics.flow import Tables, period_map, tables
+from dynamics.limits import NUMBER, RADIUS
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.sweeps import APERIODIC, creeping, repeat_after, settling_periods
@@ -132,13 +131,13 @@ def basins(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     xs, vs = (_axis(faults, name, axis) for name, axis in (("x", x), ("v", v)))
-    near = faults.number("radius", radius, "between 0 and 0.1", "1e-4 is usual", lambda r: 0.0 < r < 0.1)
+    near = faults.number("radius", radius, RADIUS)
     longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
     wait = (
         settling_periods(oscillator) if limit is None else faults.whole("limit", limit, 1, 10**7, "give more")
@@ -178,7 +177,7 @@ def basins(
         message += f"; {np.mean(labels == UNBOUNDED):.3g} of the starts grow without bound"
     if lost:
         message += f"; {lost:.3g} of the starts unsettled: raise limit"
-    cost = Cost(time.perf_counter() - began, 2, found.iterations, found.periods)
+    cost = Cost(watch.seconds, 2, found.iterations, found.periods)
     return BasinResult(
         xs, vs, labels.reshape(len(xs), len(vs)), attractors, error, cost, lost == 0.0, message
     )
@@ -313,8 +312,8 @@ def _apart(state: FloatArray, states: FloatArray) -> float:
 def _axis(faults: Faults, name: str, given: tuple[float, float, int]) -> FloatArray:
     """Starting values of one axis."""
     if len(given) != 3:
-        faults.add(name, given, "(first, last, number)", "give three numbers")
+        faults.add(name, given, "must be (first, last, number)", "give three numbers")
         return np.zeros(1)
-    low, high = (faults.number(f"{name}[{i}]", given[i]) for i in range(2))
+    low, high = (faults.number(f"{name}[{i}]", given[i], NUMBER) for i in range(2))
     count = faults.whole(f"{name}[2]", given[2], 1, 100_000, "give the number of values")
     return np.linspace(low, high, count) if np.isfinite(low + high) else np.zeros(1)

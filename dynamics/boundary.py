@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.attraction import Attractor
-from dynamics.cost import Cost
-from dynamics.errors import Faults
 from dynamics.flow import Tables, tables
+from dynamics.limits import CONFIDENCE, RADIUS
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
@@ -78,7 +77,7 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the numbers do not fit.
     """
     from statistics import NormalDist
@@ -86,7 +85,7 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     faults = Faults()
     n = faults.whole("starts", starts, 1, 10**12, "give the number of starts")
     k = faults.whole("hits", hits, 0, n, "give at most the number of starts")
-    level = faults.number("confidence", confidence, "between 0 and 1", "0.95", lambda c: 0.0 < c < 1.0)
+    level = faults.number("confidence", confidence, CONFIDENCE)
     faults.raise_if_any()
     z = NormalDist().inv_cdf(0.5 + 0.5 * level)
     share = k / n
@@ -135,21 +134,23 @@ def basin_boundary(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or no attractor is periodic.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     side = faults.whole("cells", cells, 2, 10_000, "16 is usual")
     halvings = faults.whole("levels", levels, 1, 20, "6 is usual")
     wait = faults.whole("limit", limit, 1, 10**7, "2000 is usual")
-    near = faults.number("radius", radius, "between 0 and 0.1", "1e-4", lambda r: 0.0 < r < 0.1)
+    near = faults.number("radius", radius, RADIUS)
     homes = [a for a in attractors if a.orbit is not None]
     if not homes:
-        faults.add("attractors", len(attractors), "a periodic one at least", "find them with basins")
+        faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
     for k, (low, high) in enumerate(region):
         if not low < high:
-            faults.add(f"region[{k}]", (low, high), "the lower value first", "give ((x0, x1), (v0, v1))")
+            faults.add(
+                f"region[{k}]", (low, high), "must have the lower value first", "give ((x0, x1), (v0, v1))"
+            )
     faults.raise_if_any()
     labeller = _Labeller(tables(oscillator), homes, near, wait)
     origin, width = np.array([r[0] for r in region]), np.array([r[1] - r[0] for r in region])
@@ -172,7 +173,7 @@ def basin_boundary(
         shares[kind] += np.mean(boundary == kind, axis=1).sum() / number**2
     size = width / number
     slope, scatter = _slope(np.array(counts))
-    cost = Cost(time.perf_counter() - began, 2, len(labeller.known), labeller.periods)
+    cost = Cost(watch.seconds, 2, len(labeller.known), labeller.periods)
     message = (
         f"{counts[-1]} boundary cells, {len(counts) - 1} halvings, dimension {slope:.3f} +- {scatter:.3f}"
     )

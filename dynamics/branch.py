@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
+from base import Cost
 from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["GOOD_ENDS", "KINDS", "MEETS", "UNBOUNDED", "Branch"]
@@ -78,7 +78,7 @@ class Branch:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such kind.
         """
         return of_kind(self.points, kind, (*KINDS, "neimark-sacker"))

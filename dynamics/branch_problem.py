@@ -9,7 +9,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults
+from dynamics.limits import NUMBER, STEP
 from dynamics.special import SpecialPoint
 
 __all__ = ["BranchPoint", "BranchProblem", "Steps", "checked_range"]
@@ -137,7 +138,7 @@ class Steps:
     def check(self, faults: Faults) -> None:
         """Note what is not allowed."""
         for name, number in (("step", self.first), ("max_step", self.most), ("min_step", self.least)):
-            faults.number(name, number, "between 0 and 0.5", "0.005 is usual", lambda s: 0.0 < s < 0.5)
+            faults.number(name, number, STEP)
         faults.whole("max_points", self.points, 1, 10**7, "5000 is usual")
 
 
@@ -145,9 +146,9 @@ def checked_range(
     faults: Faults, bounds: tuple[float, float], parameter: str, value: float
 ) -> tuple[float, float]:
     """Bounds as numbers; notes if they are none, out of order, or do not hold the value."""
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
     if not low < high:
-        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
     if not low <= value <= high:
-        faults.add("orbit", value, f"{parameter} within bounds", "widen the bounds")
+        faults.add("orbit", value, f"must have its {parameter} within bounds", "widen the bounds")
     return low, high

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from base import Faults
 from dynamics.arclength import follow
 from dynamics.branch import Branch
 from dynamics.branch_problem import Steps, checked_range
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.crossings import Crossing, find_crossings, locate
-from dynamics.errors import Faults
 from dynamics.shooting import Orbit
 from dynamics.special import SpecialPoint
 
@@ -62,7 +62,7 @@ def continue_branch(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the orbit has not converged or lies outside the bounds.
     """
     faults = Faults()
@@ -70,7 +70,7 @@ def continue_branch(
     value = orbit.oscillator.get(parameter)
     low, high = checked_range(faults, bounds, parameter, value)
     if not orbit.converged:
-        faults.add("orbit", orbit.message, "a converged orbit", "find the orbit first")
+        faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
     steps.check(faults)
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.half_backlash, 1e-300)

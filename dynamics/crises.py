@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,11 +10,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
-from dynamics.cost import Cost
 from dynamics.diagrams import Diagram
-from dynamics.errors import Faults
+from dynamics.limits import NUMBER
 from dynamics.passing import Passing, is_direct_saddle
 from dynamics.shooting import Orbit
 from dynamics.sweeps import sweep
@@ -108,24 +107,26 @@ def boundary_crisis(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the orbit is not such a saddle, or an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
     number = faults.whole("points", points, 10, 10**6, "2000 is usual")
     longest = faults.whole("periods", periods, 1, 10**6, "240 is usual")
     if not saddle.converged or not is_direct_saddle(saddle.multipliers):
-        faults.add("saddle", saddle.label, "a saddle with a multiplier above 1", "take one of find_orbits")
+        faults.add(
+            "saddle", saddle.label, "must be a saddle with a multiplier above 1", "take one of find_orbits"
+        )
     elif not low <= saddle.oscillator.get(parameter) <= high or not low < high:
-        faults.add("bounds", bounds, "a range with the saddle in it", "widen the bounds")
+        faults.add("bounds", bounds, "must be a range with the saddle in it", "widen the bounds")
     faults.raise_if_any()
     branch = continue_branch(saddle, parameter, (low, high))
     value = saddle.oscillator.get(parameter)
     run = next((r for r in _runs(branch) if _holds(branch.values[r], value)), slice(0, 0))
     if run.stop - run.start < 2:
-        faults.add("saddle", saddle.label, "a saddle over a range of the bounds", "narrow the bounds")
+        faults.add("saddle", saddle.label, "must exist over a range of the bounds", "narrow the bounds")
         faults.raise_if_any()
     search = Passing(
         saddle.oscillator, parameter, branch.values[run], branch.states[run], saddle.periods, number, longest
@@ -136,9 +137,9 @@ def boundary_crisis(
     if len(sides) != 1:
         told = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
         message = f"no crisis of this saddle: overshoots at the bounds {told}"
-        cost = Cost(time.perf_counter() - began, 2, 0, search.periods)
+        cost = Cost(watch.seconds, 2, 0, search.periods)
         return Crisis(math.nan, saddle, 0, (math.nan, math.nan), "", "", math.nan, cost, False, message)
-    return _closed_in(search, (low, high), ends[sides[0]], sides[0], began)
+    return _closed_in(search, (low, high), ends[sides[0]], sides[0], watch)
 
 
 def boundary_crises(
@@ -176,7 +177,7 @@ def boundary_crises(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
     faults = Faults()
@@ -208,17 +209,17 @@ def boundary_crises(
 
 def _again(search: Passing, bounds: tuple[float, float], side: int) -> Crisis | None:
     """Close in with more points, if the change of sign is still there."""
-    began = time.perf_counter()
+    watch = Stopwatch()
     fine = Passing(
         search.oscillator, search.parameter, search.values, search.states, search.n, 4 * search.points,
         search.longest,
     )  # fmt: skip
     ends = (fine.overshoot(bounds[0], side), fine.overshoot(bounds[1], side))
-    return _closed_in(fine, bounds, ends, side, began) if ends[0] * ends[1] < 0.0 else None
+    return _closed_in(fine, bounds, ends, side, watch) if ends[0] * ends[1] < 0.0 else None
 
 
 def _closed_in(
-    search: Passing, bounds: tuple[float, float], ends: tuple[float, float], side: int, began: float
+    search: Passing, bounds: tuple[float, float], ends: tuple[float, float], side: int, watch: Stopwatch
 ) -> Crisis:
     """Root of the overshoot, and the motions on both sides of it."""
     a, b, jump, steps = search.first(bounds, side, 0 if ends[0] < 0.0 else 1)
@@ -230,7 +231,7 @@ def _closed_in(
     if jump > SMOOTH:
         message = f"no crisis of this saddle: near {search.parameter} = {root:.10g} the overshoot jumps by {jump:.2g}"
     good = abs(b - a) <= 1e-9 * abs(root) and jump <= SMOOTH
-    cost = Cost(time.perf_counter() - began, 2, steps, search.periods)
+    cost = Cost(watch.seconds, 2, steps, search.periods)
     return Crisis(root, at, side, ends, before, after, abs(b - a) / abs(root), cost, good, message)
 
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.branch import KINDS, Branch
-from dynamics.cost import Cost
-from dynamics.errors import Faults
 from dynamics.finding import find_orbits
 from dynamics.gathering import Gathering, Origin
 from dynamics.labelling import Stretch, stretches
+from dynamics.limits import NUMBER
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit
@@ -77,7 +76,7 @@ class Diagram:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such kind.
         """
         points = of_kind([p for b in self.branches for p in b.points], kind, KINDS)
@@ -166,14 +165,14 @@ def diagram(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
     if not low < high:
-        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
     number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
     longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
     steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
@@ -195,7 +194,7 @@ def diagram(
             oscillator, parameter, np.linspace(low, high, steps), seeds=2 * number, max_period=longest
         )
         _follow_met(builder, met)
-    return _result(builder, tuple(unsure), began)
+    return _result(builder, tuple(unsure), watch)
 
 
 def _follow_met(builder: Gathering, met: MultiSweep) -> None:
@@ -208,7 +207,7 @@ def _follow_met(builder: Gathering, met: MultiSweep) -> None:
             builder.follow(orbit, Origin(None, motion.value))
 
 
-def _result(gathered: Gathering, unsure: tuple[float, ...], began: float) -> Diagram:
+def _result(gathered: Gathering, unsure: tuple[float, ...], watch: Stopwatch) -> Diagram:
     """Assemble the record."""
     branches = tuple(gathered.branches)
     bad = [i for i, b in enumerate(branches) if not b.converged]
@@ -223,5 +222,5 @@ def _result(gathered: Gathering, unsure: tuple[float, ...], began: float) -> Dia
         gathered.oscillator, gathered.parameter, gathered.bounds, branches, tuple(gathered.origins),
         tuple(gathered.left_out), unsure,
         max((b.error for b in branches), default=0.0),
-        Cost(time.perf_counter() - began, 3, iterations, gathered.periods), not (bad or unsure), message,
+        Cost(watch.seconds, 3, iterations, gathered.periods), not (bad or unsure), message,
     )  # fmt: skip

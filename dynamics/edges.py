@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from base import Faults
 from dynamics.attraction import Attractor
-from dynamics.errors import Faults
 from dynamics.flow import Tables, period_map, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.passing import is_direct_saddle
@@ -59,12 +59,14 @@ def edge_saddles(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the attractor is not periodic, or an argument is out of range.
     """
     faults = Faults()
     if attractor.orbit is None:
-        faults.add("attractor", attractor.label, "a periodic one", "take it where it is still periodic")
+        faults.add(
+            "attractor", attractor.label, "must be a periodic one", "take it where it is still periodic"
+        )
     number = faults.whole("rays", rays, 1, 1000, "8 is usual")
     wait = faults.whole("limit", limit, 1, 10**7, "1000 is usual")
     longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import DynamicsError, Fault, Faults
+from base import Cost, Fault, Faults, InputError, Stopwatch
 from dynamics.flow import Tables, checked_state, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.sweeps import rest_state, settling_periods
@@ -91,10 +89,10 @@ def lyapunov_exponents(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the motion grows beyond all bounds.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     n = faults.whole("periods", periods, BATCHES, 10**9, "10 000 gives two digits in chaos")
     skip = settling_periods(oscillator)
@@ -112,8 +110,8 @@ def lyapunov_exponents(
         flag = flag or _advance(table, at, size, frame)
         rates[i], weights[i] = frame[2] / (size * oscillator.period), size / n
     if flag:
-        fault = Fault("state", repr(state), "a motion that stays bounded", "check the parameters")
-        raise DynamicsError((fault,))
+        fault = Fault("state", repr(state), "must start a motion that stays bounded", "check the parameters")
+        raise InputError((fault,))
     exponents = weights @ rates
     order = np.argsort(exponents)[::-1]
     exponents = exponents[order]
@@ -123,7 +121,7 @@ def lyapunov_exponents(
     message = "average more periods: the sign of the larger exponent is not certain"
     if sure:
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
-    cost = Cost(time.perf_counter() - began, 0, 0, skip + n)
+    cost = Cost(watch.seconds, 0, 0, skip + n)
     error = float(spread[0]) / largest if largest > 0.0 else float(spread[0])
     return LyapunovResult(exponents, spread, error, at, cost, bool(sure), message)
 
@@ -211,14 +209,14 @@ def lyapunov_scan(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
-        allowed = "finite numbers in one dimension"
+        allowed = "must be finite numbers in one dimension"
         faults.add("values", f"shape {grid.shape}", allowed, "give at least one value")
     n = faults.whole("periods", periods, BATCHES, 10**9, "2000 draws a curve")
     if transient is not None:
@@ -231,7 +229,7 @@ def lyapunov_scan(
         here = oscillator.with_parameter(parameter, float(value))
         try:
             result = lyapunov_exponents(here, n, state=at, transient=transient)
-        except DynamicsError:  # unbounded: the arguments have been checked
+        except InputError:  # unbounded: the arguments have been checked
             at = start
             continue
         finally:
@@ -249,7 +247,7 @@ def lyapunov_scan(
     if lost:
         message += f"; unbounded at {lost}: check the parameters there"
     error = float(np.nanmax(errors[:, 0], initial=0.0))
-    cost = Cost(time.perf_counter() - began, 0, 0, used)
+    cost = Cost(watch.seconds, 0, 0, used)
     good = lost == unsure == 0
     return LyapunovScan(parameter, grid, exponents, errors, states, defect, error, cost, good, message)
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.flow import Tables, period_map, tables
 from dynamics.index import index_at_infinity
+from dynamics.limits import NUMBER
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.sweeps import rest_state, settling_periods
@@ -114,18 +113,23 @@ def find_orbits(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
     side = faults.whole("starts", starts, 1, 1000, "10 is usual")
     if region is not None:
         for k, (low, high) in enumerate(region):
-            a, b = (faults.number(f"region[{k}][{i}]", value) for i, value in enumerate((low, high)))
+            a, b = (faults.number(f"region[{k}][{i}]", value, NUMBER) for i, value in enumerate((low, high)))
             if not a < b:
-                faults.add(f"region[{k}]", (low, high), "the lower value first", "give ((x0, x1), (v0, v1))")
+                faults.add(
+                    f"region[{k}]",
+                    (low, high),
+                    "must have the lower value first",
+                    "give ((x0, x1), (v0, v1))",
+                )
     faults.raise_if_any()
     search = _Search(oscillator, region)
     counts = []
@@ -147,7 +151,7 @@ def find_orbits(
     )
     if any(c.expected is None for c in counts):
         message += "; the sum of the indices is not known for this oscillator"
-    cost = Cost(time.perf_counter() - began, 2, 0, search.periods)
+    cost = Cost(watch.seconds, 2, 0, search.periods)
     error = max((o.error for o in orbits), default=0.0)
     return OrbitSet(orbits, tuple(counts), search.region, error, cost, good, message)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults, Limit
 from dynamics.oscillator import GearOscillator
 
 __all__ = [
@@ -161,7 +161,7 @@ def tables(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or both degree and tolerance are given.
     """
     from dynamics.kernels.tables import tabulate
@@ -171,9 +171,9 @@ def tables(
     if degree is not None:
         faults.whole("degree", degree, 6, 60, "13 leaves rounding alone")
     if tolerance is not None:
-        faults.number("tolerance", tolerance, "more than 0", "1e-9, say", lambda t: t > 0.0)
+        faults.number("tolerance", tolerance, Limit(0.0, low_open=True, remedy="1e-9, say"))
         if degree is not None:
-            faults.add("tolerance", tolerance, "one of degree and tolerance", "leave one out")
+            faults.add("tolerance", tolerance, "must be left out where the degree is given", "leave one out")
     faults.raise_if_any()
     if degree is None:
         degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
@@ -206,7 +206,7 @@ def period_map(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the state is not finite or a count out of range.
     """
     from dynamics.kernels.flow import iterate
@@ -247,7 +247,7 @@ def trajectory(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the motion grows beyond all bounds.
     """
     faults = Faults()
@@ -287,7 +287,7 @@ def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, pe
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the state is not finite, or the motion grows beyond all bounds.
     """
     t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
@@ -295,11 +295,11 @@ def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, pe
 
 
 def checked_state(state: npt.ArrayLike, where: str = "state") -> FloatArray:
-    """Return a fresh array of X and V, or raise DynamicsError."""
+    """Return a fresh array of X and V, or raise InputError."""
     at = np.array(state, dtype=np.float64)
     if at.shape != (2,) or not np.all(np.isfinite(at)):
         faults = Faults()
-        faults.add(where, at.tolist(), "two finite numbers, X and V", "give the state at tau = 0")
+        faults.add(where, at.tolist(), "must be two finite numbers, X and V", "give the state at tau = 0")
         faults.raise_if_any()
     return at
 
@@ -320,7 +320,7 @@ def _walk(
             faults.add(
                 "state",
                 state.tolist(),
-                "a motion that stays bounded",
+                "must start a motion that stays bounded",
                 f"{_REASONS[int(flag)]}: check the input",
             )
             faults.raise_if_any()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults
 from dynamics.stiffness import FourierStiffness
 
 __all__ = ["FourierFit", "fit_fourier"]
@@ -75,7 +75,7 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
 
     Raises
     ------
-    DynamicsError
+    InputError
         If a sample is not finite, the mean is zero, the order is too high for the samples, or the positions
         cannot tell the harmonics apart.
     """
@@ -83,7 +83,10 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     k = np.asarray(samples, dtype=np.float64)
     if k.ndim != 1 or len(k) < 1 or not np.all(np.isfinite(k)):
         faults.add(
-            "samples", f"shape {k.shape}", "finite numbers in one dimension", "mend or drop the bad samples"
+            "samples",
+            f"shape {k.shape}",
+            "must be finite numbers in one dimension",
+            "mend or drop the bad samples",
         )
         faults.raise_if_any()
     m = len(k)
@@ -93,7 +96,9 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     midpoints = (np.arange(m) + 0.5) / m
     where = midpoints if positions is None else np.asarray(positions, dtype=np.float64)
     if where.shape != k.shape or not np.all(np.isfinite(where)):
-        faults.add("positions", f"shape {where.shape}", f"{m} finite numbers", "give one position per sample")
+        faults.add(
+            "positions", f"shape {where.shape}", f"must be {m} finite numbers", "give one position per sample"
+        )
     faults.raise_if_any()
 
     spacing = np.diff(np.sort(np.mod(where, 1.0)))
@@ -106,14 +111,16 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
         faults.add(
             "positions",
             f"condition number {condition:.1e}",
-            "below 1e8",
+            "must be below 1e8",
             "spread the positions over the period",
         )
         faults.raise_if_any()
     solution = np.linalg.lstsq(design, k, rcond=None)[0]
     mean = float(solution[0])
     if mean == 0.0:
-        faults.add("samples", "mean 0", "a mean other than zero", "a relative remainder needs a mean")
+        faults.add(
+            "samples", "mean 0", "must have a mean other than zero", "a relative remainder needs a mean"
+        )
         faults.raise_if_any()
     cosine, sine = solution[1::2], solution[2::2]
     amplitudes = np.hypot(cosine, sine)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 import warnings
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import DynamicsError, DynamicsWarning, Faults
+from base import Cost, Faults, InputError, RangeWarning, Stopwatch
 from dynamics.flow import period_map, tables, turning_points
+from dynamics.limits import NUMBER
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import EPS, exact_determinant, floquet_multipliers
 from dynamics.special import SpecialPoint
@@ -81,7 +80,7 @@ class ContactGrazing:
         return np.array([p.parameter for p in self.points]).astype(dtype if dtype is not None else np.float64)
 
 
-class ResonanceError(DynamicsError):
+class ResonanceError(InputError):
     """The linear equation has no bounded periodic solution: a multiplier is one."""
 
 
@@ -101,12 +100,12 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     ------
     ResonanceError
         If there is none, because a Floquet multiplier of the linear equation is one.
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
     faults = Faults()
     if side not in (1, -1):
-        faults.add("side", side, "1 or -1", "1 is the driving side")
+        faults.add("side", side, "must be 1 or -1", "1 is the driving side")
     faults.raise_if_any()
     linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
     table = tables(linear, refinement)
@@ -115,7 +114,10 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
     if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
         faults.add(
-            "oscillator", "multiplier 1", "a linear equation without resonance", "change the frequency"
+            "oscillator",
+            "multiplier 1",
+            "must have a linear equation without resonance",
+            "change the frequency",
         )
         raise ResonanceError(tuple(faults.found))
     state = np.linalg.solve(matrix, image.state)
@@ -168,17 +170,17 @@ def contact_grazing(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
     from scipy.optimize import brentq
 
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
     if not low < high:
-        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
     faults.raise_if_any()
     evaluations = 0
 
@@ -214,10 +216,8 @@ def contact_grazing(
             )
         )  # fmt: skip
     if not found and scale <= 64.0 * EPS:
-        warnings.warn(
-            "the contact orbit lies on the limit throughout: no load", DynamicsWarning, stacklevel=2
-        )
+        warnings.warn("the contact orbit lies on the limit throughout: no load", RangeWarning, stacklevel=2)
     message = f"{len(found)} grazings" + (f"; {poles} resonances in the range" if poles else "")
-    cost = Cost(time.perf_counter() - began, 2, evaluations, 3 * evaluations)
+    cost = Cost(watch.seconds, 2, evaluations, 3 * evaluations)
     error = max((p.error for p in found), default=math.nan)
     return ContactGrazing(tuple(found), grid, gap, error, cost, True, message)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from dynamics.limits import NUMBER
 from dynamics.locus_tracing import DoublePoint, Tracer
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import floquet_multipliers, motion_label
@@ -86,7 +85,7 @@ class Locus:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such kind.
         """
         return of_kind(self.points, kind, CODIMENSION_TWO)
@@ -139,22 +138,22 @@ def continue_locus(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the point cannot be met again.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     start = oscillator.with_parameter(parameters[0], point.parameter)
     if parameters[0] == parameters[1]:
-        faults.add("parameters", parameters, "two different parameters", "name another one")
+        faults.add("parameters", parameters, "must be two different parameters", "name another one")
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
-        low[k], high[k] = (faults.number(f"bounds[{k}][{i}]", bounds[k][i]) for i in range(2))
+        low[k], high[k] = (faults.number(f"bounds[{k}][{i}]", bounds[k][i], NUMBER) for i in range(2))
         value = start.get(parameters[k])
         if not low[k] < high[k]:
-            faults.add(f"bounds[{k}]", bounds[k], "the lower value first", "give (low, high)")
+            faults.add(f"bounds[{k}]", bounds[k], "must have the lower value first", "give (low, high)")
         elif not low[k] <= value <= high[k]:
-            faults.add("point", value, f"{parameters[k]} within bounds", "widen the bounds")
+            faults.add("point", value, f"must have its {parameters[k]} within bounds", "widen the bounds")
     limit = faults.whole("max_points", max_points, 1, 10**6, "2000 is usual")
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(point.state))), start.half_backlash, 1e-300)
@@ -167,7 +166,10 @@ def continue_locus(
     first = special_orbit(problem, condition, guess, np.array([0.0, 0.0, 0.0, 1.0]))
     if first is None:
         faults.add(
-            "point", point.parameter, "a point that can be met again", "next to a grazing, start elsewhere"
+            "point",
+            point.parameter,
+            "must be a point that can be met again",
+            "next to a grazing, start elsewhere",
         )
         faults.raise_if_any()
         raise AssertionError
@@ -178,10 +180,10 @@ def continue_locus(
         tracers.append(tracer)
         if tracer.ended == "closed":
             break
-    return _locus(problem, condition, tracers, began)
+    return _locus(problem, condition, tracers, watch)
 
 
-def _locus(problem: OrbitProblem, condition: Condition, tracers: list[Tracer], began: float) -> Locus:
+def _locus(problem: OrbitProblem, condition: Condition, tracers: list[Tracer], watch: Stopwatch) -> Locus:
     """Join the two directions into one record."""
     back = tracers[0]
     points, double = back.points[::-1], back.double[::-1]
@@ -197,6 +199,6 @@ def _locus(problem: OrbitProblem, condition: Condition, tracers: list[Tracer], b
         np.array([floquet_multipliers(p.trace, p.determinant) for p in points], dtype=np.complex128),
         tuple(motion_label(problem.periods, p.counts) for p in points), tuple(double), (ended[0], ended[1]),
         max((p.error for p in double), default=0.0),
-        Cost(time.perf_counter() - began, 4, len(points), 4 * problem.periods * len(points)), good,
+        Cost(watch.seconds, 4, len(points), 4 * problem.periods * len(points)), good,
         f"{len(points)} points, {len(double)} of codimension two; ended: {ended[0]}, {ended[1]}",
     )  # fmt: skip

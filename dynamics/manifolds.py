@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Limit, Stopwatch
 from dynamics.flow import DEGREE, Tables, period_map, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
@@ -134,13 +132,13 @@ def manifold(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the orbit is no saddle, or an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     if kind not in ("stable", "unstable"):
-        faults.add("kind", kind, "'stable' or 'unstable'", "name one of these")
+        faults.add("kind", kind, "must be 'stable' or 'unstable'", "name one of these")
     multipliers = np.asarray(orbit.multipliers)
     if (
         not orbit.converged
@@ -148,10 +146,13 @@ def manifold(
         or not abs(multipliers[0]) > 1.0 > abs(multipliers[1])
     ):
         faults.add(
-            "orbit", orbit.label or "not converged", "a saddle", "take an unstable orbit of find_orbits"
+            "orbit",
+            orbit.label or "not converged",
+            "must be a saddle",
+            "take an unstable orbit of find_orbits",
         )
-    long = faults.number("length", length, "more than 0", "20 is usual", lambda s: s > 0.0)
-    gap = faults.number("spacing", spacing, "more than 0", "0.02 is usual", lambda s: s > 0.0)
+    long = faults.number("length", length, Limit(0.0, low_open=True, remedy="20 is usual"))
+    gap = faults.number("spacing", spacing, Limit(0.0, low_open=True, remedy="0.02 is usual"))
     most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
     faults.raise_if_any()
     grower = _Grower(orbit, kind == "stable", region, long, gap, most)
@@ -166,7 +167,7 @@ def manifold(
             told.append(ended)
             errors.append(error)
     message = ", ".join(f"{told.count(t)} branches ended: {t}" for t in sorted(set(told)))
-    cost = Cost(time.perf_counter() - began, 2, 0, grower.periods)
+    cost = Cost(watch.seconds, 2, 0, grower.periods)
     fine = all(t in ("length", "left the region") for t in told)
     return Manifold(orbit, kind, tuple(curves), tuple(rounds), max(errors), cost, fine, message)
 

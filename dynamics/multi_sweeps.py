@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from base import Cost, Faults, Stopwatch
 from dynamics.attraction import basins
-from dynamics.cost import Cost
-from dynamics.errors import Faults
 from dynamics.finding import reach
 from dynamics.oscillator import GearOscillator
 from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, rest_state, sweep
@@ -143,14 +141,14 @@ def multi_sweep(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     grid = np.unique(np.atleast_1d(np.asarray(values, dtype=np.float64)))
     if len(grid) == 0 or not np.all(np.isfinite(grid)):
-        faults.add("values", f"shape {grid.shape}", "finite numbers", "give at least one value")
+        faults.add("values", f"shape {grid.shape}", "must be finite numbers", "give at least one value")
     number = faults.whole("seeds", seeds, 0, 10_000, "9 is usual")
     side = faults.whole("starts", starts, 1, 1000, "6 is usual")
     faults.raise_if_any()
@@ -169,7 +167,7 @@ def multi_sweep(
                     met.follow(direction, i, attractor.states[-1], whole=False)
         if progress is not None:
             progress(done + 1, number)
-    return met.result(began)
+    return met.result(watch)
 
 
 class _Met:
@@ -221,7 +219,7 @@ class _Met:
         here.append(Motion(float(self.grid[i]), label, n, found.states[j], frozenset({direction})))
         return True
 
-    def result(self, began: float) -> MultiSweep:
+    def result(self, watch: Stopwatch) -> MultiSweep:
         """Assemble the record."""
         motions = tuple(tuple(here) for here in self.motions)
         most = max(range(len(motions)), key=lambda i: len(motions[i]))
@@ -231,7 +229,7 @@ class _Met:
         )
         if not self.bounded:
             message += "; some motions grow without bound: check the parameters there"
-        cost = Cost(time.perf_counter() - began, 0, self.sweeps, self.periods)
+        cost = Cost(watch.seconds, 0, self.sweeps, self.periods)
         return MultiSweep(
             self.parameter, self.grid, motions, self.sweeps, self.error, cost, self.bounded, message
         )

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError, Faults
+from base import Faults, InputError
+from dynamics.limits import OSCILLATOR
 from dynamics.stiffness import FourierStiffness
 
 __all__ = ["PARAMETERS", "GearOscillator"]
@@ -60,7 +61,7 @@ class GearOscillator:
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found; also if the period is so long that its table would have more than 200 000
         cells.
     """
@@ -79,37 +80,38 @@ class GearOscillator:
         faults = Faults()
         if not isinstance(self.stiffness, FourierStiffness):
             faults.add(
-                "stiffness", self.stiffness, "a FourierStiffness", "build one, or fit one with fit_fourier"
+                "stiffness",
+                self.stiffness,
+                "must be a FourierStiffness",
+                "build one, or fit one with fit_fourier",
             )
         values = {
-            "damping_ratio": faults.number(
-                "damping_ratio", self.damping_ratio, "0 or more", "a mesh has 0.03 to 0.1", lambda z: z >= 0.0
+            "damping_ratio": faults.number("damping_ratio", self.damping_ratio, OSCILLATOR["damping_ratio"]),
+            "mean_force": faults.number("mean_force", self.mean_force, OSCILLATOR["mean_force"]),
+            "error_amplitude": faults.number(
+                "error_amplitude", self.error_amplitude, OSCILLATOR["error_amplitude"]
             ),
-            "mean_force": faults.number("mean_force", self.mean_force),
-            "error_amplitude": faults.number("error_amplitude", self.error_amplitude),
             "frequency": faults.number(
                 "frequency",
                 self.frequency,
-                "more than 0",
-                "give mesh over natural frequency",
-                lambda w: w > 0.0,
+                OSCILLATOR["frequency"],
             ),
             "half_backlash": faults.number(
                 "half_backlash",
                 self.half_backlash,
-                "0 or more",
-                "give half the play, without sign",
-                lambda d: d >= 0.0,
+                OSCILLATOR["half_backlash"],
             ),
-            "error_phase": faults.number("error_phase", self.error_phase),
+            "error_phase": faults.number("error_phase", self.error_phase, OSCILLATOR["error_phase"]),
         }
         if not isinstance(self.one_sided, bool):
-            faults.add("one_sided", self.one_sided, "True or False", "True leaves the second flank out")
+            faults.add(
+                "one_sided", self.one_sided, "must be True or False", "True leaves the second flank out"
+            )
         faults.raise_if_any()
         for name, value in values.items():
             object.__setattr__(self, name, value)
         if not self.cells <= MAX_CELLS:
-            allowed = f"a period of at most {MAX_CELLS} cells (this has {self.cells:.3g})"
+            allowed = f"must give a period of at most {MAX_CELLS} cells (this has {self.cells:.3g})"
             faults.add("frequency", self.frequency, allowed, "raise the frequency, or lower the stiffness")
             faults.raise_if_any()
 
@@ -128,7 +130,7 @@ class GearOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter.
         """
         name, index = _resolve(self, parameter)
@@ -152,7 +154,7 @@ class GearOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter, or the value is not allowed.
         """
         name, index = _resolve(self, parameter)
@@ -186,7 +188,7 @@ class GearOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter.
         """
         name, index = _resolve(self, parameter)
@@ -199,12 +201,12 @@ class GearOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is play on one side only: -X would have it on the other.
         """
         if self.one_sided:
             faults = Faults()
-            faults.add("one_sided", True, "play on both sides", "only that has a mirror image of its kind")
+            faults.add("one_sided", True, "must be False", "only that has a mirror image of its kind")
             faults.raise_if_any()
         return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
 
@@ -251,6 +253,9 @@ def _resolve(oscillator: GearOscillator, parameter: str) -> tuple[str, int]:
     faults = Faults()
     series = f", stiffness.amplitudes[0..{order - 1}], stiffness.phases[0..{order - 1}]" if order else ""
     faults.add(
-        "parameter", parameter, ", ".join((*PARAMETERS, "stiffness.mean")) + series, "name one of these"
+        "parameter",
+        parameter,
+        f"must be one of {', '.join((*PARAMETERS, 'stiffness.mean'))}{series}",
+        "name one of these",
     )
-    raise DynamicsError(tuple(faults.found))
+    raise InputError(tuple(faults.found))

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from base import Faults
 from dynamics.conditions import Condition
 from dynamics.corrector import OrbitProblem
-from dynamics.errors import Faults
 from dynamics.flow import trajectory
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
@@ -48,7 +48,7 @@ def special_sensitivities(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If there is no such parameter.
     """
     here = oscillator.with_parameter(parameter, point.parameter)
@@ -109,12 +109,13 @@ def force_range(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If there is no mean force, or an argument is out of range.
     """
     faults = Faults()
     number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
-    faults.number("mean_force", oscillator.mean_force, "not zero", "give a load", lambda f: f != 0.0)
+    if oscillator.mean_force == 0.0:
+        faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
     faults.raise_if_any()
     motion = trajectory(oscillator, state, periods, number)
     stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)

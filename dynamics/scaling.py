@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from dynamics.errors import Faults
+from base import Faults
+from dynamics.limits import NUMBER, POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.stiffness import FourierStiffness
 
@@ -33,7 +34,7 @@ class Scaling:
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found.
 
     Notes
@@ -51,13 +52,7 @@ class Scaling:
         """Check; every fault is listed."""
         faults = Faults()
         for name, unit in (("equivalent_mass", "kg"), ("mean_stiffness", "N/m"), ("length", "m")):
-            given = faults.number(
-                f"scaling.{name}",
-                getattr(self, name),
-                f"more than 0 {unit}",
-                "give a positive number",
-                _positive,
-            )
+            given = faults.number(f"scaling.{name}", getattr(self, name), POSITIVE.in_unit(1.0, unit))
             object.__setattr__(self, name, given)
         teeth = faults.whole(
             "scaling.cycles_per_revolution", self.cycles_per_revolution, 1, 10**9, "give the number of teeth"
@@ -96,7 +91,7 @@ class Scaling:
 
         Raises
         ------
-        DynamicsError
+        InputError
             With every fault found.
         """
         faults = Faults()
@@ -104,27 +99,21 @@ class Scaling:
         values: list[float] = []
         for name, (pair, unit) in pairs.items():
             for i in range(2):
-                values.append(
-                    faults.number(
-                        f"{name}[{i}]", pair[i], f"more than 0 {unit}", "give a positive number", _positive
-                    )
-                )
-        k = faults.number(
-            "mean_stiffness", mean_stiffness, "more than 0 N/m", "give a positive number", _positive
-        )
+                values.append(faults.number(f"{name}[{i}]", pair[i], POSITIVE.in_unit(1.0, unit)))
+        k = faults.number("mean_stiffness", mean_stiffness, POSITIVE.in_unit(1.0, "N/m"))
         if length is not None and force is None and mean_force is None:
-            b_c = faults.number("length", length, "more than 0 m", "give a positive number", _positive)
+            b_c = faults.number("length", length, POSITIVE.in_unit(1.0, "m"))
         elif length is None and force is not None and mean_force is not None:
-            load = faults.number(
-                "force", force, "other than 0 N", "a pair without load has no scale", lambda f: f != 0.0
-            )
-            level = faults.number(
-                "mean_force", mean_force, "of the sign of force", "usual is 0.1", lambda f: f * load > 0.0
-            )
+            load = faults.number("force", force, NUMBER)
+            level = faults.number("mean_force", mean_force, NUMBER)
             b_c = load / (k * level) if level else math.nan
+            if load == 0.0:
+                faults.add("force", load, "must not be 0 N", "a pair without load has no scale")
+            elif load * level <= 0.0:
+                faults.add("mean_force", level, "must have the sign of force", "usual is 0.1")
         else:
             b_c = math.nan
-            faults.add("length", length, "either length, or force and mean_force", "give one of the two")
+            faults.add("length", length, "must be given, or else force and mean_force", "give one of the two")
         faults.raise_if_any()
         j1, j2, r1, r2 = values
         return cls(j1 * j2 / (j1 * r2**2 + j2 * r1**2), k, b_c, cycles_per_revolution)
@@ -217,7 +206,7 @@ class Scaling:
 
         Raises
         ------
-        DynamicsError
+        InputError
             With every fault found.
         """
         k = self.mean_stiffness
@@ -232,7 +221,3 @@ class Scaling:
             half_backlash=self.scaled(half_backlash),
             error_phase=error_phase,
         )
-
-
-def _positive(value: float) -> bool:
-    return value > 0.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError, Fault, Faults
+from base import Fault, Faults, InputError
 from dynamics.flow import checked_state, tables
 from dynamics.oscillator import GearOscillator
 
@@ -70,7 +70,7 @@ def map_derivatives(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the motion grows beyond all bounds.
     """
     from dynamics.kernels.sensitivity import probe
@@ -92,8 +92,8 @@ def map_derivatives(
     counts, turns = np.empty(2, dtype=np.int64), np.empty((0, 5 + m))
     flag, _ = probe(table.arrays, slopes, ways, at, n, lin, second, counts, turns)
     if flag != 0:
-        fault = Fault("state", repr(state), "a motion that stays bounded", "check the parameters")
-        raise DynamicsError((fault,))
+        fault = Fault("state", repr(state), "must start a motion that stays bounded", "check the parameters")
+        raise InputError((fault,))
     return MapDerivatives(
         names, at, lin[:, :2], lin[:, 2:], second, (int(counts[0]), int(counts[1]))
     )  # fmt: skip

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.flow import MapResult, Tables, checked_state, period_map, tables
 from dynamics.multiple_shooting import chain_error, shoot_in_stretches, stretch_starts
 from dynamics.oscillator import GearOscillator
@@ -150,7 +148,7 @@ def find_orbit(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
 
     Notes
@@ -159,7 +157,7 @@ def find_orbit(
     1e6, or the shot is lost altogether, the states at the starts of many stretches are the unknowns (multiple
     shooting); `Orbit.nodes` holds them.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     n = faults.whole("periods", periods, 1, 100_000, "give the number of excitation periods")
     limit = faults.whole("max_iterations", max_iterations, 1, 100_000, "60 is ample")
@@ -179,7 +177,7 @@ def find_orbit(
     lost = image.message or not float(np.max(np.abs(image.jacobian))) < FAR
     if lost or (not good and table.cells * n > LONG):
         orbit = _in_stretches(
-            oscillator, table, x if np.all(np.isfinite(x)) else state, n, limit, began, used
+            oscillator, table, x if np.all(np.isfinite(x)) else state, n, limit, watch, used
         )
         if orbit is not None:
             return orbit
@@ -199,12 +197,18 @@ def find_orbit(
     else:
         error = math.nan
         message = image.message or _remedy(residual, image, scale, oscillator)
-    cost = Cost(time.perf_counter() - began, 2, len(history) - 1, used)
+    cost = Cost(watch.seconds, 2, len(history) - 1, used)
     return make_orbit(oscillator, x, n, image, residual, error, cost, good, message, tuple(history))
 
 
 def _in_stretches(
-    oscillator: GearOscillator, table: Tables, guess: FloatArray, n: int, limit: int, began: float, used: int
+    oscillator: GearOscillator,
+    table: Tables,
+    guess: FloatArray,
+    n: int,
+    limit: int,
+    watch: Stopwatch,
+    used: int,
 ) -> Orbit | None:
     """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits."""
     chain = shoot_in_stretches(oscillator, table, guess, n, limit)
@@ -220,10 +224,10 @@ def _in_stretches(
         d for d in range(1, n + 1) if n % d == 0 and np.max(np.abs(starts[d % n] - starts[0])) <= 1e-9 * scale
     )
     if least < n:
-        return _in_stretches(oscillator, table, chain.nodes[0], least, limit, began, used)
+        return _in_stretches(oscillator, table, chain.nodes[0], least, limit, watch, used)
     image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, np.array([chain.counts]), "")
     message = f"converged in {chain.iterations} iterations on {len(chain.nodes)} stretches"
-    cost = Cost(time.perf_counter() - began, chain.nodes.size, chain.iterations, used + n * chain.iterations)
+    cost = Cost(watch.seconds, chain.nodes.size, chain.iterations, used + n * chain.iterations)
     return make_orbit(
         oscillator,
         chain.nodes[0].copy(),

@@ -10,7 +10,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults
 
 __all__ = ["OfKind", "SpecialPoint", "of_kind"]
 
@@ -87,11 +87,11 @@ def of_kind(points: Sequence[Marked], kind: str, kinds: Sequence[str]) -> list[M
 
     Raises
     ------
-    DynamicsError
+    InputError
         If there is no such kind.
     """
     if kind not in kinds:
         faults = Faults()
-        faults.add("kind", kind, ", ".join(kinds), "name one of these")
+        faults.add("kind", kind, f"must be one of {', '.join(kinds)}", "name one of these")
         faults.raise_if_any()
     return [p for p in points if p.kind == kind]

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsWarning, Faults
+from base import Faults, Limit, RangeWarning
+from dynamics.limits import NUMBER
 
 __all__ = ["MAX_ORDER", "FourierStiffness"]
 
@@ -33,12 +34,12 @@ class FourierStiffness:
 
     Raises
     ------
-    DynamicsError
+    InputError
         If a value is not finite, or the two sequences differ in length.
 
     Warns
     -----
-    DynamicsWarning
+    RangeWarning
         If the mean is not positive: the motion is computed, but no mesh has such a stiffness.
     """
 
@@ -49,36 +50,41 @@ class FourierStiffness:
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
         faults = Faults()
-        mean = faults.number("stiffness.mean", self.mean)
+        mean = faults.number("stiffness.mean", self.mean, NUMBER)
         series: list[tuple[float, ...]] = []
         for name in ("amplitudes", "phases"):
             given: object = getattr(self, name)
             if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
                 faults.add(
-                    f"stiffness.{name}", given, "a sequence of numbers", "give one number per harmonic"
+                    f"stiffness.{name}",
+                    given,
+                    "must be a sequence of numbers",
+                    "give one number per harmonic",
                 )
                 series.append(())
                 continue
-            series.append(tuple(faults.number(f"stiffness.{name}[{j}]", v) for j, v in enumerate(given)))
+            series.append(
+                tuple(faults.number(f"stiffness.{name}[{j}]", v, NUMBER) for j, v in enumerate(given))
+            )
         if len(series[0]) != len(series[1]):
             faults.add(
                 "stiffness.phases",
                 f"{len(series[1])} phases",
-                f"{len(series[0])} phases, one per amplitude",
+                f"must be {len(series[0])} phases, one per amplitude",
                 "give amplitudes and phases of equal length",
             )
         if len(series[0]) > MAX_ORDER:
             faults.add(
                 "stiffness.amplitudes",
                 f"{len(series[0])} harmonics",
-                f"at most {MAX_ORDER}",
+                f"must be at most {MAX_ORDER}",
                 "leave out the highest harmonics",
             )
         faults.raise_if_any()
         if mean <= 0.0:
             warnings.warn(
                 f"stiffness.mean = {mean}: a mesh has a positive mean stiffness",
-                DynamicsWarning,
+                RangeWarning,
                 stacklevel=3,
             )
         object.__setattr__(self, "mean", mean)
@@ -103,16 +109,14 @@ class FourierStiffness:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If the mean is not positive.
         """
         faults = Faults()
         faults.number(
             "stiffness.mean",
             self.mean,
-            "a positive mean",
-            "only a positive mean can be scaled to 1",
-            lambda k: k > 0,
+            Limit(0.0, low_open=True, remedy="only a positive mean can be scaled to 1"),
         )
         faults.raise_if_any()
         return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.flow import Tables, checked_state, period_map, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit, motion_label
@@ -134,10 +132,10 @@ def sweep(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
     state = rest_state(first) if initial is None else checked_state(initial, "initial")
@@ -165,7 +163,7 @@ def sweep(
     message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
     if lost:
         message += f"; unbounded at {len(lost)}, first {parameter} = {lost[0]:g}: check the parameters there"
-    cost = Cost(time.perf_counter() - began, 0, 0, total)
+    cost = Cost(watch.seconds, 0, 0, total)
     return SweepResult(
         parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
     )  # fmt: skip
@@ -178,17 +176,20 @@ def checked_sweep(
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every argument that is out of range.
     """
     faults = Faults()
     grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
     if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
         faults.add(
-            "values", f"shape {grid.shape}", "finite numbers in one dimension", "give at least one value"
+            "values",
+            f"shape {grid.shape}",
+            "must be finite numbers in one dimension",
+            "give at least one value",
         )
     if direction not in ("up", "down"):
-        faults.add("direction", direction, "'up' or 'down'", "call twice for both")
+        faults.add("direction", direction, "must be 'up' or 'down'", "call twice for both")
     longest = faults.whole("max_period", max_period, 1, 10_000, "16 is usual")
     kept = faults.whole("keep", keep, 2 * longest, 10**7, "keep at least twice max_period")
     wait = None if transient is None else faults.whole("transient", transient, 0, 10**9, "give 0 or more")

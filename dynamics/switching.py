@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from base import Faults
 from dynamics.corrector import OrbitProblem
-from dynamics.errors import Faults
 from dynamics.flow import period_map, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
@@ -39,12 +39,12 @@ def doubled_orbit(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the point is not a period doubling.
     """
     faults = Faults()
     if point.kind != "period-doubling":
-        faults.add("point", point.kind, "a period-doubling", "take one from Branch.special")
+        faults.add("point", point.kind, "must be a period-doubling", "take one from Branch.special")
     faults.raise_if_any()
     n = point.periods
     scale = max(float(np.max(np.abs(point.state))), oscillator.half_backlash, 1e-300)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from base import Faults, Limit
 from dynamics.branch import KINDS
-from dynamics.errors import Faults
+from dynamics.limits import NUMBER
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
 
@@ -173,31 +174,36 @@ def checked(
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found.
     """
     faults = Faults()
     oscillator.get(parameter)
-    low, high = (faults.number(f"bounds[{i}]", bounds[i]) for i in range(2))
+    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
     if not low < high:
-        faults.add("bounds", bounds, "the lower value first", "give (low, high)")
+        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
     for i, event in enumerate(events):
         _check_event(faults, f"events[{i}]", event, (low, high))
     for name, unknown in unknowns.items():
         oscillator.get(name)
         if name == parameter:
-            faults.add(f"unknowns[{name!r}]", name, "not the parameter of the events", "leave it out")
+            faults.add(f"unknowns[{name!r}]", name, "must not be the parameter of the events", "leave it out")
         _check_unknown(faults, f"unknowns[{name!r}]", unknown)
     if not unknowns:
-        faults.add("unknowns", {}, "at least one", "name a parameter and its range")
+        faults.add("unknowns", {}, "must hold at least one", "name a parameter and its range")
     faults.raise_if_any()
     if math.prod(len(u.values) for u in unknowns.values()) > MAX_TRIALS:
-        faults.add("unknowns", "more combinations", f"{MAX_TRIALS} combinations", "give fewer trial values")
+        faults.add(
+            "unknowns",
+            "",
+            f"must have at most {MAX_TRIALS} combinations",
+            "give fewer trial values",
+        )
     fitted = sum(e.fitted for e in events)
     blind = "half_backlash" in unknowns and all(e.one_sided for e in events)
     seen = len(unknowns) - blind
     if fitted < seen or len(events) < seen + 1:
-        allowed = f"{seen} fitted ones or more, {seen + 1} in all"
+        allowed = f"must hold {seen} fitted ones or more, {seen + 1} in all"
         faults.add("events", f"{fitted} fitted of {len(events)}", allowed, "give one more than unknowns")
     faults.raise_if_any()
     return Problem(oscillator, parameter, tuple(events), dict(unknowns), (low, high))
@@ -205,29 +211,33 @@ def checked(
 
 def _check_event(faults: Faults, where: str, event: Event, bounds: tuple[float, float]) -> None:
     if event.kind not in KINDS:
-        faults.add(f"{where}.kind", event.kind, ", ".join(KINDS), "name one of these")
+        faults.add(f"{where}.kind", event.kind, f"must be one of {', '.join(KINDS)}", "name one of these")
     parts = event.label.split("-")
     if len(parts) != 3 or not all(p == "*" or p.isdecimal() for p in parts) or parts[0] == "0":
         faults.add(
-            f"{where}.label", event.label, "n-p-q, a star for what is not known", 'write "1-1-0" or "2-*-*"'
+            f"{where}.label",
+            event.label,
+            "must be n-p-q, with a star for what is not known",
+            'write "1-1-0" or "2-*-*"',
         )
-    faults.number(
-        f"{where}.trust", event.trust, "above 0, up to 1", "1 is full trust", lambda t: 0.0 < t <= 1.0
-    )
+    faults.number(f"{where}.trust", event.trust, Limit(0.0, 1.0, low_open=True, remedy="1 is full trust"))
     faults.whole(f"{where}.digits", event.digits, 0, 15, "give the decimals printed")
-    value = faults.number(f"{where}.value", event.value)
+    value = faults.number(f"{where}.value", event.value, NUMBER)
     if not math.isnan(value) and not bounds[0] < value < bounds[1]:
-        faults.add(f"{where}.value", event.value, "within bounds", "widen the bounds")
+        faults.add(f"{where}.value", event.value, "must be within bounds", "widen the bounds")
 
 
 def _check_unknown(faults: Faults, where: str, unknown: Unknown) -> None:
     if isinstance(unknown, OneOf):
         if len(unknown.values) == 0:
-            faults.add(f"{where}.values", (), "at least one value", "give the values to try")
+            faults.add(f"{where}.values", (), "must hold at least one value", "give the values to try")
         for i, value in enumerate(unknown.values):
-            faults.number(f"{where}.values[{i}]", value)
+            faults.number(f"{where}.values[{i}]", value, NUMBER)
         return
-    low, high = faults.number(f"{where}.low", unknown.low), faults.number(f"{where}.high", unknown.high)
+    low, high = (
+        faults.number(f"{where}.low", unknown.low, NUMBER),
+        faults.number(f"{where}.high", unknown.high, NUMBER),
+    )
     if not low < high:
-        faults.add(where, (low, high), "the lower value first", "give Ranged(low, high)")
+        faults.add(where, (low, high), "must have the lower value first", "give Ranged(low, high)")
     faults.whole(f"{where}.trials", unknown.trials, 1, 10_000, "4 is usual")

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from collections.abc import Callable, Mapping, Sequence
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import Event, Problem, Unknown, checked
 from dynamics.inverse.matching import loss
@@ -78,16 +76,21 @@ def identify(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     problem = checked(oscillator, parameter, events, unknowns, bounds)
     reduction = reduced(problem)
     first = reduction.first
     faults = Faults()
     if solved is not None and solved not in first.unknowns:
-        faults.add("solved", solved, ", ".join(first.unknowns), "name an unknown that the events see")
+        faults.add(
+            "solved",
+            solved,
+            f"must be one of {', '.join(first.unknowns)}",
+            "name an unknown that the events see",
+        )
     most = faults.whole("anchors", anchors, 1, 1000, "one more than events that may be wrong")
     faults.raise_if_any()
     name = solved if solved is not None else solved_name(first)
@@ -107,7 +110,7 @@ def identify(
         if (found and found[0].good) or name is None:
             break
     tally = catalogue.tally
-    cost = Cost(time.perf_counter() - began, len(unknowns), tally.branches, tally.periods)
+    cost = Cost(watch.seconds, len(unknowns), tally.branches, tally.periods)
     return identification(problem, reduction.message, found, trials, cost)
 
 

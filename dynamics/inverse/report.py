@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from dynamics.cost import Cost
+from base import Cost
 from dynamics.inverse.events import Event
 from dynamics.inverse.rounding import Rounding
 from dynamics.inverse.scoring import Direction

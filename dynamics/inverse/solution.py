@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.cost import Cost
+from base import Cost
 from dynamics.inverse.catalogue import EVERY, Catalogue
 from dynamics.inverse.events import Problem
 from dynamics.inverse.refinement import OUTLIER, Fit, agreement, difference, misfit

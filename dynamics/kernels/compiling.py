@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import threading
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -11,7 +13,10 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 from numba import njit
+from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
+
+from base import unclocked
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -29,6 +34,30 @@ YES, NO = cast(bool, np.bool_(True)), cast(bool, np.bool_(False))
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}}
 _INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
+
+
+class _Unclocked(event.Listener):
+    """Hides from the stopwatches what numba does under its compiler's lock: compiling, and loading compiled code."""
+
+    def __init__(self) -> None:
+        self._of_thread = threading.local()
+
+    def on_start(self, _event: event.Event) -> None:
+        hidden = unclocked()
+        hidden.__enter__()
+        self._held().append(hidden)
+
+    def on_end(self, _event: event.Event) -> None:
+        self._held().pop().__exit__(None, None, None)
+
+    def _held(self) -> list[AbstractContextManager[None]]:
+        if not hasattr(self._of_thread, "held"):
+            self._of_thread.held = []
+        held: list[AbstractContextManager[None]] = self._of_thread.held
+        return held
+
+
+event.register("numba:compiler_lock", _Unclocked())
 
 
 @cache

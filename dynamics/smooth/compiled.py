@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults
+from dynamics.limits import NUMBER
 from dynamics.smooth.naming import unknown
 
 __all__ = ["CompiledLaw", "Surface"]
@@ -63,7 +64,7 @@ class CompiledLaw:
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found; when first used, if derivatives by imaginary steps differ from differences.
 
     Notes
@@ -81,16 +82,23 @@ class CompiledLaw:
         """Check."""
         faults = Faults()
         if not callable(self.force):
-            faults.add("force", self.force, "a function", "force(theta, x, v, region, q) that returns f")
+            faults.add(
+                "force", self.force, "must be a function", "force(theta, x, v, region, q) that returns f"
+            )
         for name, value in self.parameters:
-            faults.number(f"parameters[{name!r}]", value)
+            faults.number(f"parameters[{name!r}]", value, NUMBER)
         if len(set(self.names)) != len(self.names):
-            faults.add("parameters", self.names, "different names", "rename one")
+            faults.add("parameters", self.names, "must be different names", "rename one")
         for surface in self.surfaces_at:
             if surface.parameter and surface.parameter not in self.names:
-                faults.add("surfaces_at", surface.parameter, ", ".join(self.names), "name a parameter")
+                faults.add(
+                    "surfaces_at",
+                    surface.parameter,
+                    f"must be one of {', '.join(self.names)}",
+                    "name a parameter",
+                )
         if len(self.surfaces_at) > 16:
-            faults.add("surfaces_at", len(self.surfaces_at), "16 at most", "join some")
+            faults.add("surfaces_at", len(self.surfaces_at), "must be at most 16", "join some")
         faults.raise_if_any()
 
     @property
@@ -127,7 +135,7 @@ class CompiledLaw:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter.
         """
         if name not in self.names:
@@ -161,7 +169,7 @@ def _compiled(force: Callable[..., Any]) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=1024)
 def _checked(law: CompiledLaw) -> Any:
-    """Function pointer, or DynamicsError if derivatives by imaginary steps are not those of the function."""
+    """Function pointer, or InputError if derivatives by imaginary steps are not those of the function."""
     pointer, inner = _compiled(law.force)
     q, worst = law.values, 0.0
     for angle, x, v in ((0.4, 1.3, 0.7), (2.9, -1.3, 0.7), (4.1, 0.6, -0.9), (5.5, -0.4, -1.1)):
@@ -180,7 +188,7 @@ def _checked(law: CompiledLaw) -> Any:
             worst = max(worst, abs((there - back) / (2.0 * h) - slope) / size)
     if not worst < 1e-4:
         faults = Faults()
-        allowed = "analytic in X and V within a region"
+        allowed = "must be analytic in X and V within a region"
         remedy = "write x*x*x for x**3, declare a surface where it is not smooth, use numpy's functions"
         faults.add("force", f"derivatives off by {worst:.1e}", allowed, remedy)
         faults.raise_if_any()

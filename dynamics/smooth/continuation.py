@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from base import Faults
 from dynamics.arclength import follow
 from dynamics.branch import Branch
 from dynamics.branch_problem import Steps, checked_range
-from dynamics.errors import Faults
 from dynamics.smooth.crossings import Sign, find_crossings, locate
 from dynamics.smooth.problem import FlowProblem, MapPoint, PeriodMap, correct, tangent
 from dynamics.smooth.shooting import SmoothOrbit
@@ -57,14 +57,14 @@ def continue_branch(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the orbit has not converged or lies outside the bounds.
     """
     faults = Faults()
     value = orbit.oscillator.get(parameter)
     low, high = checked_range(faults, bounds, parameter, value)
     if not orbit.converged:
-        faults.add("orbit", orbit.message, "a converged orbit", "find the orbit first")
+        faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.size)
     problem = FlowProblem(orbit.oscillator, parameter, orbit.periods, low, high, scale, orbit.tolerance)
@@ -86,7 +86,7 @@ def follow_branch(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or Newton's method does not arrive at the start.
     """
     faults = Faults()

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import DynamicsError, Fault, Faults
+from base import Cost, Fault, Faults, InputError, Stopwatch
 from dynamics.flow import Trajectory, checked_state
 from dynamics.smooth.oscillator import Engine, SmoothOscillator
 
@@ -87,7 +85,7 @@ def follow(
     """Follow a state; without arguments checked and without an error estimate."""
     from dynamics.smooth.kernels.carrying import iterate
 
-    began = time.perf_counter()
+    watch = Stopwatch()
     room = 32 * (skip + periods)
     while True:
         y = engine.vector(state, derivatives)
@@ -108,7 +106,7 @@ def follow(
         states[:] = np.nan
         y[:] = np.nan
     rest = y[3:].reshape(-1, 2).T if derivatives else np.full((2, engine.columns), np.nan)
-    cost = Cost(time.perf_counter() - began, 0, 0, skip + periods)
+    cost = Cost(watch.seconds, 0, 0, skip + periods)
     return FlowMap(
         states, rest[:, :2].copy(), rest[:, 2:].copy(), float(y[2]) if derivatives else math.nan, counts,
         events[:met], math.nan, cost, int(going[3]), REASONS.get(flag, ""),
@@ -151,10 +149,10 @@ def period_map(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     at = checked_state(state)
     faults = Faults()
     n = faults.whole("periods", periods, 1, 10**9, "give a positive number of periods")
@@ -164,7 +162,7 @@ def period_map(
     there = follow(Engine(oscillator, finer(tolerance)), at, n, n_skip, derivatives=False)
     size = max(float(np.max(np.abs(here.states))), oscillator.size)
     error = float(np.max(np.abs(here.state - there.state))) / size
-    cost = Cost(time.perf_counter() - began, 0, 0, 2 * (n + n_skip))
+    cost = Cost(watch.seconds, 0, 0, 2 * (n + n_skip))
     return FlowMap(
         here.states, here.jacobian, here.slope, here.log_determinant, here.counts, here.events, error, cost,
         here.evaluations + there.evaluations, here.message,
@@ -201,7 +199,7 @@ def trajectory(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the motion cannot be followed.
     """
     faults = Faults()
@@ -247,8 +245,8 @@ def _sampled(engine: Engine, state: FloatArray, periods: int, points: int) -> tu
         )  # fmt: skip
         if flag or going[2] > len(room):
             reason = REASONS.get(flag, "more than 256 events between two samples: take more points")
-            fault = Fault("state", repr(state.tolist()), "a motion that can be followed", reason)
-            raise DynamicsError((fault,))
+            fault = Fault("state", repr(state.tolist()), "must start a motion that can be followed", reason)
+            raise InputError((fault,))
         noted.append(room[: int(going[2])])
         samples[i + 1] = y
     return samples, np.concatenate(noted)

@@ -8,7 +8,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults, Limit
 from dynamics.smooth.naming import changed, series, series_names
 from dynamics.stiffness import FourierStiffness
 
@@ -89,8 +89,8 @@ class SqueezeFilm:
     def __post_init__(self) -> None:
         """Check."""
         faults = Faults()
-        faults.number("film.damping", self.damping, "0 or more", "0 is no film", lambda c: c >= 0.0)
-        faults.number("film.thickness", self.thickness, "more than 0", "give h over b_c", lambda h: h > 0.0)
+        faults.number("film.damping", self.damping, Limit(0.0, remedy="0 is no film"))
+        faults.number("film.thickness", self.thickness, Limit(0.0, low_open=True, remedy="give h over b_c"))
         faults.raise_if_any()
 
 
@@ -104,13 +104,13 @@ class ContactLaw:
 
     def _check(self) -> Faults:
         faults = Faults()
-        faults.number(
-            "half_backlash", self.half_backlash, "0 or more", "give half the play", lambda d: d >= 0.0
-        )
+        faults.number("half_backlash", self.half_backlash, Limit(0.0, remedy="give half the play"))
         if not isinstance(self.film, SqueezeFilm):
-            faults.add("film", self.film, "a SqueezeFilm", "leave it out for none")
+            faults.add("film", self.film, "must be a SqueezeFilm", "leave it out for none")
         if not isinstance(self.one_sided, bool):
-            faults.add("one_sided", self.one_sided, "True or False", "True leaves the second flank out")
+            faults.add(
+                "one_sided", self.one_sided, "must be True or False", "True leaves the second flank out"
+            )
         return faults
 
     @property
@@ -139,7 +139,7 @@ class ContactLaw:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter or the value is not allowed.
         """
         new: L = changed(self, name, value)
@@ -166,7 +166,7 @@ class SmoothedBacklash(ContactLaw):
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found.
     """
 
@@ -176,9 +176,11 @@ class SmoothedBacklash(ContactLaw):
     def __post_init__(self) -> None:
         """Check."""
         faults = self._check()
-        faults.number("width", self.width, "more than 0", "0 is the exact flow's law", lambda s: s > 0.0)
+        faults.number("width", self.width, Limit(0.0, low_open=True, remedy="0 is the exact flow's law"))
         if self.one_sided or self.film != SqueezeFilm():
-            faults.add("film, one_sided", "given", "neither", "PowerContact with exponent 1 has both")
+            faults.add(
+                "film, one_sided", "given", "must be left out", "PowerContact with exponent 1 has both"
+            )
         _check_stiffness(faults, self.stiffness)
         faults.raise_if_any()
 
@@ -229,7 +231,7 @@ class PowerContact(ContactLaw):
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found.
     """
 
@@ -239,7 +241,7 @@ class PowerContact(ContactLaw):
     def __post_init__(self) -> None:
         """Check."""
         faults = self._check()
-        faults.number("exponent", self.exponent, "1 or more", "10/9 for a line contact", lambda n: n >= 1.0)
+        faults.number("exponent", self.exponent, Limit(1.0, remedy="10/9 for a line contact"))
         _check_stiffness(faults, self.stiffness)
         faults.raise_if_any()
 
@@ -275,4 +277,6 @@ class PowerContact(ContactLaw):
 
 def _check_stiffness(faults: Faults, stiffness: object) -> None:
     if not isinstance(stiffness, FourierStiffness):
-        faults.add("stiffness", stiffness, "a FourierStiffness", "build one, or fit one with fit_fourier")
+        faults.add(
+            "stiffness", stiffness, "must be a FourierStiffness", "build one, or fit one with fit_fourier"
+        )

@@ -7,7 +7,7 @@ import math
 import re
 from typing import Any
 
-from dynamics.errors import DynamicsError, Faults
+from base import Faults, InputError
 from dynamics.stiffness import FourierStiffness
 
 __all__ = ["changed", "natural_size", "series", "series_names", "unknown"]
@@ -29,7 +29,7 @@ def changed(record: Any, name: str, value: float) -> Any:
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the record has no such parameter.
     """
     if name not in getattr(record, "names", (name,)):
@@ -45,11 +45,11 @@ def changed(record: Any, name: str, value: float) -> Any:
     return dataclasses.replace(record, **{match[1]: tuple(items)})
 
 
-def unknown(name: str, names: tuple[str, ...]) -> DynamicsError:
+def unknown(name: str, names: tuple[str, ...]) -> InputError:
     """Error that names what there is."""
     faults = Faults()
-    faults.add("parameter", name, ", ".join(names), "name one of these")
-    return DynamicsError(tuple(faults.found))
+    faults.add("parameter", name, f"must be one of {', '.join(names)}", "name one of these")
+    return InputError(tuple(faults.found))
 
 
 def natural_size(*sizes: float) -> float:

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError, Faults
+from base import Faults, InputError
+from dynamics.limits import NUMBER, OSCILLATOR, STEP_TOLERANCE
 from dynamics.smooth.laws import Law
 from dynamics.smooth.naming import natural_size, unknown
 
@@ -47,7 +48,7 @@ class SmoothOscillator:
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found.
     """
 
@@ -63,17 +64,18 @@ class SmoothOscillator:
         faults = Faults()
         if not all(hasattr(self.law, name) for name in ("names", "values", "data", "surfaces")):
             faults.add(
-                "law", self.law, "a law", "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw"
+                "law",
+                self.law,
+                "must be a law",
+                "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw",
             )
         for name in OWN:
             if name != "frequency":
-                faults.number(name, getattr(self, name))
-        faults.number(
-            "frequency", self.frequency, "more than 0", "give mesh over natural frequency", lambda w: w > 0.0
-        )
+                faults.number(name, getattr(self, name), NUMBER)
+        faults.number("frequency", self.frequency, OSCILLATOR["frequency"])
         faults.raise_if_any()
         if not np.all(np.isfinite(self.law.values)):
-            faults.add("law", self.law.values.tolist(), "finite parameters", "correct the law")
+            faults.add("law", self.law.values.tolist(), "must have finite parameters", "correct the law")
         faults.raise_if_any()
 
     @property
@@ -96,7 +98,7 @@ class SmoothOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter.
         """
         return float(np.concatenate([self.own, self.law.values])[self.place(parameter)])
@@ -106,7 +108,7 @@ class SmoothOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter.
         """
         if parameter not in self.parameters:
@@ -118,7 +120,7 @@ class SmoothOscillator:
 
         Raises
         ------
-        DynamicsError
+        InputError
             If there is no such parameter, or the value is not allowed.
         """
         self.place(parameter)
@@ -186,11 +188,9 @@ class Engine:
 
 
 def checked_tolerance(tolerance: float) -> float:
-    """Return the tolerance, or raise DynamicsError."""
+    """Return the tolerance, or raise InputError."""
     faults = Faults()
-    number = faults.number(
-        "tolerance", tolerance, "from 2e-15 to 0.1", "1e-12 is usual", lambda t: 2e-15 <= t <= 0.1
-    )
+    number = faults.number("tolerance", tolerance, STEP_TOLERANCE)
     if faults.found:
-        raise DynamicsError(tuple(faults.found))
+        raise InputError(tuple(faults.found))
     return number

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import DynamicsError
+from base import InputError
 from dynamics.smooth.flow import follow
 from dynamics.smooth.oscillator import Engine, SmoothOscillator
 from dynamics.smooth.shooting import NOISE
@@ -150,7 +150,7 @@ class FlowProblem:
         value = float(self.low + u[2] * width)
         try:
             here = self.oscillator.with_parameter(self.parameter, value)
-        except DynamicsError:  # the continuation tries a smaller step
+        except InputError:  # the continuation tries a smaller step
             return None
         engine = Engine(here, self.tolerance, (self.parameter,), turning=True)
         image = follow(engine, u[:2] * self.scale, self.periods)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import Faults
+from base import Cost, Faults, Stopwatch
 from dynamics.flow import checked_state
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label, newton_step
 from dynamics.smooth.flow import TOLERANCE, FlowMap, finer, follow
@@ -113,10 +111,10 @@ def find_orbit(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     n = faults.whole("periods", periods, 1, 100_000, "give the number of excitation periods")
     limit = faults.whole("max_iterations", max_iterations, 1, 100_000, "60 is ample")
@@ -144,7 +142,7 @@ def find_orbit(
             message = (
                 f"the orbit moves by {error:.0e} of its size with a finer tolerance: lower the tolerance"
             )
-    cost = Cost(time.perf_counter() - began, 2, len(history) - 1, used + n * (len(history) + 2))
+    cost = Cost(watch.seconds, 2, len(history) - 1, used + n * (len(history) + 2))
     return _assembled(engine, x, n, image, history, error, cost, good, message)
 
 

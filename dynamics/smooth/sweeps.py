@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.cost import Cost
-from dynamics.errors import DynamicsError, Fault, Faults
+from base import Cost, Fault, Faults, InputError, Stopwatch
 from dynamics.exponents import BATCHES, LyapunovResult
 from dynamics.flow import checked_state
 from dynamics.shooting import motion_label
@@ -117,10 +115,10 @@ def sweep(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range.
     """
-    began = time.perf_counter()
+    watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
     state = rest_state(first) if initial is None else checked_state(initial, "initial")
@@ -146,7 +144,7 @@ def sweep(
     message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
     if lost:
         message += f"; not followed at {len(lost)}, first {parameter} = {lost[0]:g}: check the law there"
-    cost = Cost(time.perf_counter() - began, 0, 0, total)
+    cost = Cost(watch.seconds, 0, 0, total)
     return SweepResult(
         parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
     )  # fmt: skip
@@ -214,12 +212,12 @@ def lyapunov_exponents(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If an argument is out of range, or the motion cannot be followed.
     """
     from dynamics.smooth.kernels.carrying import stretch
 
-    began = time.perf_counter()
+    watch = Stopwatch()
     faults = Faults()
     n = faults.whole("periods", periods, BATCHES, 10**9, "10 000 gives two digits in chaos")
     skip = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
@@ -238,8 +236,8 @@ def lyapunov_exponents(
             )
         )
         if flag:
-            fault = Fault("state", repr(state), "a motion that can be followed", REASONS[flag])
-            raise DynamicsError((fault,))
+            fault = Fault("state", repr(state), "must start a motion that can be followed", REASONS[flag])
+            raise InputError((fault,))
         rates[i] = logs / (max(size, 1) * oscillator.period)
     weights = np.array(sizes[1:]) / n
     order = np.argsort((weights @ rates[1:])[:2])[::-1]
@@ -251,6 +249,6 @@ def lyapunov_exponents(
     message = "average more periods: the sign of the larger exponent is not certain"
     if sure:
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
-    cost = Cost(time.perf_counter() - began, 0, 0, skip + n)
+    cost = Cost(watch.seconds, 0, 0, skip + n)
     error = spread / largest if largest > 0.0 else spread
     return LyapunovResult(exponents, spreads, error, y[:2].copy(), cost, bool(sure), message)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.errors import Faults
+from base import Faults
 from dynamics.smooth.flow import TOLERANCE, follow
 from dynamics.smooth.oscillator import Engine, SmoothOscillator
 from dynamics.smooth.problem import FlowProblem, correct
@@ -42,12 +42,12 @@ def doubled_orbit(
 
     Raises
     ------
-    DynamicsError
+    InputError
         If the point is not a period doubling.
     """
     faults = Faults()
     if point.kind != "period-doubling":
-        faults.add("point", point.kind, "a period-doubling", "take one from Branch.special")
+        faults.add("point", point.kind, "must be a period-doubling", "take one from Branch.special")
     faults.raise_if_any()
     n = point.periods
     scale = max(float(np.max(np.abs(point.state))), oscillator.size)

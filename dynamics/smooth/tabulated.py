@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.errors import Faults
+from base import Faults, Limit
 from dynamics.smooth.laws import ContactLaw
 
 __all__ = ["TabulatedContact"]
@@ -49,7 +49,7 @@ class TabulatedContact(ContactLaw):
 
     Raises
     ------
-    DynamicsError
+    InputError
         With every fault found; also if the force falls anywhere while the depth grows.
     """
 
@@ -61,11 +61,13 @@ class TabulatedContact(ContactLaw):
     def __post_init__(self) -> None:
         """Check."""
         faults = self._check()
-        faults.number("reach", self.reach, "more than 0", "give the largest depth", lambda r: r > 0.0)
-        faults.number("factor", self.factor, "more than 0", "1 is the law itself", lambda c: c > 0.0)
+        faults.number("reach", self.reach, Limit(0.0, low_open=True, remedy="give the largest depth"))
+        faults.number("factor", self.factor, Limit(0.0, low_open=True, remedy="1 is the law itself"))
         shape = np.shape(self.coefficients)
         if len(shape) != 2 or shape[0] % 2 == 0 or shape[1] < 8 or shape[1] % 6 != 2:
-            faults.add("coefficients", shape, "(1 + 2 J, 6 n + 2)", "use from_deflections")
+            faults.add(
+                "coefficients", shape, "must have the shape (1 + 2 J, 6 n + 2)", "use from_deflections"
+            )
         faults.raise_if_any()
         steepness = self.slopes(np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False))
         if not steepness.min() > 0.0:
@@ -74,7 +76,7 @@ class TabulatedContact(ContactLaw):
             faults.add(
                 "samples",
                 f"falling {where}",
-                "a force that grows with the depth",
+                "must give a force that grows with the depth",
                 "fewer harmonics, more samples",
             )
         faults.raise_if_any()
@@ -115,7 +117,7 @@ class TabulatedContact(ContactLaw):
 
         Raises
         ------
-        DynamicsError
+        InputError
             With every fault found.
         """
         from scipy.interpolate import CubicSpline
@@ -164,7 +166,7 @@ class TabulatedContact(ContactLaw):
 
         Raises
         ------
-        DynamicsError
+        InputError
             With every fault found.
         """
         from scipy.interpolate import make_interp_spline
@@ -174,9 +176,11 @@ class TabulatedContact(ContactLaw):
         n = len(knots) - 1
         graded = n >= 6 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
         if not graded:
-            faults.add("depths", knots.tolist(), "reach (i/n)^2, n >= 6", "use from_deflections")
+            faults.add("depths", knots.tolist(), "must be reach (i/n)^2, n >= 6", "use from_deflections")
         if table.shape != (table.shape[0], n + 1) or not np.all(np.isfinite(table)) or np.any(table[:, 0]):
-            faults.add("forces", table.shape, f"finite, (angles, {n + 1}), 0 at no depth", "check the table")
+            faults.add(
+                "forces", table.shape, f"must be finite, (angles, {n + 1}), 0 at no depth", "check the table"
+            )
         count = len(table)
         whole = faults.whole("order", order, 0, max((count - 1) // 2, 0), "keep it below half the angles")
         faults.raise_if_any()
@@ -253,15 +257,19 @@ class TabulatedContact(ContactLaw):
 
 
 def _checked_table(load: FloatArray, table: FloatArray, order: int, intervals: int) -> None:
-    """Raise DynamicsError with every fault of the samples."""
+    """Raise InputError with every fault of the samples."""
     faults = Faults()
     if load.ndim != 1 or len(load) < 4 or not np.all(np.diff(load, prepend=0.0) > 0.0):
-        faults.add("forces", load.tolist(), "four or more, rising from more than 0", "sort them, drop zero")
+        faults.add(
+            "forces", load.tolist(), "must be four or more, rising from more than 0", "sort them, drop zero"
+        )
     if table.ndim != 2 or table.shape[1:] != load.shape or not np.all(np.isfinite(table)):
-        faults.add("deflections", table.shape, f"finite, (angles, {load.size})", "one row per angle")
+        faults.add("deflections", table.shape, f"must be finite, (angles, {load.size})", "one row per angle")
     elif not np.all(np.diff(table, axis=1, prepend=0.0) > 0.0):
         row = int(np.argmin(np.diff(table, axis=1, prepend=0.0).min(axis=1)))
-        faults.add("deflections", f"not rising in row {row}", "rising with the force", "check the sweep")
+        faults.add(
+            "deflections", f"not rising in row {row}", "must be rising with the force", "check the sweep"
+        )
     faults.whole("order", order, 0, max((len(table) - 1) // 2, 0), "keep it below half the angles")
     faults.whole("intervals", intervals, 6, 10_000, "32 is usual")
     faults.raise_if_any()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     basin_boundary,
@@ -55,5 +55,5 @@ def test_wilsons_interval():
     """Worked by hand: 8 of 10 at 95 %: .4902 to .9433; no hits keep zero."""
     assert share_interval(8, 10) == pytest.approx((0.49016, 0.94332), abs=1e-5)
     assert share_interval(0, 50)[0] == 0.0
-    with pytest.raises(DynamicsError):
+    with pytest.raises(InputError):
         share_interval(3, 2)

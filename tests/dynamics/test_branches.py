@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     continue_branch,
@@ -186,10 +186,10 @@ def test_longer_period(article):
 
 def test_bad_input(article):
     orbit = find_orbit(article(frequency=0.5), (0.35, 0.0))
-    with pytest.raises(DynamicsError) as error:
+    with pytest.raises(InputError) as error:
         continue_branch(orbit, "frequency", (0.6, 0.55), step=0.0)
     assert {f.where for f in error.value.faults} == {"bounds", "orbit", "step"}
-    with pytest.raises(DynamicsError, match="kind"):
+    with pytest.raises(InputError, match="kind"):
         continue_branch(orbit, "frequency", (0.49, 0.51)).special("hopf")
 
 

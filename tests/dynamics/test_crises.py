@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     basins,
@@ -68,5 +68,5 @@ def test_no_crisis_is_said_to_be_none():
 
 def test_only_saddles_are_taken():
     stable = next(o for o in find_orbits(scan(0.6), (1,)).orbits if o.stable)
-    with pytest.raises(DynamicsError, match="saddle"):
+    with pytest.raises(InputError, match="saddle"):
         boundary_crisis(stable, "frequency", (0.5, 0.7))

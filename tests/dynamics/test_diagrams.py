@@ -7,8 +7,8 @@ import pickle
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     contact_grazing,
@@ -140,7 +140,7 @@ def test_doubled_orbit(first_branch):
     orbit = doubled_orbit(lubricated(), "frequency", point, (0.5, 1.2))
     assert orbit is not None
     assert orbit.periods == 2
-    with pytest.raises(DynamicsError, match="period-doubling"):
+    with pytest.raises(InputError, match="period-doubling"):
         doubled_orbit(lubricated(), "frequency", first_branch.special("grazing")[0], (0.5, 1.2))
 
 
@@ -226,7 +226,7 @@ def test_extremum_slopes_carry_a_touch(first_branch):
 
 
 def test_bad_input(first_branch):
-    with pytest.raises(DynamicsError) as error:
+    with pytest.raises(InputError) as error:
         find_orbits(lubricated(), (0,), ((1.0, 0.0), (0.0, np.nan)), starts=0)
     assert {f.where for f in error.value.faults} == {
         "periods",
@@ -235,10 +235,10 @@ def test_bad_input(first_branch):
         "region[1][1]",
         "region[1]",
     }
-    with pytest.raises(DynamicsError, match="bounds"):
+    with pytest.raises(InputError, match="bounds"):
         diagram(lubricated(), "frequency", (1.0, 0.5))
     point = first_branch.points[0]
-    with pytest.raises(DynamicsError, match="different parameters"):
+    with pytest.raises(InputError, match="different parameters"):
         continue_locus(lubricated(), point, ("frequency", "frequency"), ((0.5, 1.0), (0.5, 1.0)))
-    with pytest.raises(DynamicsError, match="within bounds"):
+    with pytest.raises(InputError, match="within bounds"):
         continue_locus(lubricated(), point, PLANE, ((0.9, 1.0), (0.1, 0.2)))

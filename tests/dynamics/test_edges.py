@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from dynamics import DynamicsError, FourierStiffness, GearOscillator, basins, edge_saddles, find_orbits
+from base import InputError
+from dynamics import FourierStiffness, GearOscillator, basins, edge_saddles, find_orbits
 
 
 def scan(frequency: float) -> GearOscillator:
@@ -32,5 +33,5 @@ def test_edge_of_6_4_4_holds_the_saddle_of_its_crisis():
 def test_only_periodic_attractors():
     chaotic = basins(scan(1.04), (0.2, 0.4, 2), (0.0, 0.1, 2), limit=300).attractors[0]
     assert chaotic.orbit is None
-    with pytest.raises(DynamicsError, match="periodic"):
+    with pytest.raises(InputError, match="periodic"):
         edge_saddles(scan(1.04), chaotic)

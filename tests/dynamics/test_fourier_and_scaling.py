@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynamics import DynamicsError, FourierStiffness, Scaling, fit_fourier
+from base import InputError
+from dynamics import FourierStiffness, Scaling, fit_fourier
 
 phases = st.floats(-3.1, 3.1)
 
@@ -52,11 +53,11 @@ def test_phase_refers_to_the_start_of_the_period():
 
 
 def test_order_needs_samples():
-    with pytest.raises(DynamicsError, match="resolve 2"):
+    with pytest.raises(InputError, match="resolve 2"):
         fit_fourier([1.0, 2.0, 3.0, 2.0, 1.0], order=3)
-    with pytest.raises(DynamicsError, match="samples"):
+    with pytest.raises(InputError, match="samples"):
         fit_fourier([1.0, np.nan, 2.0])
-    with pytest.raises(DynamicsError, match="condition"):
+    with pytest.raises(InputError, match="condition"):
         fit_fourier([1.0, 2.0, 3.0], order=1, positions=[0.1, 0.1, 0.1])
     assert fit_fourier([3.0], order=0).stiffness.mean == 3.0
 

@@ -7,8 +7,8 @@ import pickle
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     basins,
@@ -81,7 +81,7 @@ def test_scan_of_both_exponents(article):
         one = lyapunov_exponents(article(frequency=values[i]), 600, state=state, transient=200)
         assert one.exponents.tolist() == scan.exponents[i].tolist()
         state = one.state
-    with pytest.raises(DynamicsError) as error:
+    with pytest.raises(InputError) as error:
         lyapunov_scan(article(), "frequency", [], periods=3)
     assert {f.where for f in error.value.faults} == {"values", "periods"}
 
@@ -96,7 +96,7 @@ def test_scan_says_where_motion_is_lost():
 
 
 def test_too_short_an_average_is_said(article):
-    with pytest.raises(DynamicsError, match="periods"):
+    with pytest.raises(InputError, match="periods"):
         lyapunov_exponents(article(), periods=5)
     result = lyapunov_exponents(article(frequency=1.04), periods=20)
     assert result.standard_error > 0
@@ -174,7 +174,7 @@ def test_unbounded_starts():
 
 
 def test_bad_axes(article):
-    with pytest.raises(DynamicsError) as error:
+    with pytest.raises(InputError) as error:
         basins(article(), x=(0, np.nan, 10), v=(0, 1, 0), radius=2.0)
     assert {f.where for f in error.value.faults} == {"x[1]", "v[2]", "radius"}
 

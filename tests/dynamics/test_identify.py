@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     Event,
     FourierStiffness,
     GearOscillator,
@@ -60,7 +60,7 @@ def problem_of(here, events, unknowns=None, bounds=BOUNDS):
 
 def test_all_faults_of_the_input_are_named():
     events = (Event("fold", "1-1", 3.0, 20, trust=0.0),)
-    with pytest.raises(DynamicsError) as raised:
+    with pytest.raises(InputError) as raised:
         identify(TRUE, "frequency", events, {FORCE: Ranged(0.4, 0.2), "frequency": OneOf(())}, BOUNDS)
     text = str(raised.value)
     for where in (
@@ -77,7 +77,7 @@ def test_all_faults_of_the_input_are_named():
 
 
 def test_fewer_events_than_unknowns_are_refused(points):
-    with pytest.raises(DynamicsError, match="fitted"):
+    with pytest.raises(InputError, match="fitted"):
         identify(TRUE, "frequency", printed(points[:3]), RANGES, BOUNDS)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     FourierStiffness,
     GearOscillator,
     continue_branch,
@@ -83,7 +83,7 @@ def test_manifolds_are_invariant():
 
 def test_manifold_refuses_what_has_none():
     _, stable = saddle()
-    with pytest.raises(DynamicsError, match="saddle"):
+    with pytest.raises(InputError, match="saddle"):
         manifold(stable[0], "sideways")
 
 

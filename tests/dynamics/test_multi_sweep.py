@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics import DynamicsError, FourierStiffness, GearOscillator, basins, multi_sweep, sweep
+from base import InputError
+from dynamics import FourierStiffness, GearOscillator, basins, multi_sweep, sweep
 
 
 def lubricated(frequency: float = 0.6) -> GearOscillator:
@@ -50,6 +51,6 @@ def test_motion_without_bound():
 
 
 def test_bad_input():
-    with pytest.raises(DynamicsError) as error:
+    with pytest.raises(InputError) as error:
         multi_sweep(lubricated(), values=[], seeds=-1, starts=0)
     assert {f.where for f in error.value.faults} == {"values", "seeds", "starts"}

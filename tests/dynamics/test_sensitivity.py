@@ -7,14 +7,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from dynamics import (
-    DynamicsError,
-    FourierStiffness,
-    GearOscillator,
-    map_derivatives,
-    period_map,
-    turning_points,
-)
+from base import InputError
+from dynamics import FourierStiffness, GearOscillator, map_derivatives, period_map, turning_points
 
 STATE = np.array([0.5, 0.2])
 
@@ -103,7 +97,7 @@ def test_determinant_is_differentiated_too(frequency, zeta, x, v):
 
 
 def test_bad_input():
-    with pytest.raises(DynamicsError, match="parameter"):
+    with pytest.raises(InputError, match="parameter"):
         map_derivatives(oscillator(), STATE, ("omega",))
-    with pytest.raises(DynamicsError, match="periods"):
+    with pytest.raises(InputError, match="periods"):
         map_derivatives(oscillator(), STATE, periods=0)

@@ -12,8 +12,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from base import InputError
 from dynamics import (
-    DynamicsError,
     Event,
     FourierStiffness,
     GearOscillator,
@@ -106,5 +106,5 @@ def test_printed_backlash_then_meets_a_point_with_back_contact(found):
 
 
 def test_too_few_events_are_refused():
-    with pytest.raises(DynamicsError, match="fitted"):
+    with pytest.raises(InputError, match="fitted"):
         identify(ANY, "frequency", SIX[:3], RANGES, (0.3, 2.0))
