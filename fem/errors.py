@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from gears import Fault, GearsError
+from base import Fault, InputError
 
 __all__ = ["Fault", "FemError"]
 
 
-class FemError(GearsError):
+class FemError(InputError):
     """Input that the elasticity or the contact cannot use; ``faults`` lists all that is wrong."""
 
     def __init__(self, *faults: Fault) -> None:

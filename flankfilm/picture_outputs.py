@@ -110,7 +110,7 @@ def _kinematics(pair: GearPair, speed: float | None) -> dict[str, Quantity]:
 
 def _outlines(pair: GearPair) -> dict[str, Quantity]:
     """Both gears as closed polygons, with a pair of teeth at the pitch point."""
-    from gears.outline import outline
+    from gears.polygon import outline
 
     placed = pair.placement(pair.points.C)
     found = {}

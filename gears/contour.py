@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import Fault, GeometryError
+from base import Array, Fault
+from gears.errors import GeometryError
 from gears.placement import mirrored, turned
 from gears.profile import ToothProfile
 
@@ -132,7 +132,9 @@ def contour(
     gap = pitch - 2.0 * profile.root_half_angle
     count = profile.teeth if teeth is None else teeth
     if count * sum(len(segment.points) for segment in tooth) > MOST_POINTS:
-        fault = Fault("tolerance", f"{tolerance:g}", "at most 5 million points", "take a coarser tolerance")
+        fault = Fault(
+            "tolerance", f"{tolerance:g}", "must give at most 5 million points", "take a coarser tolerance"
+        )
         raise GeometryError([fault])
     whole = count == profile.teeth
     first = 0.0 if whole else -0.5 * (count - 1) * pitch
@@ -150,11 +152,11 @@ def contour(
 def _check(profile: ToothProfile, teeth: int | None, tolerance: float) -> None:
     faults = []
     if teeth is not None and not 1 <= teeth <= profile.teeth:
-        allowed = f"1 to {profile.teeth}, or None"
+        allowed = f"must be at least 1 and at most {profile.teeth}, or None"
         faults.append(Fault("teeth", str(teeth), allowed, "take teeth that the gear has"))
     coarsest = 0.1 * profile.module
     if not FINEST <= tolerance <= coarsest:
-        allowed = f"{FINEST:g} to {coarsest:g} m"
+        allowed = f"must be at least {FINEST:g} and at most {coarsest:g} m"
         faults.append(Fault("tolerance", repr(tolerance), allowed, "give it in metres (1 um is 1e-6)"))
     if faults:
         raise GeometryError(faults)
@@ -172,7 +174,7 @@ def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segmen
         land = profile.tip_half_angle - moved
         right.append(Segment("chamfer", np.stack((end, _polar(profile.tip_radius, land)))))
     if land <= 0.0:
-        fault = Fault("tip_relief.amount", "", "a relief that leaves a top land", "relieve less")
+        fault = Fault("tip_relief.amount", "", "must leave a top land", "relieve less")
         raise GeometryError([fault])
     top = _arc("land", profile.tip_radius, land, 2.0 * land)
     return [*right, top, *(segment.opposite() for segment in reversed(right))]
@@ -186,7 +188,7 @@ def _flank(profile: ToothProfile, tolerance: float, relief: bool) -> list[Array]
         return [chords(profile.involute, start, end, tolerance)]
     steepest = given.amount / given.length * (2.0 if given.form == "parabolic" else 1.0)
     if steepest >= 0.5:
-        allowed = "less than half the length of the relief (a quarter if parabolic)"
+        allowed = "must be less than half the length of the relief (a quarter if parabolic)"
         raise GeometryError([Fault("tip_relief.amount", f"{given.amount:g}", allowed, "relieve less")])
 
     def relieved(rho: float | Array) -> Array:

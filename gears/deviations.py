@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gears.arrays import Array
-from gears.errors import Fault
+from base import Array, Fault
 
 __all__ = ["GearDeviations", "PitchDeviations", "ProfileDeviation"]
 
@@ -21,7 +20,9 @@ def _numbers(values: ArrayLike) -> tuple[float, ...]:
 def _finite_faults(where: str, values: tuple[float, ...], unit: str) -> tuple[Fault, ...]:
     if all(math.isfinite(value) for value in values):
         return ()
-    return (Fault(where, "not finite", f"finite numbers ({unit})", "leave out points without a value"),)
+    return (
+        Fault(where, "not finite", f"must be finite numbers ({unit})", "leave out points without a value"),
+    )
 
 
 @dataclass(frozen=True)
@@ -63,10 +64,13 @@ class ProfileDeviation:
         )
         if len(self.rho) != len(self.material) or len(self.rho) < 2:
             points = f"{len(self.rho)} and {len(self.material)} points"
-            found = (*found, Fault(where, points, "as many radii as values, at least 2", "give pairs"))
+            found = (
+                *found,
+                Fault(where, points, "must be as many radii as values, at least 2", "give pairs"),
+            )
         if not found and not np.all(np.diff(self.rho) > 0):
             remedy = "sort the points and leave out doubles"
-            found = (Fault(f"{where}.rho", "not growing", "growing curvature radii", remedy),)
+            found = (Fault(f"{where}.rho", "not growing", "must be growing curvature radii", remedy),)
         return found
 
     def at(self, rho: float | Array) -> Array:
@@ -130,7 +134,10 @@ class PitchDeviations:
         found = _finite_faults(where, self.cumulative, "m")
         if len(self.cumulative) != teeth:
             count = f"{len(self.cumulative)} values"
-            found = (*found, Fault(where, count, f"{teeth}, one for each tooth", "give every tooth's"))
+            found = (
+                *found,
+                Fault(where, count, f"must be {teeth}, one for each tooth", "give every tooth's"),
+            )
         return found
 
 

@@ -4,19 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gears.errors import Fault
-from gears.limits import Limit, whole_number_faults
+from base import Fault, Faults, Limit
 
-FEWEST_TEETH = 5
-MOST_TEETH = 10_000
+__all__ = ["LIMITS", "RELIEF_LIMITS", "Gear", "TipRelief"]
 
-_SHIFT = Limit(-0.8, 1.5, "modules", "shift the profile less")
-_ALTERATION = Limit(-1.0, 1.0, "modules", "change the tip less")
-_BORE = Limit(0.0, 1e4, "m", "give the radius of the bore in metres, or None for half the root radius", True)
-_ALLOWANCE = Limit(0.0, 1.0, "m", "give the arc by which the tooth is thinned, in metres")
-_CHAMFER = Limit(0.0, 1.0, "m", "give the radial height of the chamfer in metres")
-_RELIEF = Limit(0.0, 1.0, "m", "give the material removed at the tip in metres")
-_LENGTH = Limit(0.0, 1e3, "m", "give the length along the path of contact in metres", low_open=True)
+RELIEF_LIMITS = {
+    "amount": Limit(0.0, 5e-3, "m", "give the material removed at the tip in metres"),
+    "length": Limit(0.0, 0.5, "m", "give the length along the path of contact in metres", low_open=True),
+}
+"""What the numbers of tip relief may be."""
+
+LIMITS = {
+    "teeth": Limit(5, 10_000, remedy="choose teeth in this range", whole=True),
+    "profile_shift": Limit(-0.8, 1.5, "modules", "shift the profile less"),
+    "bore_radius": Limit(
+        0.0,
+        500.0,
+        "m",
+        "give the radius of the bore in metres, or None for half the root radius",
+        low_open=True,
+    ),
+    "tip_alteration": Limit(-1.0, 1.0, "modules", "change the tip less"),
+    "thickness_allowance": Limit(0.0, 0.05, "m", "give the arc by which the tooth is thinned, in metres"),
+    "tip_chamfer": Limit(0.0, 0.1, "m", "give the radial height of the chamfer in metres"),
+}
+"""What the numbers of a gear may be."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +51,10 @@ class TipRelief:
 
     def faults(self, where: str) -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = (
-            *_RELIEF.faults(f"{where}.amount", self.amount),
-            *_LENGTH.faults(f"{where}.length", self.length),
-        )
-        if self.form not in ("linear", "parabolic"):
-            allowed = "'linear' or 'parabolic'"
-            found = (*found, Fault(f"{where}.form", repr(self.form), allowed, "choose one of them"))
-        return found
+        found = Faults()
+        found.fields(self, RELIEF_LIMITS, f"{where}.")
+        found.choice(f"{where}.form", self.form, ("linear", "parabolic"), "choose one of them")
+        return tuple(found.found)
 
 
 @dataclass(frozen=True)
@@ -81,21 +89,8 @@ class Gear:
 
     def faults(self, where: str = "gear") -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
-        found = (
-            *whole_number_faults(
-                f"{where}.teeth",
-                self.teeth,
-                FEWEST_TEETH,
-                MOST_TEETH,
-                "choose teeth in this range",
-            ),
-            *_SHIFT.faults(f"{where}.profile_shift", self.profile_shift),
-            *_ALTERATION.faults(f"{where}.tip_alteration", self.tip_alteration),
-            *_ALLOWANCE.faults(f"{where}.thickness_allowance", self.thickness_allowance),
-            *_CHAMFER.faults(f"{where}.tip_chamfer", self.tip_chamfer),
-        )
-        if self.bore_radius is not None:
-            found = (*found, *_BORE.faults(f"{where}.bore_radius", self.bore_radius))
+        found = Faults()
+        found.fields(self, LIMITS, f"{where}.")
         if self.tip_relief is not None:
-            found = (*found, *self.tip_relief.faults(f"{where}.tip_relief"))
-        return found
+            found.extend(self.tip_relief.faults(f"{where}.tip_relief"))
+        return tuple(found.found)

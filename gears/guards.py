@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gears.errors import Fault
+from base import Fault
 from gears.gear import Gear
 from gears.involute import tangent_from_involute
-from gears.limits import Limit
-from gears.material import Material
 from gears.profile import ToothProfile, generate
 from gears.rack import BasicRack
 
@@ -31,10 +29,6 @@ THINNEST_RIM = 0.25
 ROUNDING = 1e-12
 """Lengths of this many modules are rounding: a backlash of -1e-16 m is none, not a jam."""
 
-_MODULE = Limit(1e-5, 1.0, "m", "give the module in metres (2 mm is 2e-3)")
-_FACE = Limit(1e-6, 100.0, "m", "give the face width in metres (40 mm is 40e-3)")
-_CENTRE = Limit(0.0, 1e4, "m", "give the distance of the axes in metres, or None", low_open=True)
-
 
 @dataclass(frozen=True)
 class Findings:
@@ -46,35 +40,6 @@ class Findings:
     def __add__(self, other: Findings) -> Findings:
         """Both lists joined."""
         return Findings(self.faults + other.faults, self.warnings + other.warnings)
-
-
-def value_faults(pair: GearPair) -> tuple[Fault, ...]:
-    """Faults of single values of a pair: wrong kind, not finite, out of bounds."""
-    found = [*_MODULE.faults("module", pair.module), *_FACE.faults("face_width", pair.face_width)]
-    for name, part, kind in (
-        ("pinion", pair.pinion, Gear),
-        ("wheel", pair.wheel, Gear),
-        ("rack", pair.rack, BasicRack),
-    ):
-        if isinstance(part, kind):
-            found += part.faults(name)
-        else:
-            found.append(Fault(name, repr(part), f"a {kind.__name__}", f"pass gears.{kind.__name__}(...)"))
-    materials = pair.material
-    if isinstance(materials, Material):
-        found += materials.faults("material")
-    elif (
-        isinstance(materials, tuple)
-        and len(materials) == 2
-        and all(isinstance(m, Material) for m in materials)
-    ):
-        found += [*materials[0].faults("material.pinion"), *materials[1].faults("material.wheel")]
-    else:
-        allowed = "a Material or two of them"
-        found.append(Fault("material", repr(materials), allowed, "pass gears.Material(...)"))
-    if pair.centre_distance is not None:
-        found += _CENTRE.faults("centre_distance", pair.centre_distance)
-    return tuple(found)
 
 
 def gear_findings(name: str, gear: Gear, module: float, rack: BasicRack) -> Findings:
@@ -95,21 +60,21 @@ def gear_findings(name: str, gear: Gear, module: float, rack: BasicRack) -> Find
     """
     root = module * (0.5 * gear.teeth - rack.h_fP + gear.profile_shift)
     if root <= 0.0:
-        least = f"more than {rack.h_fP - 0.5 * gear.teeth:.4g}"
+        least = f"must be more than {rack.h_fP - 0.5 * gear.teeth:.4g}"
         fault = Fault(
             f"{name}.profile_shift", f"{gear.profile_shift:g}", least, "the rack cuts through the axis"
         )
         return Findings((fault,))
     depth = module * (rack.h_aP + rack.h_fP + gear.tip_alteration)
     if gear.tip_chamfer >= depth > 0.0:
-        allowed = f"less than the tooth depth, {depth:.4g} m"
+        allowed = f"must be less than the tooth depth, {depth:.4g} m"
         return Findings((Fault(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less"),))
     tooth = generate(gear, module, rack)
     if tooth is None or not _has_flank(tooth):
         found = Fault(
             f"{name}.profile_shift",
             f"{gear.profile_shift:g}",
-            "a shift that leaves an involute between fillet and tip",
+            "must leave an involute between fillet and tip",
             "the fillet cuts away the whole flank: raise profile_shift, teeth or tip_alteration, or shorten "
             "the tip chamfer",
         )
@@ -132,15 +97,15 @@ def _tooth_findings(name: str, gear: Gear, tooth: ToothProfile) -> Findings:
         remedy = "the fillets of the two sides meet in the tooth: " + (
             "thin the tooth less" if thinned else "raise profile_shift or teeth"
         )
-        faults.append(Fault(f"{name}.{cause}", value, "a tooth with a neck", remedy))
+        faults.append(Fault(f"{name}.{cause}", value, "must leave the tooth a neck", remedy))
     if tooth.tip_half_angle <= 0.0:
         faults.append(_pointed(name, gear, tooth))
     relief, flank = tooth.tip_relief, tooth.flank_rho[1] - tooth.flank_rho[0]
     if relief is not None and relief.length > flank:
-        allowed = f"at most the flank's {flank:.6g} m"
+        allowed = f"must be at most the flank's {flank:.6g} m"
         faults.append(Fault(f"{name}.tip_relief.length", f"{relief.length:g}", allowed, "shorten the relief"))
     if relief is not None and relief.amount > 0.5 * tooth.module:
-        allowed = "at most half a module"
+        allowed = "must be at most half a module"
         faults.append(Fault(f"{name}.tip_relief.amount", f"{relief.amount:g}", allowed, "relieve less"))
     land = 2.0 * tooth.tip_radius * tooth.tip_half_angle / tooth.module
     thin = (f"{name}: the top land is {land:.3f} modules thick, thinner than {THIN_TIP:g}",)
@@ -151,16 +116,16 @@ def _pointed(name: str, gear: Gear, tooth: ToothProfile) -> Fault:
     """Fault of a pointed tooth, with the highest tip that the flanks allow."""
     spare = gear.thickness_allowance + 2.0 * tooth.reference_radius * tooth.tip_half_angle
     if gear.thickness_allowance > 0.0 and spare > 0.0:
-        value, allowed = f"{gear.thickness_allowance:g}", f"less than {spare:.4g} m"
+        value, allowed = f"{gear.thickness_allowance:g}", f"must be less than {spare:.4g} m"
         return Fault(f"{name}.thickness_allowance", value, allowed, "the tip is pointed: thin the tooth less")
     point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(max(tooth.base_half_angle, 1e-9)))
     excess = (tooth.tip_radius - point) / tooth.module
     highest = gear.tip_alteration - excess
     value = f"{gear.tip_alteration:g}"
-    allowed = f"less than {highest:.4g} modules, where the flanks meet"
+    allowed = f"must be less than {highest:.4g} modules, where the flanks meet"
     if gear.tip_chamfer > 0.0 and excess < 0.0:
         value, where = f"{gear.tip_chamfer:g}", f"{name}.tip_chamfer"
-        return Fault(where, value, "a chamfer that leaves a top land", "the tip is pointed: chamfer less")
+        return Fault(where, value, "must leave a top land", "the tip is pointed: chamfer less")
     remedy = "the tip is pointed: reduce profile_shift or tip_alteration"
     return Fault(f"{name}.tip_alteration", value, allowed, remedy)
 
@@ -174,7 +139,9 @@ def _blank_findings(
     if bore > largest:
         why = "is not inside the root circle" if bore >= root else "leaves a rim too thin for a gear"
         remedy = f"the bore {why} (root radius {root:.6g} m): reduce it"
-        return Findings((Fault(f"{name}.bore_radius", f"{bore:g}", f"at most {largest:.6g} m", remedy),))
+        return Findings(
+            (Fault(f"{name}.bore_radius", f"{bore:g}", f"must be at most {largest:.6g} m", remedy),)
+        )
     if tooth is None or root - bore >= THIN_RIM * (tooth.tip_radius - root):
         return Findings()
     share = (root - bore) / (tooth.tip_radius - root)
@@ -187,20 +154,22 @@ def mesh_findings(pair: GearPair) -> Findings:
     """Faults of two sound gears that cannot run together: axes, jam, contact ratio, interference, tips."""
     bases = sum(pair.base_radii)
     if pair.centre_distance is not None and pair.centre_distance <= bases:
-        allowed = f"more than the sum of the base radii, {bases:.6g} m"
+        allowed = f"must be more than the sum of the base radii, {bases:.6g} m"
         where, value = "centre_distance", f"{pair.centre_distance:g}"
         return Findings((Fault(where, value, allowed, "there is no line of action: move the axes apart"),))
     if pair.centre_distance is None and pair._working_involute <= 0.0:
         value = f"{pair.pinion.profile_shift + pair.wheel.profile_shift:g}"
         remedy = "no working pressure angle exists: raise a profile shift, or give centre_distance"
-        return Findings((Fault("pinion.profile_shift + wheel.profile_shift", value, "a larger sum", remedy),))
+        return Findings(
+            (Fault("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy),)
+        )
     faults: list[Fault] = []
     rounding = ROUNDING * pair.module
     if pair.backlash < -rounding:
         faults.append(_jam(pair))
     if not pair.contact_ratio >= 1.0:
         remedy = "the next pair comes too late: reduce the working pressure angle, or lengthen the teeth"
-        faults.append(Fault("contact_ratio", f"{pair.contact_ratio:.6g}", "at least 1", remedy))
+        faults.append(Fault("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy))
     first, second = pair.teeth_profiles
     if pair.contact_ratio > 0.0:
         wheel_lowest = pair.line_of_action - pair.points.E
@@ -213,7 +182,7 @@ def mesh_findings(pair: GearPair) -> Findings:
     for name, other, mate, tooth in (("pinion", "wheel", first, second), ("wheel", "pinion", second, first)):
         clearance = pair.axis_distance - tooth.tip_radius - mate.root_radius
         if clearance <= 0.0:
-            allowed = f"less than {pair.axis_distance - mate.root_radius:.6g} m"
+            allowed = f"must be less than {pair.axis_distance - mate.root_radius:.6g} m"
             remedy = f"the tip of the {other} meets the root circle of the {name}: give the {other} "
             remedy += f"a negative tip_alteration of {clearance / pair.module:.3g} or less"
             faults.append(Fault(f"{other}.tip_radius", f"{tooth.tip_radius:.6g}", allowed, remedy))
@@ -226,7 +195,7 @@ def _jam(pair: GearPair) -> Fault:
     allowance = -pair.backlash / math.cos(pair.rack.alpha)
     remedy = f"the teeth jam: move the axes apart, shift the profiles less or add {allowance:.3g} m of "
     remedy += "thickness_allowance in all"
-    allowed = f"at least {free:.6g} m for nominal teeth"
+    allowed = f"must be at least {free:.6g} m for nominal teeth"
     return Fault("centre_distance", f"{pair.axis_distance:.6g}", allowed, remedy)
 
 
@@ -236,10 +205,10 @@ def _interference(pair: GearPair, name: str, other: str, tooth: ToothProfile, ma
     where, value = f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}"
     remedy = f"the tip of the {other} would work on the fillet of the {name}, below its form circle: "
     if longest <= 0.0:
-        return Fault(where, value, "a smaller gear", remedy + f"raise {name}.profile_shift")
+        return Fault(where, value, "must be smaller", remedy + f"raise {name}.profile_shift")
     largest = math.hypot(mate.base_radius, longest)
     lower = (mate.flank_end_radius - largest) / mate.module
     remedy += f"lower {other}.tip_alteration by {lower:.4g}, chamfer the {other}"
     if tooth.undercut:
         remedy += f" or raise {name}.profile_shift, which lessens the undercut"
-    return Fault(where, value, f"at most {largest:.6g} m where the flank ends", remedy)
+    return Fault(where, value, f"must be at most {largest:.6g} m where the flank ends", remedy)

@@ -6,7 +6,10 @@ import math
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array, Limit
+
+NORMAL_FORCE = Limit(0.0, unit="N", remedy="give the normal force on the pair of teeth", low_open=True)
+"""What the force between two teeth may be."""
 
 
 def half_width(load: float | Array, radius: float | Array, reduced_modulus: float) -> Array:

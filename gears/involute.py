@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 
 
 def involute_function(tangent: float | Array) -> Array:

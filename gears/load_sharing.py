@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gears.arrays import Array
-from gears.errors import Fault, LoadSharingError
+from base import Array, Fault
+from gears.errors import LoadSharingError
 
 _ITERATIONS = 200
 _STEP = 1e-11  # relative to the force; Newton's next step is of the order of its square
@@ -137,7 +137,7 @@ def share_load(
     fault = Fault(
         "share_load",
         f"no solution after {_ITERATIONS} steps",
-        "deflections that grow with the force",
+        "must have deflections that grow with the force",
         "check that bulk is positive semidefinite, hertz has a positive and film a negative slope",
     )
     raise LoadSharingError([fault])
@@ -198,7 +198,9 @@ def _finite(prop: Array) -> Array:
     """Refuse a film that grows without bound as the force falls; every pair would carry on it."""
     if not np.all(np.isfinite(prop)):
         remedy = "bound the film's thickness as the force goes to zero"
-        raise LoadSharingError([Fault("film", "not finite at zero force", "a finite thickness", remedy)])
+        raise LoadSharingError(
+            [Fault("film", "not finite at zero force", "must have a finite thickness", remedy)]
+        )
     return prop
 
 
@@ -215,7 +217,7 @@ def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
     faults = []
     if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
-        allowed = "finite forces, all above 0 N or all 0 N"
+        allowed = "must be finite, all above 0 N or all 0 N"
         faults.append(Fault("force", str(force), allowed, "give the forces' sizes"))
     pairs = gaps.shape[-1:]
     if not (
@@ -223,24 +225,31 @@ def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
         shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
         faults.append(
-            Fault("bulk, gaps", shapes, "(..., pairs, pairs) and (..., pairs)", "give one row for each pair")
+            Fault(
+                "bulk, gaps",
+                shapes,
+                "must be (..., pairs, pairs) and (..., pairs)",
+                "give one row for each pair",
+            )
         )
     if not np.all(gaps >= 0.0):
         faults.append(
             Fault(
                 "gaps",
                 "negative or not a number",
-                "at least 0 m, or inf",
+                "must be at least 0 m, or inf",
                 "measure from the pair that touches",
             )
         )
     elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
-        faults.append(Fault("gaps", "inf for all pairs", "a finite gap", "one pair at least must touch"))
+        faults.append(
+            Fault("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
+        )
     if not np.all((levers > 0.0) & np.isfinite(levers)):
         remedy = "reduce the friction, which tilts a force past the axis"
-        faults.append(Fault("levers", "not above 0", "finite and > 0", remedy))
+        faults.append(Fault("levers", "not above 0", "must be finite and more than 0", remedy))
     if not np.all(np.isfinite(bulk)):
-        faults.append(Fault("bulk", "not finite", "finite compliances", "check the compliance matrix"))
+        faults.append(Fault("bulk", "not finite", "must be finite", "check the compliance matrix"))
     if faults:
         raise LoadSharingError(faults)
 
@@ -273,7 +282,7 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
     sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
     if not (sound and np.isfinite(force) and force >= 0.0):
-        allowed = "finite values of at least 0 (a film may be inf)"
+        allowed = "must be finite and at least 0 (a film may be inf)"
         fault = Fault("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
         raise LoadSharingError([fault])
     carries = (teeth > 0.0) & (films > 0.0)
@@ -282,7 +291,7 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     total = series.sum(axis=-1)
     if not np.all(total > 0.0):
         fault = Fault(
-            "stiffness", "zero for every pair", "one pair that carries at each position", "add pairs"
+            "stiffness", "zero for every pair", "must have a pair that carries at each position", "add pairs"
         )
         raise LoadSharingError([fault])
     forces = force * series / total[..., None]

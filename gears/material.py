@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gears.errors import Fault
-from gears.limits import Limit
+from base import Fault, Faults, Limit
 
-_MODULUS = Limit(1e6, 1e13, "Pa", "give the modulus in pascals (steel 206e9)")
-_POISSON = Limit(0.0, 0.4999, "", "give Poisson's ratio of a compressible solid (steel 0.3)")
-_DENSITY = Limit(1.0, 1e5, "kg/m3", "give the density in kg/m3 (steel 7850)")
+__all__ = ["LIMITS", "STEEL", "Material", "reduced_modulus"]
+
+LIMITS = {
+    "youngs_modulus": Limit(1e7, 2e12, "Pa", "give the modulus in pascals (steel 206e9)"),
+    "poisson_ratio": Limit(0.0, 0.4999, remedy="give Poisson's ratio of a compressible solid (steel 0.3)"),
+    "density": Limit(100.0, 3e4, "kg/m3", "give the density in kg/m3 (steel 7850)"),
+}
+"""What the numbers of a material may be."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +49,9 @@ class Material:
 
     def faults(self, where: str = "material") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        return (
-            *_MODULUS.faults(f"{where}.youngs_modulus", self.youngs_modulus),
-            *_POISSON.faults(f"{where}.poisson_ratio", self.poisson_ratio),
-            *_DENSITY.faults(f"{where}.density", self.density),
-        )
+        found = Faults()
+        found.fields(self, LIMITS, f"{where}.")
+        return tuple(found.found)
 
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import Fault, GeometryError
-from gears.outline import tooth_side
+from base import Array, Fault
+from gears.errors import GeometryError
 from gears.pair import GearPair
 from gears.placement import mirrored, turned
+from gears.polygon import tooth_side
 from gears.profile import ToothProfile
 
 _NEIGHBOURS = np.arange(-3, 4)  # teeth on either side that can come near the mate
@@ -65,7 +65,7 @@ def check_meshing(pair: GearPair, positions: int = 21) -> MeshingCheck:
         Deviation of the transmitted angle, clearances, overlap.
     """
     if positions < 2:
-        raise GeometryError([Fault("positions", str(positions), "at least 2", "raise it")])
+        raise GeometryError([Fault("positions", str(positions), "must be at least 2", "raise it")])
     points, (first, second) = pair.points, pair.teeth_profiles
     middle = pair.placement(points.C).pinion_angle
     start, end = (points.A - points.C) / first.base_radius, (points.E - points.C) / first.base_radius

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 
 if TYPE_CHECKING:
     from gears.closed_form.record import ClosedForm
@@ -84,7 +84,7 @@ def closed_form_html(result: ClosedForm) -> str:
 
 def _drawing(pair: GearPair) -> str:
     """Vector picture of both gears about the pitch point."""
-    from gears.outline import outline
+    from gears.polygon import outline
 
     placed = pair.placement(pair.points.C)
     centre = placed.contact_point

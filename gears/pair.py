@@ -10,16 +10,28 @@ from functools import cached_property
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import Fault, GeometryError, GeometryWarning
+from base import Array, Fault, Faults, Limit
+from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
-from gears.guards import Findings, gear_findings, mesh_findings, value_faults
+from gears.guards import Findings, gear_findings, mesh_findings
 from gears.involute import involute_function, tangent_from_involute
 from gears.material import STEEL, Material, reduced_modulus
 from gears.path import PathOfContact, PathPoints
 from gears.placement import Placement, place
 from gears.profile import ToothProfile, generate
 from gears.rack import ISO_53_A, BasicRack
+
+LIMITS = {
+    "module": Limit(1e-5, 0.1, "m", "give the module in metres (2 mm is 2e-3)"),
+    "face_width": Limit(1e-5, 10.0, "m", "give the face width in metres (40 mm is 40e-3)"),
+    "centre_distance": Limit(
+        0.0, 1e3, "m", "give the distance of the axes in metres, or None", low_open=True
+    ),
+}
+"""What the numbers of a pair itself may be."""
+
+BACKLASH = Limit(0.0, 0.05, "m", "give the normal backlash in metres (50 um is 50e-6)")
+"""What the normal backlash of a pair may be."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +81,7 @@ class GearPair:
 
     def __post_init__(self) -> None:
         """Refuse values and geometries that no pair has, all faults at once."""
-        values = value_faults(self)
+        values = self._value_faults()
         found = Findings(values)
         if not any(fault.where == "module" or fault.where.startswith("rack") for fault in values):
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
@@ -81,6 +93,26 @@ class GearPair:
             raise GeometryError(found.faults)
         for message in found.warnings:
             warnings.warn(message, GeometryWarning, stacklevel=3)
+
+    def _value_faults(self) -> tuple[Fault, ...]:
+        """Faults of single values of the pair and its parts: wrong kind, not finite, out of bounds."""
+        found = Faults()
+        found.fields(self, LIMITS)
+        for name, kind in (("pinion", Gear), ("wheel", Gear), ("rack", BasicRack)):
+            if isinstance(part := getattr(self, name), kind):
+                found.extend(part.faults(name))
+            else:
+                found.add(name, part, f"must be a {kind.__name__}", f"pass gears.{kind.__name__}(...)")
+        if isinstance(self.material, Material):
+            found.extend(self.material.faults())
+        elif isinstance(self.material, tuple) and [type(m) for m in self.material] == [Material, Material]:
+            for name, material in zip(("pinion", "wheel"), self.material, strict=True):
+                found.extend(material.faults(f"material.{name}"))
+        else:
+            found.add(
+                "material", self.material, "must be a Material or two of them", "pass gears.Material(...)"
+            )
+        return tuple(found.found)
 
     @cached_property
     def materials(self) -> tuple[Material, Material]:
@@ -231,12 +263,13 @@ class GearPair:
             The same pair with new thickness allowances (those it had are replaced).
         """
         least = self._nominal_backlash
-        if not math.isfinite(normal_backlash) or normal_backlash < least or normal_backlash < 0.0:
-            allowed = f"a finite length of at least {max(least, 0.0):.6g} m, which the centre distance gives"
-            fault = Fault(
-                "backlash", repr(normal_backlash), allowed, "ask for more, or reduce the centre distance"
-            )
-            raise GeometryError([fault])
+        found = BACKLASH.faults("backlash", normal_backlash)
+        if not found and normal_backlash < least:
+            allowed = f"must be at least {least:.6g} m, which the centre distance gives"
+            remedy = "ask for more, or reduce the centre distance"
+            found = (Fault("backlash", f"{normal_backlash!r}", allowed, remedy),)
+        if found:
+            raise GeometryError(found)
         allowance = 0.5 * (normal_backlash - least) / math.cos(self.rack.alpha)
         return dataclasses.replace(
             self,
@@ -285,7 +318,7 @@ class GearPair:
         first = np.atleast_1d(np.asarray(rho1, dtype=float))
         total = self.line_of_action
         if not np.all((first >= 0.0) & (first <= total)):
-            allowed = f"finite values from 0 to {total:.6g} m (the line of action)"
+            allowed = f"must be finite, at least 0 and at most {total:.6g} m (the line of action)"
             fault = Fault(
                 "rho1", f"{np.min(first):g} .. {np.max(first):g}", allowed, "stay on the line of action"
             )
@@ -295,7 +328,9 @@ class GearPair:
     def path_of_contact(self, n: int = 9) -> PathOfContact:
         """Path of contact at `n` equally spaced points from A to E, both included."""
         if n < 2:
-            raise GeometryError([Fault("n", str(n), "at least 2 points", "A and E are both included")])
+            raise GeometryError(
+                [Fault("n", str(n), "must be at least 2 points", "A and E are both included")]
+            )
         return self.path_at(np.linspace(self.points.A, self.points.E, n))
 
     def placement(self, rho1: float) -> Placement:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 
 if TYPE_CHECKING:
     from gears.pair import GearPair

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 from gears.gear import Gear, TipRelief
 from gears.involute import involute_function
 from gears.rack import BasicRack

@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gears.errors import Fault
-from gears.limits import Limit
+from base import Fault, Faults, Limit
 
-_ADDENDUM = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.0", low_open=True)
-_DEDENDUM = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.25", low_open=True)
-_FILLET = Limit(0.0, 3.0, "modules", "ISO 53 profile A has 0.38", low_open=True)
-_ANGLE = Limit(
-    math.radians(10.0), math.radians(35.0), "rad", "give the angle in radians (20 deg is 0.349066)"
-)
+__all__ = ["ISO_53_A", "LIMITS", "BasicRack"]
+
+LIMITS = {
+    "h_aP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.0", low_open=True),
+    "h_fP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.25", low_open=True),
+    "rho_fP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 0.38", low_open=True),
+    "alpha": Limit(
+        math.radians(10.0), math.radians(35.0), "rad", "give the angle in radians (20 deg is 0.349066)"
+    ),
+}
+"""What the numbers of a basic rack may be."""
 
 
 @dataclass(frozen=True)
@@ -70,24 +74,15 @@ class BasicRack:
 
     def faults(self, where: str = "rack") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = (
-            *_ADDENDUM.faults(f"{where}.h_aP", self.h_aP),
-            *_DEDENDUM.faults(f"{where}.h_fP", self.h_fP),
-            *_FILLET.faults(f"{where}.rho_fP", self.rho_fP),
-            *_ANGLE.faults(f"{where}.alpha", self.alpha),
-        )
-        if not found and self.largest_fillet_radius <= 0.0:
+        found = Faults()
+        found.fields(self, LIMITS, f"{where}.")
+        if not found.found and self.largest_fillet_radius <= 0.0:
             deepest = math.pi / 4.0 / math.tan(self.alpha)
-            found = (
-                Fault(
-                    f"{where}.h_fP",
-                    f"{self.h_fP:g}",
-                    f"less than {deepest:.6g} modules at this pressure angle",
-                    "the rack tooth comes to a point before its tip, so not even a full-radius fillet fits: "
-                    "reduce h_fP or alpha",
-                ),
-            )
-        return found
+            allowed = f"must be less than {deepest:.6g} modules at this pressure angle"
+            remedy = "the rack tooth comes to a point before its tip, so not even a full-radius fillet fits: "
+            remedy += "reduce h_fP or alpha"
+            found.add(f"{where}.h_fP", f"{self.h_fP:g}", allowed, remedy)
+        return tuple(found.found)
 
 
 ISO_53_A = BasicRack()

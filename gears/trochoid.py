@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 from gears.involute import involute_function
 
 # Below this roll angle of undercut the limit form of the intersection is more exact than a root search.

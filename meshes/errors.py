@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from gears import Fault, GearsError
+from base import Fault, InputError
 
 __all__ = ["Fault", "MeshError"]
 
 
-class MeshError(GearsError):
+class MeshError(InputError):
     """The outline or the sizes cannot give a valid mesh; ``faults`` lists all that is wrong."""
 
     def __init__(self, *faults: Fault) -> None:

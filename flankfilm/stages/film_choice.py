@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import SolverError
+from base import InputError, SolverError
 from flankfilm.cache import Cache
 from flankfilm.stages.teeth import plain_flanks
 from flankfilm.tolerance import CostLaw
@@ -163,8 +163,6 @@ def foreseen_change(engine: Engine) -> FilmChange | None:
 
     The flanks are taken as plain: relief decides who carries, and hardly what a film changes of the mean.
     """
-    from gears import GearsError
-
     scene = plain_flanks(engine.scene)
     teeth = scene.stiffness.model_copy(update={"model": "potential-energy"})
     film = scene.film.model_copy(update={"model": "dowson", "stiffness": None})
@@ -174,7 +172,7 @@ def foreseen_change(engine: Engine) -> FilmChange | None:
     rough = type(engine)(cheap, engine.stages, Cache(None))
     try:
         film, dry = rough["film"], rough["dry cycle"]
-    except (GearsError, SolverError):
+    except (InputError, SolverError):
         return None
     uneven = float(np.ptp(film.cycle.transmission_error) / np.ptp(dry.transmission_error) - 1)
     return FilmChange(float(film.change_secant), uneven)

@@ -7,11 +7,11 @@ import warnings
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array, RangeWarning
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.errors import Fault, GeometryError, ModelRangeWarning
-from gears.hertz import depth_compliance, half_width
+from gears.errors import GeometryError
+from gears.hertz import NORMAL_FORCE, depth_compliance, half_width
 from gears.pair import GearPair
 from gears.path import PathOfContact
 
@@ -46,7 +46,7 @@ def hertz(pair: GearPair, path: PathOfContact, force: float) -> ClosedForm:
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Where the contact is wider than a quarter of the depth.
     """
     first, second = contact_compliances(pair, path, force, loaded_teeth(pair, path))
@@ -57,17 +57,15 @@ def contact_compliances(
     pair: GearPair, path: PathOfContact, force: float, teeth: tuple[LoadedTooth, LoadedTooth]
 ) -> tuple[Array, Array]:
     """Compliances of the two flanks at a force, each (n,) [m/N]; see `hertz`."""
-    if not (math.isfinite(force) and force > 0.0):
-        raise GeometryError(
-            [Fault("force", repr(force), "a finite force above 0 N", "give the normal force")]
-        )
+    if faults := NORMAL_FORCE.faults("force", force):
+        raise GeometryError(faults)
     width = half_width(force / pair.face_width, path.radius, pair.reduced_modulus)
     shallowest = min(float(np.min(tooth.depth / width)) for tooth in teeth)
     if shallowest < _DEEP:
         message = (
             f"the contact is wide for the Hertz term: depth over half-width {shallowest:.2g} < {_DEEP:g}"
         )
-        warnings.warn(message, ModelRangeWarning, stacklevel=3)
+        warnings.warn(message, RangeWarning, stacklevel=3)
     first, second = (
         depth_compliance(
             tooth.depth, width, tooth.material.plane_strain_modulus, tooth.material.poisson_ratio

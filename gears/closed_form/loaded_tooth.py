@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import Fault, GeometryError
+from base import Array, Fault
+from gears.errors import GeometryError
 from gears.material import Material
 from gears.pair import GearPair
 from gears.path import PathOfContact
@@ -132,7 +132,7 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
         low, high = profile.flank_rho
         slack = 1e-9 * profile.module
         if not np.all((rho >= low - slack) & (rho <= high + slack)):
-            allowed = f"{low:.6g} to {high:.6g} m, the flank"
+            allowed = f"must be at least {low:.6g} and at most {high:.6g} m, the flank"
             value = f"{np.min(rho):g} .. {np.max(rho):g}"
             faults.append(Fault(f"path.{name}", value, allowed, "closed forms hold between A and E"))
         teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import DTypeLike
 
-from gears.arrays import Array
+from base import Array
 
 
 @dataclass(frozen=True, eq=False)

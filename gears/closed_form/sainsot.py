@@ -7,8 +7,7 @@ import warnings
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import ModelRangeWarning
+from base import Array, RangeWarning
 
 # rows L*, M*, P*, Q*; columns A to F of X = A/th^2 + B h^2 + C h/th + D/th + E h + F
 _COEFFICIENTS = np.array(
@@ -56,7 +55,7 @@ def sainsot_body(
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Outside 1.4 <= h <= 7 and 0.01 <= theta_f <= 0.12, for which the fits were made.
 
     References
@@ -68,7 +67,7 @@ def sainsot_body(
     for symbol, value, (low, high) in (("h", h, RADIUS_RATIO), ("theta_f", foot_angle, FOOT_ANGLE)):
         if not low <= value <= high:
             message = f"Sainsot's body: {name} has {symbol} = {value:.4g}, fitted for {low:g} to {high:g}"
-            warnings.warn(message, ModelRangeWarning, stacklevel=2)
+            warnings.warn(message, RangeWarning, stacklevel=2)
     th = foot_angle
     L, M, P, Q = _COEFFICIENTS @ np.array([1.0 / th**2, h**2, h / th, 1.0 / th, h, 1.0])
     ratio = np.asarray(height) / (2.0 * root_radius * th)

@@ -188,5 +188,5 @@ def test_a_relief_steeper_than_the_flank_is_refused():
         module=2e-3,
         face_width=0.04,
     ).teeth_profiles[0]
-    with pytest.raises(GeometryError, match="relieve less"):
+    with pytest.raises(GeometryError, match="Relieve less"):
         contour(profile, 1, 1e-6)

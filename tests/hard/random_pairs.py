@@ -6,7 +6,8 @@ import warnings
 
 import numpy as np
 
-from gears import BasicRack, Gear, GearPair, GearsError
+from base import InputError
+from gears import BasicRack, Gear, GearPair
 
 LARGEST_FILLET = {14.5: 0.4, 20.0: 0.38, 25.0: 0.3}
 
@@ -32,7 +33,7 @@ def random_pair(rng: np.random.Generator) -> GearPair | None:
             ]
             rack = BasicRack(float(h_aP), float(h_aP) + 0.25, float(fillet), float(np.radians(angle)))
             return GearPair(*gears, module, 0.04, rack)
-    except GearsError:
+    except InputError:
         return None
 
 

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from base import RangeWarning
 from gears import (
     Gear,
     GearPair,
     GeometryError,
     LoadSharingError,
-    ModelRangeWarning,
     check_meshing,
     closed_form,
     share_load,
@@ -63,7 +63,7 @@ def test_undercut_pair_keeps_its_closed_forms_finite():
     pair = GearPair(Gear(12, 0.1), Gear(30, 0.2, tip_alteration=-0.15), 2e-3, 0.02)
     assert pair.teeth_profiles[0].undercut
     path = pair.path_of_contact(9)
-    with pytest.warns(ModelRangeWarning, match="theta_f"):
+    with pytest.warns(RangeWarning, match="theta_f"):
         forms = [closed_form.potential_energy(pair, path)]
     forms += [closed_form.ishikawa(pair, path), closed_form.weber_banaschek(pair, path, 500.0)]
     for form in forms:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from gears import Gear, GearPair, closed_form
-from gears.closed_form.ishikawa import dimensions
 from gears.closed_form.loaded_tooth import loaded_teeth
+from gears.closed_form.trapezoid import dimensions
 
 NEWTON_PER_MM_UM = 40e6  # N/m at the face width of 40 mm
 

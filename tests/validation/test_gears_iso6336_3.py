@@ -12,7 +12,8 @@ import math
 import numpy as np
 import pytest
 
-from gears import BasicRack, Gear, GearPair, GeometryError, ModelRangeWarning
+from base import RangeWarning
+from gears import BasicRack, Gear, GearPair, GeometryError
 from gears.closed_form import iso6336_3
 
 TABLE = {
@@ -130,9 +131,9 @@ def test_same_for_every_module_and_for_turned_pairs():
 
 @pytest.mark.filterwarnings("ignore:pinion. the rim:gears.GeometryWarning")
 def test_ranges_are_told_and_nonsense_is_refused():
-    with pytest.warns(ModelRangeWarning, match="contact ratio"):
+    with pytest.warns(RangeWarning, match="contact ratio"):
         iso6336_3(pair_of(40, 0.0, BasicRack(h_aP=1.35, h_fP=1.6, rho_fP=0.25)), 1000.0)
-    with pytest.warns(ModelRangeWarning, match="q_s"):
+    with pytest.warns(RangeWarning, match="q_s"):
         iso6336_3(pair_of(1000, 0.0, BasicRack(rho_fP=0.05)), 1000.0)
     with pytest.raises(GeometryError, match=r"(?s)force.*load_at"):
         iso6336_3(pair_of(40), -1.0, "E")

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from gears import STEEL, BasicRack, Gear, closed_form
+from gears.closed_form.half_plane import _body, _tooth
 from gears.closed_form.loaded_tooth import LoadedTooth
-from gears.closed_form.weber_banaschek import _body, _tooth
 from gears.profile import generate
 
 

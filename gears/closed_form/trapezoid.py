@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array, RangeWarning
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.errors import ModelRangeWarning
 from gears.pair import GearPair
 from gears.path import PathOfContact
 from gears.profile import ToothProfile
@@ -119,7 +118,7 @@ def ishikawa(pair: GearPair, path: PathOfContact) -> ClosedForm:
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         If undercut makes a tooth no thicker at its effective root circle than at its tip.
     """
     teeth = loaded_teeth(pair, path)
@@ -127,6 +126,6 @@ def ishikawa(pair: GearPair, path: PathOfContact) -> ClosedForm:
         shape = dimensions(tooth.profile)
         if shape.s_K >= shape.s_F:
             message = f"Ishikawa: the {name} is no thicker at its effective root circle than at its tip"
-            warnings.warn(message, ModelRangeWarning, stacklevel=2)
+            warnings.warn(message, RangeWarning, stacklevel=2)
     first, second = (_tooth_parts(tooth, pair.face_width) for tooth in teeth)
     return ClosedForm("Ishikawa", {name: first[name] + second[name] for name in first})

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from gears.arrays import Array
-from gears.errors import Fault, GeometryError
+from base import Array, Fault
+from gears.errors import GeometryError
 from gears.placement import mirrored, turned
 from gears.profile import ToothProfile
 
@@ -76,10 +76,10 @@ def outline(
     count = profile.teeth if teeth is None else teeth
     faults = []
     if not 1 <= count <= profile.teeth:
-        allowed = f"1 to {profile.teeth}, or None"
+        allowed = f"must be at least 1 and at most {profile.teeth}, or None"
         faults.append(Fault("teeth", str(count), allowed, "draw teeth that the gear has"))
     if points_per_part < 2:
-        faults.append(Fault("points_per_part", str(points_per_part), "at least 2", "raise it"))
+        faults.append(Fault("points_per_part", str(points_per_part), "must be at least 2", "raise it"))
     if faults:
         raise GeometryError(faults)
     right = tooth_side(profile, points_per_part, relief_scale)

@@ -6,7 +6,9 @@ import math
 import warnings
 from dataclasses import dataclass
 
-from gears.errors import Fault, GeometryError, ModelRangeWarning
+from base import Fault, Faults, RangeWarning
+from gears.errors import GeometryError
+from gears.hertz import NORMAL_FORCE
 from gears.involute import involute_function
 from gears.pair import GearPair
 from gears.profile import ToothProfile
@@ -121,7 +123,7 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Outside 1 <= q_s < 8, at a contact ratio of 2 or more (the standard then shares the load by a factor
         that this function leaves out), for a section above the form circle, or a rim thinner than 1.75
         modules.
@@ -131,13 +133,10 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     ISO 6336-3:2006, Calculation of load capacity of spur and helical gears, part 3: Calculation of tooth
     bending strength, clauses 5 to 9.
     """
-    faults = []
-    if not (math.isfinite(force) and force > 0.0):
-        faults.append(Fault("force", repr(force), "a finite force above 0 N", "give the normal force"))
-    if load_at not in ("D", "tip"):
-        faults.append(Fault("load_at", repr(load_at), "'D' or 'tip'", "'D' is the standard's method B"))
-    if faults:
-        raise GeometryError(faults)
+    found = Faults()
+    found.number("force", force, NORMAL_FORCE)
+    found.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
+    found.raise_if_any(GeometryError)
     points = pair.points
     ends = [profile.flank_rho[1] for profile in pair.teeth_profiles]
     outer = ends if load_at == "tip" else [points.D, pair.line_of_action - points.B]
@@ -152,7 +151,7 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     if load_at == "D" and pair.contact_ratio >= 2.0:
         outside.append(f"contact ratio {pair.contact_ratio:.3f} is not below 2: no pair bears alone")
     if outside:
-        warnings.warn("ISO 6336-3: " + "; ".join(outside), ModelRangeWarning, stacklevel=2)
+        warnings.warn("ISO 6336-3: " + "; ".join(outside), RangeWarning, stacklevel=2)
     nominal = force * math.cos(pair.rack.alpha) / (pair.face_width * pair.module)
     first, second = (
         nominal * section.Y_F * section.Y_S * rim for section, rim in zip(sections, rims, strict=True)
@@ -196,7 +195,7 @@ def _theta(name: str, teeth: int, G: float, H: float) -> float:
         if abs(step) < 1e-15:
             break
     if abs(theta - 2.0 * G / teeth * math.tan(theta) + H) > 1e-12:
-        allowed = "a fillet with a tangent at 30 degrees to the tooth's centre line"
+        allowed = "must have a fillet with a tangent at 30 degrees to the tooth's centre line"
         raise GeometryError([Fault(name, f"theta = {theta:.6g} rad", allowed, "change shift or rack")])
     return theta
 
@@ -206,7 +205,7 @@ def _rim_factor(name: str, profile: ToothProfile) -> float:
     depth = profile.tip_radius - profile.root_radius
     ratio = (profile.root_radius - profile.bore_radius) / depth
     if ratio <= 0.5:
-        allowed = "a rim of more than half the tooth's depth"
+        allowed = "must leave a rim of more than half the tooth's depth"
         value = f"{ratio:.3g} tooth depths"
         raise GeometryError([Fault(f"{name}.bore_radius", value, allowed, "ISO 6336-3 has no Y_B: use FE")])
     return 1.6 * math.log(2.242 / ratio) if ratio < 1.2 else 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 from gears.closed_form.contact import constant_contact_compliances, contact_compliances
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
@@ -80,7 +80,7 @@ def potential_energy(pair: GearPair, path: PathOfContact, force: float | None = 
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Outside the range of Sainsot's fit, or where the contact is wide for the Hertz term.
 
     References

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gears.arrays import Array
+from base import Array
 from gears.closed_form.contact import contact_compliances
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
@@ -77,7 +77,7 @@ def weber_banaschek(pair: GearPair, path: PathOfContact, force: float) -> Closed
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Where the contact is wider than a quarter of the depth of the Hertz term.
     """
     teeth = loaded_teeth(pair, path)

@@ -6,7 +6,9 @@ import math
 import warnings
 from dataclasses import dataclass
 
-from gears.errors import Fault, GeometryError, ModelRangeWarning
+from base import RangeWarning
+from gears.errors import GeometryError
+from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
 
 CORRECTION = 0.8
@@ -84,7 +86,7 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
 
     Warns
     -----
-    ModelRangeWarning
+    RangeWarning
         Outside x1 >= x2, -0.5 <= x1 + x2 <= 2 and 1.2 <= epsilon_alpha <= 1.9.
     """
     first, second = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift))
@@ -98,8 +100,8 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     E1, E2 = (material.youngs_modulus for material in pair.materials)
     c_prime = CORRECTION * C_R * C_B / q * (2.0 * E1 * E2 / (E1 + E2) / _STEEL)
     if force is not None:
-        if not (math.isfinite(force) and force > 0.0):
-            raise GeometryError([Fault("force", repr(force), "a finite force above 0 N", "give it, or None")])
+        if faults := NORMAL_FORCE.faults("force", force):
+            raise GeometryError(faults)
         load = force * math.cos(pair.rack.alpha) / (pair.face_width * 1e3)
         c_prime *= min(load / LIGHT_LOAD, 1.0) ** 0.25
     c_gamma = c_prime * (0.75 * pair.contact_ratio + 0.25)
@@ -115,4 +117,4 @@ def _warn_outside(x1: float, x2: float, contact_ratio: float) -> None:
     if not 1.2 <= contact_ratio <= 1.9:
         outside.append(f"contact ratio {contact_ratio:.3f} is not within 1.2 to 1.9")
     if outside:
-        warnings.warn("ISO 6336-1: " + "; ".join(outside), ModelRangeWarning, stacklevel=3)
+        warnings.warn("ISO 6336-1: " + "; ".join(outside), RangeWarning, stacklevel=3)

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from gears.closed_form.iso6336 import iso6336
-from gears.errors import Fault, GeometryError
+from base import Fault
+from gears.closed_form.tooth_stiffness import iso6336
+from gears.errors import GeometryError
 from gears.pair import GearPair
 
 _NEWTON_PER_MM_UM = 1e9  # Pa
@@ -89,19 +90,19 @@ def iso6336_dynamic(
     """
     omega = np.asarray(speed, dtype=np.float64)
     faults = [
-        Fault(name, f"{value:g}", "must be finite and positive", "Check the units")
+        Fault(name, f"{value:g}", "must be a finite number, more than 0", "Check the units")
         for name, value in (("force", force), ("reduced_mass", reduced_mass))
         if not (math.isfinite(value) and value > 0.0)
     ]
     faults += [
-        Fault(name, f"{value:g}", "must be finite and 0 or more", "Give its amount")
+        Fault(name, f"{value:g}", "must be finite and at least 0", "Give its amount")
         for name, value in (
             ("pitch_deviation", pitch_deviation), ("profile_deviation", profile_deviation), ("relief", relief),
         )
         if not (math.isfinite(value) and value >= 0.0)
     ]  # fmt: skip
     if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
-        faults.append(Fault("speed", "an entry", "must be finite and 0 or more", "Give rad/s"))
+        faults.append(Fault("speed", "an entry", "must be finite and at least 0", "Give rad/s"))
     ratio = pair.contact_ratio
     if not ratio > 1.0:
         faults.append(
