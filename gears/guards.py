@@ -180,9 +180,9 @@ def mesh_findings(pair: GearPair) -> Findings:
             if lowest < tooth.flank_rho[0] - rounding:
                 faults.append(_interference(pair, name, other, tooth, mate))
     for name, other, mate, tooth in (("pinion", "wheel", first, second), ("wheel", "pinion", second, first)):
-        clearance = pair.axis_distance - tooth.tip_radius - mate.root_radius
+        clearance = pair.working_centre_distance - tooth.tip_radius - mate.root_radius
         if clearance <= 0.0:
-            allowed = f"must be less than {pair.axis_distance - mate.root_radius:.6g} m"
+            allowed = f"must be less than {pair.working_centre_distance - mate.root_radius:.6g} m"
             remedy = f"the tip of the {other} meets the root circle of the {name}: give the {other} "
             remedy += f"a negative tip_alteration of {clearance / pair.module:.3g} or less"
             faults.append(Fault(f"{other}.tip_radius", f"{tooth.tip_radius:.6g}", allowed, remedy))
@@ -196,7 +196,7 @@ def _jam(pair: GearPair) -> Fault:
     remedy = f"the teeth jam: move the axes apart, shift the profiles less or add {allowance:.3g} m of "
     remedy += "thickness_allowance in all"
     allowed = f"must be at least {free:.6g} m for nominal teeth"
-    return Fault("centre_distance", f"{pair.axis_distance:.6g}", allowed, remedy)
+    return Fault("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
 
 
 def _interference(pair: GearPair, name: str, other: str, tooth: ToothProfile, mate: ToothProfile) -> Fault:

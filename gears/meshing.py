@@ -101,7 +101,7 @@ def _wheel_angles(pair: GearPair, points: Array, side: float) -> Array:
     an angle that never counts.
     """
     wheel = pair.teeth_profiles[1]
-    x, y = points[..., 0], pair.axis_distance - points[..., 1]
+    x, y = points[..., 0], pair.working_centre_distance - points[..., 1]
     radius = np.hypot(x, y)
     reached = (radius >= wheel.form_radius * (1.0 - 1e-12)) & (
         radius <= wheel.flank_end_radius * (1.0 + 1e-12)
@@ -155,7 +155,7 @@ def _seen_from_wheel(
     pair: GearPair, profile: ToothProfile, pinion_angle: float, wheel_angle: float, whole: bool = False
 ) -> Array:
     """Teeth of the pinion in the frame of the wheel's tooth."""
-    points = turned(_sides(profile, whole), pinion_angle) - np.array([0.0, pair.axis_distance])
+    points = turned(_sides(profile, whole), pinion_angle) - np.array([0.0, pair.working_centre_distance])
     return turned(points, -wheel_angle - math.pi)
 
 
@@ -163,7 +163,9 @@ def _seen_from_pinion(
     pair: GearPair, profile: ToothProfile, pinion_angle: float, wheel_angle: float, whole: bool = False
 ) -> Array:
     """Teeth of the wheel in the frame of the pinion's tooth."""
-    points = turned(_sides(profile, whole), wheel_angle + math.pi) + np.array([0.0, pair.axis_distance])
+    points = turned(_sides(profile, whole), wheel_angle + math.pi) + np.array(
+        [0.0, pair.working_centre_distance]
+    )
     return turned(points, -pinion_angle)
 
 

@@ -58,7 +58,7 @@ def pair_html(pair: GearPair) -> str:
     common = [
         ("module", f"{1e3 * pair.module:g} mm"),
         ("face width", f"{1e3 * pair.face_width:g} mm"),
-        ("centre distance", f"{1e3 * pair.axis_distance:.4f} mm"),
+        ("centre distance", f"{1e3 * pair.working_centre_distance:.4f} mm"),
         ("working pressure angle", f"{math.degrees(pair.working_pressure_angle):.4f} deg"),
         ("contact ratio", f"{pair.contact_ratio:.4f}"),
         ("normal backlash", f"{1e6 * pair.backlash + 0.0:.1f} µm"),

@@ -191,7 +191,7 @@ class GearPair:
         return math.atan(self._working_tangent)
 
     @cached_property
-    def axis_distance(self) -> float:
+    def working_centre_distance(self) -> float:
         """Distance of the axes, a = (r_b1 + r_b2) / cos alpha_w [m]."""
         if self.centre_distance is not None:
             return float(self.centre_distance)

@@ -98,7 +98,7 @@ def place(pair: GearPair, rho1: float) -> Placement:
     return Placement(
         pinion_angle=float(path.rho1[0]) / first.base_radius - first.base_half_angle - alpha,
         wheel_angle=math.pi + float(path.rho2[0]) / second.base_radius - second.base_half_angle - alpha,
-        wheel_centre=np.array([0.0, pair.axis_distance]),
+        wheel_centre=np.array([0.0, pair.working_centre_distance]),
         contact_point=first.base_radius * np.array([sine, cosine]) + path.rho1[0] * normal,
         normal=normal,
     )

@@ -32,7 +32,7 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
     stage = writer.component(
         "cylindrical_stage",
         title,
-        center_distance=(1e3 * pair.axis_distance, "mm"),
+        center_distance=(1e3 * pair.working_centre_distance, "mm"),
         common_face_width=_mm(pair.face_width),
     )
     gears = []

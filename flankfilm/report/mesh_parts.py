@@ -43,7 +43,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     common = [
         ("module [mm]", number(1e3 * pair.module)),
         ("face width [mm]", number(1e3 * pair.face_width)),
-        ("axis distance [mm]", number(1e3 * pair.axis_distance, 7)),
+        ("axis distance [mm]", number(1e3 * pair.working_centre_distance, 7)),
         ("working pressure angle [deg]", number(math.degrees(pair.working_pressure_angle), 6)),
         ("base pitch [mm]", number(1e3 * pair.base_pitch, 6)),
         ("contact ratio", number(pair.contact_ratio, 5)),

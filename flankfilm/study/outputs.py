@@ -150,7 +150,9 @@ _LIKE = "without hub wind-up and coupling"
 
 OUTPUTS: Mapping[str, Output] = {
     "contact_ratio": _geometry("1", "transverse contact ratio", lambda pair: pair.contact_ratio),
-    "axis_distance_mm": _geometry("mm", "distance of the axes", lambda pair: 1e3 * pair.axis_distance),
+    "axis_distance_mm": _geometry(
+        "mm", "distance of the axes", lambda pair: 1e3 * pair.working_centre_distance
+    ),
     "working_pressure_angle_deg": _geometry(
         "deg", "working pressure angle", lambda pair: np.degrees(pair.working_pressure_angle)
     ),

@@ -67,7 +67,7 @@ def test_sliding_on_the_path_is_that_of_the_path_of_contact(article_pair, held):
 def test_sliding_at_tip_edges_is_that_of_two_turning_bodies(article_pair, free):
     """Velocities of the tip and of the touched flank at one point, by their own distances from the axes."""
     radii = article_pair.base_radii
-    distance = article_pair.axis_distance
+    distance = article_pair.working_centre_distance
     for row, column in np.argwhere(free.edge):
         rho = free.flank_rho[:, row, column]
         r1, r2 = (np.hypot(base, one) for base, one in zip(radii, rho, strict=True))

@@ -72,7 +72,7 @@ def test_hub_bears_force_and_torque(article_pair, cycle, state):
 def test_hub_is_held_and_hubless_points_move(article_pair, state):
     _, fields = state
     for gear, field in enumerate(fields):
-        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.axis_distance])
+        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.working_centre_distance])
         some, _ = on_circle(field, centre, article_pair.bore_radii[gear])
         assert np.abs(field.displacement_m[some]).max() < 1e-18
         assert np.linalg.norm(field.displacement_m, axis=1).max() > 5e-6
@@ -114,7 +114,7 @@ def test_free_edges_are_free(article_pair, cycle, rings, state):
     _, fields = state
     peak = max(field.von_mises_Pa.max() for field in fields)
     for gear, field in enumerate(fields):
-        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.axis_distance])
+        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.working_centre_distance])
         some, angle = on_circle(field, centre, article_pair.tip_radii[gear])
         outward = np.stack([np.cos(angle), np.sin(angle)], axis=1)
         xx, yy, _, xy = field.stress_Pa[some].T
@@ -177,7 +177,7 @@ def test_names_and_shapes(state):
 def test_regions_are_rim_fillet_and_flank(article_pair, state):
     _, fields = state
     for gear, field in enumerate(fields):
-        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.axis_distance])
+        centre = np.zeros(2) if gear == 0 else np.array([0.0, article_pair.working_centre_distance])
         r = np.linalg.norm(field.points[field.cells[:, :3]].mean(axis=1) - centre, axis=1)
         root, form = article_pair.root_radii[gear], article_pair.form_radii[gear]
         for number, (low, high) in enumerate(((0, root), (root, form), (form, 1))):

@@ -138,7 +138,7 @@ def test_a_file_of_version_1_1_gives_its_pair(tmp_path):
     assert (pair.pinion.teeth, pair.wheel.teeth) == (17, 22)
     assert pair.module == pytest.approx(4e-3)
     assert pair.face_width == pytest.approx(50e-3)
-    assert pair.axis_distance == pytest.approx(78e-3)
+    assert pair.working_centre_distance == pytest.approx(78e-3)
     assert (pair.rack.h_fP, pair.rack.rho_fP) == (1.25, 0.25)
     assert scene.material is not None
     assert (scene.material.youngs_modulus_GPa, scene.material.density_kg_per_m3) == (210.0, 7850.0)
@@ -168,7 +168,7 @@ def test_a_pair_goes_out_and_comes_back(tmp_path):
     assert back.wheel == PAIR.wheel
     assert back.rack.alpha == pytest.approx(PAIR.rack.alpha, rel=1e-14)
     assert (back.rack.h_aP, back.rack.h_fP, back.rack.rho_fP) == (1.05, 1.35, 0.3)
-    assert back.axis_distance == pytest.approx(PAIR.axis_distance, rel=1e-13)
+    assert back.working_centre_distance == pytest.approx(PAIR.working_centre_distance, rel=1e-13)
     assert [m.youngs_modulus for m in back.materials] == pytest.approx([210e9, 113e9])
     for own, theirs in zip(PAIR.teeth_profiles, back.teeth_profiles, strict=True):
         assert theirs.tip_radius == pytest.approx(own.tip_radius, rel=1e-12)

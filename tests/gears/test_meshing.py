@@ -28,7 +28,10 @@ def test_flanks_keep_the_ratio_and_nothing_interferes(name):
     assert found.back_clearance == pytest.approx(pair.backlash, abs=1e-13)
     assert found.overlap < 1e-12
     assert min(found.tip_clearances) > 0
-    widest = [pair.axis_distance - t - r for t, r in zip(pair.tip_radii, pair.root_radii[::-1], strict=True)]
+    widest = [
+        pair.working_centre_distance - t - r
+        for t, r in zip(pair.tip_radii, pair.root_radii[::-1], strict=True)
+    ]
     assert all(c <= w + 1e-12 for c, w in zip(found.tip_clearances, widest, strict=True))
 
 
@@ -44,7 +47,7 @@ def test_the_check_sees_a_wrong_flank(monkeypatch, article_pair):
     true = meshing._wheel_angles
 
     def bent(pair, points, side):
-        radius = np.hypot(points[..., 0], pair.axis_distance - points[..., 1])
+        radius = np.hypot(points[..., 0], pair.working_centre_distance - points[..., 1])
         return true(pair, points, side) + 1e-9 / 0.04 * (radius / 0.04 - 1)
 
     monkeypatch.setattr(meshing, "_wheel_angles", bent)

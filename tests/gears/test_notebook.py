@@ -31,7 +31,7 @@ def test_a_pair_shows_its_data_and_its_teeth(teeth):
         f"{teeth[0]}",
         f"{teeth[1]}",
         f"{pair.contact_ratio:.4f}",
-        f"{1e3 * pair.axis_distance:.4f} mm",
+        f"{1e3 * pair.working_centre_distance:.4f} mm",
     ):
         assert shown in text
     paths = [element.get("d") for element in tree.iter("path")]

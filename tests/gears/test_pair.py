@@ -35,7 +35,7 @@ def sound_pair(z1, z2, x1=0.0, x2=0.0, **more):
 def test_path_identities(z1, z2, x1, x2):
     pair = sound_pair(z1, z2, x1, x2)
     path, points = pair.path_of_contact(13), pair.points
-    total = pair.axis_distance * math.sin(pair.working_pressure_angle)
+    total = pair.working_centre_distance * math.sin(pair.working_pressure_angle)
     assert np.allclose(path.rho1 + path.rho2, total, rtol=1e-12)
     assert path.rho1[0] == points.A
     assert path.rho1[-1] == points.E
@@ -43,7 +43,7 @@ def test_path_identities(z1, z2, x1, x2):
     assert path.position[0] == 0.0
     assert math.isclose(points.B, points.E - pair.base_pitch)
     assert math.isclose(points.D, points.A + pair.base_pitch)
-    assert sum(pair.pitch_radii) == pytest.approx(pair.axis_distance)
+    assert sum(pair.pitch_radii) == pytest.approx(pair.working_centre_distance)
     assert pair.pitch_radii[1] / pair.pitch_radii[0] == pytest.approx(pair.ratio)
     assert path.radii[1][0] == pytest.approx(pair.tip_radii[1])
     assert path.radii[0][-1] == pytest.approx(pair.tip_radii[0])
@@ -76,7 +76,7 @@ def test_working_angle_leaves_no_backlash(z1, z2, x1, x2):
 @given(numbers, numbers, shift, shift, st.floats(0.0, 0.2))
 def test_centre_distance_and_allowance_give_the_backlash_of_the_teeth(z1, z2, x1, x2, apart):
     nominal = sound_pair(z1, z2, x1, x2)
-    pair = sound_pair(z1, z2, x1, x2, centre_distance=nominal.axis_distance + apart * 2e-3)
+    pair = sound_pair(z1, z2, x1, x2, centre_distance=nominal.working_centre_distance + apart * 2e-3)
     pair = pair.with_backlash(pair.backlash + 1e-5)
     alpha = pair.working_pressure_angle
     thickness = sum(
@@ -97,7 +97,7 @@ def test_placed_flanks_touch_with_opposite_normals(z1, z2, x1, x2, where):
     assert np.allclose(placed.wheel(mirrored(second.involute(path.rho2))), placed.contact_point, atol=1e-14)
     assert np.allclose(placed.pinion_direction(mirrored(first.normal(path.rho1))), placed.normal, atol=1e-13)
     assert np.allclose(placed.wheel_direction(mirrored(second.normal(path.rho2))), -placed.normal, atol=1e-13)
-    assert np.allclose(placed.wheel_centre, [0, pair.axis_distance])
+    assert np.allclose(placed.wheel_centre, [0, pair.working_centre_distance])
 
 
 def test_the_loaded_pinion_turns_anticlockwise_and_pushes_the_wheel_clockwise(article_pair):
@@ -122,7 +122,7 @@ def test_swapping_the_gears_mirrors_the_path():
 
 def test_everything_scales_with_the_module():
     small, large = (GearPair(Gear(20, 0.3), Gear(51), m, 0.03) for m in (1e-3, 8e-3))
-    assert large.axis_distance == pytest.approx(8 * small.axis_distance)
+    assert large.working_centre_distance == pytest.approx(8 * small.working_centre_distance)
     assert large.contact_ratio == pytest.approx(small.contact_ratio, rel=1e-12)
 
 
