@@ -5,12 +5,12 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from base import Array, Fault, Faults, Limit
+from base import Array, Fault, Faults, Figure, Limit, described
 from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
 from gears.guards import Findings, gear_findings, mesh_findings
@@ -73,8 +73,8 @@ class GearPair:
 
     pinion: Gear
     wheel: Gear
-    module: float  # m, m
-    face_width: float  # b, m
+    module: float = field(metadata={"figure": Figure("m", "module", shown="mm")})  # m, m
+    face_width: float = field(metadata={"figure": Figure("m", "face width", shown="mm")})  # b, m
     rack: BasicRack = ISO_53_A
     material: Material | tuple[Material, Material] = STEEL
     centre_distance: float | None = None  # a, m
@@ -128,44 +128,51 @@ class GearPair:
         return first, second
 
     @property
+    @described("m", "gear", shown="mm")
     def reference_radii(self) -> tuple[float, float]:
-        """Reference radii r = m z / 2 of pinion and wheel [m]."""
+        """Reference radius, r = m z / 2."""
         first, second = self.teeth_profiles
         return first.reference_radius, second.reference_radius
 
     @property
+    @described("m", "gear", shown="mm")
     def base_radii(self) -> tuple[float, float]:
-        """Base radii r_b = r cos alpha [m]."""
+        """Base radius, r_b = r cos alpha."""
         first, second = self.teeth_profiles
         return first.base_radius, second.base_radius
 
     @property
+    @described("m", "gear", shown="mm")
     def root_radii(self) -> tuple[float, float]:
-        """Root radii r_f = r - m (h_fP - x) [m]."""
+        """Root radius, r_f = r - m (h_fP - x)."""
         first, second = self.teeth_profiles
         return first.root_radius, second.root_radius
 
     @property
+    @described("m", "gear", shown="mm")
     def tip_radii(self) -> tuple[float, float]:
-        """Tip radii r_a = r + m (h_aP + x + k) [m]."""
+        """Tip radius, r_a = r + m (h_aP + x + k)."""
         first, second = self.teeth_profiles
         return first.tip_radius, second.tip_radius
 
     @property
+    @described("m", "gear", shown="mm")
     def form_radii(self) -> tuple[float, float]:
-        """Radii at which the involutes start [m]."""
+        """Form radius, at which the involute starts."""
         first, second = self.teeth_profiles
         return first.form_radius, second.form_radius
 
     @property
+    @described("m", "gear", shown="mm")
     def bore_radii(self) -> tuple[float, float]:
-        """Radii of the bores, half the root radius where none was given [m]."""
+        """Bore radius, half the root radius where none was given."""
         first, second = self.teeth_profiles
         return first.bore_radius, second.bore_radius
 
     @property
+    @described("1")
     def ratio(self) -> float:
-        """Gear ratio z2 / z1."""
+        """Gear ratio, z2 / z1."""
         return self.wheel.teeth / self.pinion.teeth
 
     @cached_property
@@ -186,32 +193,37 @@ class GearPair:
         return 2.0 * shifts / teeth * tangent + float(involute_function(tangent))
 
     @property
+    @described("rad", shown="deg")
     def working_pressure_angle(self) -> float:
-        """alpha_w [rad]."""
+        """Working pressure angle, alpha_w."""
         return math.atan(self._working_tangent)
 
     @cached_property
+    @described("m", shown="mm")
     def working_centre_distance(self) -> float:
-        """Distance of the axes, a = (r_b1 + r_b2) / cos alpha_w [m]."""
+        """Centre distance, a = (r_b1 + r_b2) / cos alpha_w."""
         if self.centre_distance is not None:
             return float(self.centre_distance)
         return sum(self.base_radii) * math.hypot(1.0, self._working_tangent)
 
     @property
+    @described("m", shown="mm")
     def line_of_action(self) -> float:
-        """Distance of the base circles' tangent points, rho1 + rho2 = a sin alpha_w [m]."""
+        """Line of action, between the base circles' tangent points: rho1 + rho2 = a sin alpha_w."""
         return sum(self.base_radii) * self._working_tangent
 
     @property
+    @described("m", "gear", shown="mm")
     def pitch_radii(self) -> tuple[float, float]:
-        """Working pitch radii r_b / cos alpha_w [m]."""
+        """Working pitch radius, r_b / cos alpha_w."""
         first, second = self.base_radii
         scale = math.hypot(1.0, self._working_tangent)
         return first * scale, second * scale
 
     @property
+    @described("m", shown="mm")
     def base_pitch(self) -> float:
-        """Base pitch p_b = pi m cos alpha [m]."""
+        """Base pitch, p_b = pi m cos alpha."""
         return math.pi * self.module * math.cos(self.rack.alpha)
 
     @cached_property
@@ -224,16 +236,17 @@ class GearPair:
         return PathPoints(A=start, B=end - self.base_pitch, C=pitch, D=start + self.base_pitch, E=end)
 
     @property
+    @described("1")
     def contact_ratio(self) -> float:
         """Transverse contact ratio, length of the path over the base pitch."""
         return (self.points.E - self.points.A) / self.base_pitch
 
     @cached_property
+    @described("m", shown="um")
     def backlash(self) -> float:
-        """Normal backlash along the line of action.
+        """Normal backlash, along the line of action.
 
-        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha
-        [m].
+        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha.
         """
         thinning = self.pinion.thickness_allowance + self.wheel.thickness_allowance
         return self._nominal_backlash + thinning * math.cos(self.rack.alpha)
