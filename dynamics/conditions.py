@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from dynamics.corrector import OrbitProblem, Point, rounding
+from dynamics.oscillator import GearOscillator
+from dynamics.special import SpecialPoint
 
 __all__ = ["Condition", "special_orbit"]
 
@@ -34,6 +37,14 @@ class Condition:
     boundary: int = 0
     kindred: int = 0
     phase: float = 0.0
+
+    @classmethod
+    def of(cls, here: GearOscillator, point: SpecialPoint) -> Condition:
+        """Condition that a special point meets, `here` the oscillator with the point's parameter value."""
+        if point.kind != "grazing":
+            return cls(point.kind, point.boundary)
+        phase = 0.0 if math.isnan(point.tau) else (point.tau / (point.periods * here.period)) % 1.0
+        return cls(point.kind, point.boundary, int(np.sign(point.acceleration)), phase)
 
     def nearest(self, point: Point) -> int:
         """Extremum that is meant; -1 if there is none."""

@@ -187,7 +187,7 @@ def diagram(
         if not found.converged and any(c.expected is not None for c in found.counts):
             unsure.append(value)
         for orbit in found.orbits:
-            if not builder.holds(orbit, value):
+            if not builder.holds(orbit):
                 builder.follow(orbit, Origin(None, value))
     if steps:
         met = multi_sweep(
@@ -203,7 +203,7 @@ def _follow_met(builder: Gathering, met: MultiSweep) -> None:
     for motion in (m for here in met.motions for m in here if 0 < m.periods <= builder.longest):
         here = builder.oscillator.with_parameter(builder.parameter, motion.value)
         orbit = find_orbit(here, motion.states[-1], periods=motion.periods)
-        if orbit.converged and not builder.holds(orbit, motion.value):
+        if orbit.converged and not builder.holds(orbit):
             builder.follow(orbit, Origin(None, motion.value))
 
 

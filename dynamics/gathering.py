@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.branch import MEETS, Branch
 from dynamics.conditions import Condition, special_orbit
@@ -15,11 +14,10 @@ from dynamics.corrector import OrbitProblem
 from dynamics.flow import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit
+from dynamics.states import apart, scale_of
 from dynamics.switching import doubled_orbit
 
-__all__ = ["Gathering", "Origin"]
-
-FloatArray = npt.NDArray[np.float64]
+__all__ = ["Gathering", "Origin", "lies_on"]
 
 
 @dataclass(frozen=True)
@@ -44,20 +42,38 @@ class Origin:
         return f"period doubling of branch {self.parent} at {self.value:.10g}"
 
 
+@dataclass
 class Gathering:
-    """Branches so far, how each was come by, and what was left out."""
+    """Branches so far, how each was come by, and what was left out.
 
-    def __init__(
-        self, oscillator: GearOscillator, parameter: str, bounds: tuple[float, float], longest: int, most: int,
-        max_step: float, progress: Callable[[int, str], None] | None,
-    ) -> None:  # fmt: skip
-        self.oscillator, self.parameter, self.bounds = oscillator, parameter, bounds
-        self.longest, self.most, self.max_step, self.progress = longest, most, max_step, progress
-        self.branches: list[Branch] = []
-        self.origins: list[Origin] = []
-        self.left_out: list[str] = []
-        self.ends: list[tuple[int, float]] = []
-        self.periods = 0
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        What moves; its value of the parameter is not used.
+    parameter : str
+        What is varied.
+    bounds : tuple of float
+        Its range.
+    longest, most : int
+        Longest period and number of branches that are followed.
+    max_step : float
+        Largest step along a branch.
+    progress : callable, optional
+        Called with the number of branches and what is done next.
+    """
+
+    oscillator: GearOscillator
+    parameter: str
+    bounds: tuple[float, float]
+    longest: int
+    most: int
+    max_step: float
+    progress: Callable[[int, str], None] | None = None
+    branches: list[Branch] = field(default_factory=list)
+    origins: list[Origin] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    ends: list[tuple[int, float]] = field(default_factory=list)
+    periods: int = 0
 
     def follow(self, orbit: Orbit, origin: Origin) -> None:
         """Follow an orbit, and then the branches that its period doublings lead to."""
@@ -65,14 +81,11 @@ class Gathering:
         while waiting:
             start, source = waiting.pop(0)
             value = start.oscillator.get(self.parameter)
-            if source.parent is not None and self._taken(start.periods, source.value):
-                continue
-            if self.holds(start, value):
+            taken = source.parent is not None and self._taken(start.periods, source.value)
+            if taken or self.holds(start):
                 continue
             if len(self.branches) >= self.most:
-                self.left_out.append(
-                    f"{start.label} at {value:.10g}: {self.most} branches, raise max_branches"
-                )
+                self._leave_out(start.label, value, f"{self.most} branches, raise max_branches")
                 continue
             if self.progress is not None:
                 self.progress(len(self.branches), f"{start.label} {source}")
@@ -82,21 +95,25 @@ class Gathering:
             self.origins.append(source)
             mine = len(self.branches) - 1
             self._note_ends(branch)
-            for point in branch.special("period-doubling"):
-                if self._taken(2 * point.periods, point.parameter):
-                    continue
-                if 2 * point.periods > self.longest:
-                    self.left_out.append(
-                        f"period doubling of {point.label} at {point.parameter:.10g}: beyond max_period"
-                    )
-                    continue
-                doubled = doubled_orbit(self.oscillator, self.parameter, point, self.bounds)
-                if doubled is None:
-                    self.left_out.append(
-                        f"period doubling of {point.label} at {point.parameter:.10g}: no doubled orbit found"
-                    )
-                else:
-                    waiting.append((doubled, Origin(mine, point.parameter)))
+            waiting += [(o, Origin(mine, value)) for o, value in self._doubled(branch)]
+
+    def _doubled(self, branch: Branch) -> Iterator[tuple[Orbit, float]]:
+        """Orbits of twice the period that leave a branch, with the parameters of their period doublings."""
+        for point in branch.special("period-doubling"):
+            if self._taken(2 * point.periods, point.parameter):
+                continue
+            name = f"period doubling of {point.label}"
+            if 2 * point.periods > self.longest:
+                self._leave_out(name, point.parameter, "beyond max_period")
+                continue
+            orbit = doubled_orbit(self.oscillator, self.parameter, point, self.bounds)
+            if orbit is None:
+                self._leave_out(name, point.parameter, "no doubled orbit found")
+            else:
+                yield orbit, point.parameter
+
+    def _leave_out(self, name: str, value: float, why: str) -> None:
+        self.left_out.append(f"{name} at {value:.10g}: {why}")
 
     def _note_ends(self, branch: Branch) -> None:
         """Note the period doublings at which a branch ends, so that it is not followed from its other end."""
@@ -107,7 +124,7 @@ class Gathering:
                 continue
             state, value = branch.states[k], float(branch.values[k])
             half = period_map(self.oscillator.with_parameter(self.parameter, value), state, n).state
-            scale = max(float(np.max(np.abs(state))), self.oscillator.half_backlash, 1e-300)
+            scale = scale_of(self.oscillator, state)
             problem = OrbitProblem(self.oscillator, (self.parameter,), n, low, high, scale)
             guess = problem.unknowns(0.5 * (state + half), value)
             point = special_orbit(problem, Condition("period-doubling"), guess)
@@ -125,30 +142,37 @@ class Gathering:
         near = 1e-7 * (self.bounds[1] - self.bounds[0])
         return any(periods == n and abs(end - value) < near for n, end in self.ends)
 
-    def holds(self, orbit: Orbit, value: float) -> bool:
+    def holds(self, orbit: Orbit) -> bool:
         """Tell whether an orbit lies on one of the branches."""
-        points = period_map(orbit.oscillator, orbit.state, orbit.periods).states
-        return any(
-            self._on(branch, points, value) for branch in self.branches if branch.periods == orbit.periods
-        )
+        return any(lies_on(branch, orbit, self.bounds) for branch in self.branches)
 
-    def _on(self, branch: Branch, points: FloatArray, value: float) -> bool:
-        """Tell whether a branch passes through one of the points of an orbit at a value."""
-        off = branch.values - value
-        scale = max(float(np.max(np.abs(branch.states))), 1e-300)
-        low, high = (np.array([b]) for b in self.bounds)
-        problem = OrbitProblem(self.oscillator, (self.parameter,), branch.periods, low, high, scale)
-        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
-            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
-            guess = branch.states[i] + share * (branch.states[i + 1] - branch.states[i])
-            chord = float(np.max(np.abs(branch.states[i + 1] - branch.states[i])))
-            near = float(np.min(np.max(np.abs(points - guess), axis=1)))
-            if near > 2.0 * chord + 1e-3 * scale:
-                continue
-            there = problem.correct(problem.unknowns(guess, value), np.array([0.0, 0.0, 1.0]))
-            if (
-                there is not None
-                and float(np.min(np.max(np.abs(points - there.state), axis=1))) < 1e-7 * scale
-            ):
-                return True
+
+def lies_on(branch: Branch, orbit: Orbit, bounds: tuple[float, float]) -> bool:
+    """Tell whether a branch passes through an orbit, perhaps from another period on.
+
+    Parameters
+    ----------
+    branch : Branch
+        The branch.
+    orbit : Orbit
+        The orbit, at its own value of the branch's parameter.
+    bounds : tuple of float
+        Range of that parameter.
+    """
+    if branch.periods != orbit.periods:
         return False
+    value, points = orbit.oscillator.get(branch.parameter), orbit.points
+    off = branch.values - value
+    scale = max(float(np.max(np.abs(branch.states))), 1e-300)
+    low, high = (np.array([b]) for b in bounds)
+    problem = OrbitProblem(orbit.oscillator, (branch.parameter,), branch.periods, low, high, scale)
+    for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
+        share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
+        chord = branch.states[i + 1] - branch.states[i]
+        guess = branch.states[i] + share * chord
+        if apart(guess, points) > 2.0 * float(np.max(np.abs(chord))) + 1e-3 * scale:
+            continue
+        there = problem.correct(problem.unknowns(guess, value), np.array([0.0, 0.0, 1.0]))
+        if there is not None and apart(there.state, points) < 1e-7 * scale:
+            return True
+    return False

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Faults
-from dynamics.conditions import Condition
-from dynamics.corrector import OrbitProblem
 from dynamics.flow import trajectory
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
+from dynamics.tracking import marked
 
 __all__ = ["ForceRange", "force_range", "special_sensitivities"]
 
@@ -51,27 +50,9 @@ def special_sensitivities(
     InputError
         If there is no such parameter.
     """
-    here = oscillator.with_parameter(parameter, point.parameter)
-    wanted = [n for n in (here.parameters if names is None else names) if n != parameter]
-    scale = max(float(np.max(np.abs(point.state))), here.half_backlash, 1e-300)
-    phase = 0.0 if np.isnan(point.tau) else (point.tau / (point.periods * here.period)) % 1.0
-    kindred = 0 if point.kind != "grazing" else int(np.sign(point.acceleration))
-    condition = Condition(point.kind, point.boundary, kindred, phase)
-    found = {}
-    for name in wanted:
-        value = here.get(name)
-        low, high = np.array([point.parameter, value]), np.array([point.parameter + 1.0, value + 1.0])
-        problem = OrbitProblem(here, (parameter, name), point.periods, low, high, scale)
-        at = problem.evaluate(problem.unknowns(point.state, low))
-        found[name] = np.nan
-        if at is None:
-            continue
-        rows = np.array([*(at.derivative - np.eye(2, 4)), condition.gradient(problem, at)])
-        try:
-            found[name] = float(-np.linalg.solve(rows[:, :3], rows[:, 3])[2])
-        except np.linalg.LinAlgError:
-            continue
-    return found
+    mark = marked(oscillator, parameter, point)
+    wanted = [n for n in (oscillator.parameters if names is None else names) if n != parameter]
+    return dict(zip(wanted, mark.slopes(wanted)[2].tolist(), strict=True))
 
 
 @dataclass(frozen=True)

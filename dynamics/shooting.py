@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -76,6 +77,11 @@ class Orbit:
     message: str
     history: tuple[float, ...]
     nodes: FloatArray
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """X and V after each excitation period, shape (periods, 2)."""
+        return period_map(self.oscillator, self.state, self.periods).states
 
     @property
     def determinant(self) -> float:

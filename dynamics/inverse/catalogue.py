@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,22 +11,22 @@ import numpy as np
 from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
 from dynamics.finding import find_orbits
-from dynamics.flow import period_map
+from dynamics.gathering import lies_on
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
+from dynamics.inverse.refinement import Fit
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
 from dynamics.sweeps import rest_state
 from dynamics.switching import doubled_orbit
+from dynamics.tracking import marked
 
-__all__ = ["CAPTURE", "CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
+__all__ = ["CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
 
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
 STEP = 0.05  # largest step along a branch
-CAPTURE = (
-    0.02  # of the range: within it a point of the kind and label makes a search around the event needless
-)
+CAPTURE = 0.02  # of the range: a point of the kind and label so near makes a search around the event needless
 BESIDE = (0.002, 0.015)  # of the range: how far beside an event its orbit is searched for
 LONGEST = 4  # period searched for where an event does not say
 CONTACT, DOUBLED, EVERY = 0, 1, 2
@@ -77,8 +78,11 @@ class Catalogue:
             if not any(self._near(p, event) for branch in found for p in branch.points):
                 found += self._around(here, event, found)
         lines: list[Line] = []
+        known: list[SpecialPoint] = []
         for branch in found:
-            lines = _added(lines, branch, self.problem.width)
+            new = tuple(p for p in branch.points if not any(_same(p, q, self.problem.width) for q in known))
+            lines += [new] if new else []
+            known += new
         return lines
 
     def partners(
@@ -87,6 +91,17 @@ class Catalogue:
         """Special points and those that the events are."""
         lines = self.lines(here, depth)
         return lines, match(lines, self.problem.events, self.problem.width)
+
+    def misfit(self, here: GearOscillator, depth: int, rows: Sequence[int] | None = None) -> float:
+        """Sum of the losses of these events, of the fitted ones if none are named."""
+        _, partners = self.partners(here, depth)
+        return self.problem.misfit([math.nan if p is None else p.parameter for p in partners], rows)
+
+    def start(self, here: GearOscillator, depth: int) -> tuple[list[Line], Fit]:
+        """Special points, and the events' among them to fit to."""
+        lines, partners = self.partners(here, depth)
+        marks = (None if p is None else marked(here, self.problem.parameter, p) for p in partners)
+        return lines, Fit(self.problem, here, tuple(marks))
 
     def follow(
         self, orbit: Orbit | None, name: str | None = None, bounds: tuple[float, float] | None = None
@@ -115,26 +130,10 @@ class Catalogue:
 
     def _new(self, orbit: Orbit, known: list[Branch]) -> list[Branch]:
         """Branch through an orbit, if it lies on none of those known."""
-        if not orbit.converged or any(self._holds(branch, orbit) for branch in known):
+        if not orbit.converged or any(lies_on(branch, orbit, self.problem.bounds) for branch in known):
             return []
         branch = self.follow(orbit)
         return [] if branch is None else [branch]
-
-    def _holds(self, branch: Branch, orbit: Orbit) -> bool:
-        """Tell whether a branch passes through an orbit: where it passes the value, Newton's method is started."""
-        if branch.periods != orbit.periods:
-            return False
-        value = orbit.oscillator.get(self.problem.parameter)
-        states = period_map(orbit.oscillator, orbit.state, orbit.periods).states
-        scale = max(float(np.max(np.abs(states))), 1e-300)
-        off = branch.values - value
-        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
-            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
-            guess = branch.states[i] + share * (branch.states[i + 1] - branch.states[i])
-            there = find_orbit(orbit.oscillator, guess, periods=branch.periods, max_iterations=12)
-            if there.converged and float(np.min(np.max(np.abs(states - there.state), axis=1))) < 1e-7 * scale:
-                return True
-        return False
 
     def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
         start = here.with_parameter(self.problem.parameter, value)
@@ -187,10 +186,3 @@ def _same(a: SpecialPoint, b: SpecialPoint, width: float) -> bool:
     touch = math.isnan(a.acceleration) or abs(a.acceleration - b.acceleration) <= 1e-6 * abs(a.acceleration)
     multipliers = np.allclose(a.multipliers, b.multipliers, rtol=1e-5, atol=1e-5)
     return near and a.kind == b.kind and a.periods == b.periods and touch and bool(multipliers)
-
-
-def _added(lines: list[Line], branch: Branch, width: float) -> list[Line]:
-    """Lines with the points of a branch that are not there yet."""
-    known = [p for line in lines for p in line]
-    new = [p for p in branch.points if not any(_same(p, q, width) for q in known)]
-    return [*lines, tuple(new)] if new else lines

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from base import Faults, Limit
+from base import Array, Faults, Limit
 from dynamics.branch import KINDS
 from dynamics.limits import NUMBER
 from dynamics.oscillator import GearOscillator
@@ -78,6 +79,22 @@ class Event:
         """Tell whether a label, stable or not, is the one meant."""
         parts = label.removeprefix("U").split("-")
         return all(mine in ("*", theirs) for mine, theirs in zip(self.fields, parts, strict=True))
+
+    def loss(self, found: float, width: float) -> float:
+        r"""What a difference costs: :math:`t \ln(1 + |\mu - \mu_e| / u)`, no partner as much as the whole width.
+
+        The logarithm is, but for a constant, minus that of a density :math:`1 / (u + |\mu - \mu_e|)`: small errors are
+        likely, errors of any order of magnitude are possible. So one misprint costs a bounded amount.
+
+        Parameters
+        ----------
+        found : float
+            Computed value; nan if there is none.
+        width : float
+            Range of the parameter.
+        """
+        off = width if math.isnan(found) else min(abs(found - self.value), width)
+        return self.trust * math.log1p(off / self.unit)
 
 
 @dataclass(frozen=True)
@@ -164,6 +181,26 @@ class Problem:
     def fitted(self) -> tuple[int, ...]:
         """Indices of the events that may be used."""
         return tuple(i for i, event in enumerate(self.events) if event.fitted)
+
+    @cached_property
+    def printed(self) -> Array:
+        """Value of each event."""
+        return np.array([event.value for event in self.events])
+
+    @cached_property
+    def units(self) -> Array:
+        """Unit of the last decimal of each event."""
+        return np.array([event.unit for event in self.events])
+
+    @cached_property
+    def trust(self) -> Array:
+        """Weight of each event."""
+        return np.array([event.trust for event in self.events])
+
+    def misfit(self, found: Sequence[float], rows: Iterable[int] | None = None) -> float:
+        """Sum of the losses of events (the fitted ones if none are named) with computed values, nan for none."""
+        wanted = self.fitted if rows is None else rows
+        return math.fsum(self.events[i].loss(found[i], self.width) for i in wanted)
 
 
 def checked(

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
 
 from base import Cost, Faults, Stopwatch
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import Event, Problem, Unknown, checked
-from dynamics.inverse.matching import loss
 from dynamics.inverse.reduction import PLAY, Reduction, reduced, scaled
-from dynamics.inverse.refinement import Fit, difference, fit
+from dynamics.inverse.refinement import Fit, fit
 from dynamics.inverse.report import Identification
 from dynamics.inverse.scan import Trial, anchored, ranked, scan, solved_name
 from dynamics.inverse.scoring import by_chance, probabilities
 from dynamics.inverse.solution import Solution, distinct, identification, solution
-from dynamics.inverse.tracking import marked
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["identify"]
@@ -122,9 +121,7 @@ def _refined(catalogue: Catalogue, scanned: Sequence[Trial], trials: int) -> lis
     fits: list[Fit] = []
     for trial in scanned[:REFINED]:
         fits.append(_settled(catalogue, trial.oscillator, depth))
-        chance = probabilities(
-            problem, [], [difference(problem, fits[-1].marks, i) for i in range(len(problem.events))]
-        )
+        chance = probabilities(problem, [], fits[-1].off)
         if by_chance(problem, chance, len(problem.unknowns), trials) < CLEAR:
             break
     return sorted(fits, key=lambda f: f.misfit)
@@ -132,18 +129,15 @@ def _refined(catalogue: Catalogue, scanned: Sequence[Trial], trials: int) -> lis
 
 def _settled(catalogue: Catalogue, start: GearOscillator, depth: int) -> Fit:
     """Match and fit in turn until the partners stay the same."""
-    problem = catalogue.problem
-    names = tuple(problem.unknowns)
+    names = tuple(catalogue.problem.unknowns)
     here, best = start, None
-    before: tuple[float | None, ...] = ()
+    before = np.empty(0)
     for _ in range(ROUNDS):
-        _, partners = catalogue.partners(here, depth)
-        marks = [None if p is None else marked(here, problem.parameter, p) for p in partners]
-        found = fit(problem, names, here, marks)
+        found = fit(catalogue.start(here, depth)[1], names)
         if best is None or found.misfit < best.misfit:
             best = found
-        now = tuple(None if m is None else round(m.value, 10) for m in found.marks)
-        if now == before:
+        now = np.round(found.values, 10)
+        if np.array_equal(now, before, equal_nan=True):
             break
         here, before = found.oscillator, now
     assert best is not None
@@ -156,12 +150,10 @@ def _completed(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
     if reduction.play is not None:
         here = _with_play(catalogue, reduction, here)
     here = reduction.whole(here)
-    names = reduction.names
-    problem = dataclasses.replace(
-        reduction.problem, oscillator=here, unknowns={n: reduction.problem.unknowns[n] for n in names}
-    )
+    unknowns = {n: reduction.problem.unknowns[n] for n in reduction.names}
+    problem = dataclasses.replace(reduction.problem, oscillator=here, unknowns=unknowns)
     whole = Catalogue(problem, catalogue.tally)
-    return solution(whole, _settled(whole, here, EVERY), trials)
+    return solution(whole, _settled(whole, here, EVERY).oscillator, trials)
 
 
 def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator) -> GearOscillator:
@@ -172,19 +164,13 @@ def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
     here = dataclasses.replace(start, one_sided=False)
     problem = Problem(here, whole.parameter, events, {PLAY: reduction.play}, whole.bounds)
     search = Catalogue(problem, catalogue.tally)
-    best: tuple[float, GearOscillator] | None = None
+    tried: list[Trial] = []
     for anchor in ranked(problem)[:PLAYS]:
-        for there in anchored(search, here, events[anchor], PLAY):
-            _, partners = search.partners(there, EVERY)
-            misfit = math.fsum(
-                loss(e, math.nan if p is None else p.parameter, problem.width)
-                for e, p in zip(events, partners, strict=True)
-            )
-            if best is None or misfit < best[0]:
-                best = misfit, there
-        if best is not None and len(events) == 1:
+        met = anchored(search, here, events[anchor], PLAY)
+        tried += [Trial(search.misfit(there, EVERY), there) for there in met]
+        if tried and len(events) == 1:
             break
-    found = here if best is None else best[1]
+    found = min(tried, key=lambda trial: trial.misfit).oscillator if tried else here
     return (
         scaled(found, whole.oscillator.half_backlash / found.half_backlash) if reduction.rescaled else found
     )

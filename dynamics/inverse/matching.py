@@ -11,30 +11,11 @@ import numpy.typing as npt
 from dynamics.inverse.events import Event
 from dynamics.special import SpecialPoint
 
-__all__ = ["Line", "loss", "match"]
+__all__ = ["Line", "match"]
 
 FloatArray = npt.NDArray[np.float64]
 Line = Sequence[SpecialPoint]  # special points of one branch, in their order along it
 Partners = tuple[SpecialPoint | None, ...]
-
-
-def loss(event: Event, found: float, width: float) -> float:
-    r"""What a difference costs: :math:`t \ln(1 + |\mu - \mu_e| / u)`, no partner as much as the whole width.
-
-    The logarithm is, but for a constant, minus that of a density :math:`1 / (u + |\mu - \mu_e|)`: small errors are
-    likely, errors of any order of magnitude are possible. So one misprint costs a bounded amount.
-
-    Parameters
-    ----------
-    event : Event
-        Its value, unit u and trust t.
-    found : float
-        Computed value; nan if there is none.
-    width : float
-        Range of the parameter.
-    """
-    off = width if math.isnan(found) else min(abs(found - event.value), width)
-    return event.trust * math.log1p(off / event.unit)
 
 
 def match(lines: Sequence[Line], events: Sequence[Event], width: float) -> Partners:
@@ -85,19 +66,19 @@ def _ordered(events: list[Event], points: list[SpecialPoint], width: float) -> t
     m, n = len(events), len(points)
     total = np.zeros((m + 1, n + 1))
     for i, event in enumerate(events):
-        total[i + 1, 0] = total[i, 0] + loss(event, math.nan, width)
+        total[i + 1, 0] = total[i, 0] + event.loss(math.nan, width)
         for j, point in enumerate(points):
             total[i + 1, j + 1] = min(
                 total[i + 1, j],
-                total[i, j + 1] + loss(event, math.nan, width),
-                total[i, j] + (loss(event, point.parameter, width) if event.fits(point) else math.inf),
+                total[i, j + 1] + event.loss(math.nan, width),
+                total[i, j] + (event.loss(point.parameter, width) if event.fits(point) else math.inf),
             )
     partners: list[SpecialPoint | None] = [None] * m
     i, j = m, n
     while i > 0 and j > 0:
         if total[i, j] == total[i, j - 1]:
             j -= 1
-        elif total[i, j] == total[i - 1, j] + loss(events[i - 1], math.nan, width):
+        elif total[i, j] == total[i - 1, j] + events[i - 1].loss(math.nan, width):
             i -= 1
         else:
             partners[i - 1] = points[j - 1]
@@ -114,9 +95,9 @@ def _freely(events: list[Event], points: list[SpecialPoint], width: float) -> Pa
     never = 1e6
     cost = np.full((len(events), len(points) + len(events)), never)
     for i, event in enumerate(events):
-        cost[i, len(points) + i] = loss(event, math.nan, width) + 1e-9
+        cost[i, len(points) + i] = event.loss(math.nan, width) + 1e-9
         for j, point in enumerate(points):
             if event.fits(point):
-                cost[i, j] = loss(event, point.parameter, width)
+                cost[i, j] = event.loss(point.parameter, width)
     _, columns = linear_sum_assignment(cost)
     return tuple(points[j] if j < len(points) else None for j in columns.tolist())

@@ -6,18 +6,17 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array
 from dynamics.inverse.events import Problem
-from dynamics.inverse.matching import loss
-from dynamics.inverse.tracking import Mark
 from dynamics.oscillator import GearOscillator
+from dynamics.tracking import Mark
 
-__all__ = ["OUTLIER", "Fit", "agreement", "difference", "fit", "misfit", "moved", "refit", "sensitivity"]
+__all__ = ["OUTLIER", "Fit", "agreement", "fit", "moved", "refit"]
 
-FloatArray = npt.NDArray[np.float64]
 LEFT_OUT = 2  # events that are left out together when a fit of all is no good
 TRIED = 6  # such choices that are followed up
 CLOSE = 10.0  # units of the last decimal within which an event is met
@@ -31,23 +30,65 @@ class Fit:
 
     Parameters
     ----------
+    problem : Problem
+        Events and ranges.
     oscillator : GearOscillator
         The parameters.
     marks : tuple of Mark or None
         Point of each event.
-    weights : ndarray, shape (events,)
-        Weight of each event in the last step; 0 for those that were not used.
-    misfit : float
-        Sum of the losses of the fitted events.
     """
 
+    problem: Problem
     oscillator: GearOscillator
     marks: tuple[Mark | None, ...]
-    weights: FloatArray
-    misfit: float
+
+    @cached_property
+    def values(self) -> Array:
+        """Where each event lies, shape (events,); nan without a mark."""
+        return np.array([math.nan if mark is None else mark.value for mark in self.marks])
+
+    @cached_property
+    def off(self) -> Array:
+        """Difference of each event in units of its last decimal, shape (events,); nan without a mark."""
+        return np.asarray((self.values - self.problem.printed) / self.problem.units)
+
+    @cached_property
+    def misfit(self) -> float:
+        """Sum of the losses of the fitted events."""
+        return self.problem.misfit(self.values)
+
+    def parameters(self, names: Sequence[str]) -> Array:
+        """Values of parameters."""
+        return np.array([self.oscillator.get(name) for name in names])
+
+    def slopes(self, names: Sequence[str]) -> list[Array | None]:
+        """Change of each mark with parameters, as of `Mark.slopes`."""
+        return [None if mark is None else mark.slopes(names) for mark in self.marks]
+
+    def sensitivity(self, names: Sequence[str], rows: Sequence[int]) -> Array:
+        """Change of events with parameters, in units of their last decimals, shape (rows, names); nan if unknown."""
+        lost = np.full((3, len(names)), math.nan)
+        marks = [self.marks[i] for i in rows]
+        slopes = [lost if mark is None else mark.slopes(names) for mark in marks]
+        matrix = np.array([slope[2] for slope in slopes]).reshape(len(rows), len(names))
+        return np.asarray(matrix / self.problem.units[list(rows), None])
+
+    def meets(self, rows: Sequence[int]) -> bool:
+        """Whether these events are met."""
+        return bool(np.all(np.abs(self.off[list(rows)]) <= CLOSE))
+
+    def shifted(self, names: Sequence[str], values: Array, slopes: Sequence[Array | None]) -> Fit:
+        """The same points at other values of parameters; None in the place of those that are lost."""
+        here = self.oscillator
+        for name, value in zip(names, values, strict=True):
+            here = here.with_parameter(name, float(value))
+        change = values - self.parameters(names)
+        marks = zip(self.marks, slopes, strict=True)
+        moved = (None if m is None or s is None else m.moved(here, s @ change) for m, s in marks)
+        return Fit(self.problem, here, tuple(moved))
 
 
-def fit(problem: Problem, names: Sequence[str], start: GearOscillator, marks: Sequence[Mark | None]) -> Fit:
+def fit(start: Fit, names: Sequence[str]) -> Fit:
     r"""Fit parameters to the fitted events that have a mark.
 
     Least squares of the differences in units of the last decimal by Gauss and Newton, then reweighted (`refit`). If
@@ -57,137 +98,113 @@ def fit(problem: Problem, names: Sequence[str], start: GearOscillator, marks: Se
 
     Parameters
     ----------
-    problem : Problem
-        Events and ranges.
+    start : Fit
+        Where to start.
     names : sequence of str
         Unknowns.
-    start : GearOscillator
-        Where to start.
-    marks : sequence of Mark or None
-        Points of the events there.
     """
-    rows = [i for i in problem.fitted if marks[i] is not None]
-    first = Fit(start, tuple(marks), np.zeros(len(marks)), misfit(problem, marks))
+    rows = [i for i in start.problem.fitted if start.marks[i] is not None]
     if len(rows) < len(names) or not names:
-        return first
-    middle = _least_squares(problem, names, first, rows)
-    best = min((first, refit(problem, names, middle, rows)), key=lambda f: f.misfit)
-    if _met(problem, best, rows):
+        return start
+    middle = _least_squares(start, names, rows)
+    best = min((start, refit(middle, names, rows)), key=lambda f: f.misfit)
+    if best.meets(rows):
         return best
-    for out in _suspects(problem, names, middle, rows)[:TRIED]:
+    for out in _suspects(middle, names, rows)[:TRIED]:
         kept = [i for i in rows if i not in out]
-        trimmed = _least_squares(problem, names, middle, kept)
-        if trimmed.misfit >= best.misfit and not _met(problem, trimmed, kept):
+        trimmed = _least_squares(middle, names, kept)
+        if trimmed.misfit >= best.misfit and not trimmed.meets(kept):
             continue
-        found = refit(problem, names, trimmed, rows)
+        found = refit(trimmed, names, rows)
         if found.misfit < best.misfit:
             best = found
-        if _met(problem, found, kept):
+        if found.meets(kept):
             break
     return best
 
 
-def _met(problem: Problem, found: Fit, rows: Sequence[int]) -> bool:
-    return all(abs(difference(problem, found.marks, i)) <= CLOSE for i in rows)
-
-
-def _suspects(problem: Problem, names: Sequence[str], now: Fit, rows: Sequence[int]) -> list[tuple[int, ...]]:
+def _suspects(now: Fit, names: Sequence[str], rows: Sequence[int]) -> list[tuple[int, ...]]:
     """Events and pairs of them, in the order of the misfit that the linearised equations have without them."""
-    matrix = sensitivity(problem, names, now.marks, rows)
-    size = np.maximum(np.abs([now.oscillator.get(n) for n in names]), 1e-3)
-    off = np.array([difference(problem, now.marks, i) for i in rows])
+    matrix = now.sensitivity(names, rows) * _sizes(now, names)
+    off, trust = now.off[list(rows)], now.problem.trust[list(rows)]
     usable = np.all(np.isfinite(matrix), axis=1) & np.isfinite(off)
-    trust = np.array([problem.events[i].trust for i in rows])
     ranked = []
     for number in range(1, min(LEFT_OUT, int(np.sum(usable)) - len(names) - 1) + 1):
         for out in itertools.combinations(np.flatnonzero(usable).tolist(), number):
             kept = usable.copy()
             kept[list(out)] = False
-            step = np.linalg.lstsq(matrix[kept] * size, -off[kept], rcond=1e-12)[0]
-            rest = np.abs(off + (matrix * size) @ step)[usable]
+            step = np.linalg.lstsq(matrix[kept], -off[kept], rcond=1e-12)[0]
+            rest = np.abs(off + matrix @ step)[usable]
             ranked.append((float(trust[usable] @ np.log1p(rest)), tuple(rows[i] for i in out)))
     return [out for _, out in sorted(ranked)]
 
 
-def refit(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int], limit: int = 20) -> Fit:
+def refit(start: Fit, names: Sequence[str], rows: Sequence[int], limit: int = 20) -> Fit:
     """Reweighted least squares on some events, from a fit that is near: the events that agree come to decide alone.
 
     Parameters
     ----------
-    problem, names
-        As in `fit`.
     start : Fit
         Where to start.
+    names : sequence of str
+        Unknowns.
     rows : sequence of int
         Events that are used; those without a mark are left out.
     limit : int
         Steps.
     """
-    trust = np.array([e.trust for e in problem.events])
+    problem = start.problem
     now = best = start
     for _ in range(limit):
         used = [i for i in rows if now.marks[i] is not None]
         if len(used) < len(names):
             break
-        after, size = _step(problem, names, now, trust * _sharp(problem, now.marks, used), patient=False)
+        after, size = _step(now, names, problem.trust * _sharp(now, used), patient=False)
         if after is None:
             break
         now = after
-        if misfit(problem, now.marks, rows) < misfit(problem, best.marks, rows):
+        if problem.misfit(now.values, rows) < problem.misfit(best.values, rows):
             best = now
         if size < 1e-12:
             break
     return best
 
 
-def moved(problem: Problem, names: Sequence[str], now: Fit, values: FloatArray) -> Fit | None:
-    """The same points at other values of the parameters, in one step or two; None if one that counts is lost."""
+def moved(start: Fit, names: Sequence[str], values: Array) -> Fit | None:
+    """The same points at other values of parameters, in one step or up to eight; None if one that counts is lost."""
+    first = start.parameters(names)
     for parts in (1, 2, 4, 8):
-        after: Fit | None = now
+        now = start
         for part in range(1, parts + 1):
-            if after is None:
+            after = now.shifted(names, first + part / parts * (values - first), now.slopes(names))
+            if any(after.marks[i] is None and now.marks[i] is not None for i in start.problem.fitted):
                 break
-            old = np.array([after.oscillator.get(n) for n in names])
-            start = np.array([now.oscillator.get(n) for n in names])
-            after = _at(problem, names, after, start + part / parts * (values - start), old)
-        if after is not None:
-            return after
+            now = after
+        else:
+            return now
     return None
 
 
-def difference(problem: Problem, marks: Sequence[Mark | None], i: int) -> float:
-    """Difference of an event in units of its last decimal; nan without a mark."""
-    mark, event = marks[i], problem.events[i]
-    return math.nan if mark is None else (mark.value - event.value) / event.unit
+def _sizes(now: Fit, names: Sequence[str]) -> Array:
+    """What the steps of parameters are measured by."""
+    return np.maximum(np.abs(now.parameters(names)), 1e-3)
 
 
-def sensitivity(
-    problem: Problem, names: Sequence[str], marks: Sequence[Mark | None], rows: Sequence[int]
-) -> FloatArray:
-    """Change of the events with the parameters, in units of their last decimals, shape (rows, names)."""
-    matrix = np.full((len(rows), len(names)), math.nan)
-    for row, i in zip(matrix, rows, strict=True):
-        mark = marks[i]
-        if mark is not None:
-            row[:] = mark.slopes(names)[2] / problem.events[i].unit
-    return matrix
-
-
-def _sharp(problem: Problem, marks: Sequence[Mark | None], rows: Sequence[int]) -> FloatArray:
+def _sharp(now: Fit, rows: Sequence[int]) -> Array:
     """Weights under which least squares lowers the sum of ln(1 + |r|): 1 / (|r| (1 + |r|)), flat below one unit."""
-    weights = np.zeros(len(marks))
-    off = np.abs([difference(problem, marks, i) for i in rows])
+    weights = np.zeros(len(now.marks))
+    off = np.abs(now.off[list(rows)])
     weights[list(rows)] = 1.0 / (np.maximum(off, 1.0) * (1.0 + off))
     return weights
 
 
-def _least_squares(problem: Problem, names: Sequence[str], start: Fit, rows: Sequence[int]) -> Fit:
+def _least_squares(start: Fit, names: Sequence[str], rows: Sequence[int]) -> Fit:
     """Gauss and Newton's method on these events, weighted by their trust."""
     weights = np.zeros(len(start.marks))
-    weights[list(rows)] = [problem.events[i].trust for i in rows]
+    weights[list(rows)] = start.problem.trust[list(rows)]
     now = start
     for _ in range(12):
-        after, size = _step(problem, names, now, weights, patient=True)
+        after, size = _step(now, names, weights, patient=True)
         if after is None:
             break
         now = after
@@ -196,81 +213,44 @@ def _least_squares(problem: Problem, names: Sequence[str], start: Fit, rows: Seq
     return now
 
 
-def agreement(problem: Problem, marks: Sequence[Mark | None], rows: Sequence[int]) -> FloatArray:
+def agreement(now: Fit, rows: Sequence[int]) -> Array:
     r"""Weight of each event without its trust, :math:`1 / (1 + (r / s)^2)`, shape (events,); 0 for all but the rows.
 
     The scale of the differences, s, is at least one unit.
     """
-    weights = np.zeros(len(marks))
+    weights = np.zeros(len(now.marks))
     if len(rows):
-        off = np.array([difference(problem, marks, i) for i in rows])
+        off = now.off[list(rows)]
         scale = max(1.0, 1.4826 * float(np.median(np.abs(off))))
         weights[list(rows)] = 1.0 / (1.0 + (off / scale) ** 2)
     return weights
 
 
-def _step(
-    problem: Problem, names: Sequence[str], now: Fit, weights: FloatArray, patient: bool
-) -> tuple[Fit | None, float]:
+def _step(now: Fit, names: Sequence[str], weights: Array, patient: bool) -> tuple[Fit | None, float]:
     """One step of Gauss and Newton, and its relative size.
 
     None if events that count are lost or, where one is patient, no part of the step helps.
     """
-    rows = [i for i in np.flatnonzero(weights).tolist() if now.marks[i] is not None]
-    slopes = {i: mark.slopes(names) for i, mark in enumerate(now.marks) if mark is not None}
-    rows = [i for i in rows if np.all(np.isfinite(slopes[i]))]
+    slopes = now.slopes(names)
+    usable = [s is not None and bool(np.all(np.isfinite(s))) for s in slopes]
+    rows = [i for i in np.flatnonzero(weights).tolist() if usable[i]]
     if len(rows) < len(names):
         return None, 0.0
-    values = np.array([now.oscillator.get(n) for n in names])
-    size = np.maximum(np.abs(values), 1e-3)
+    values, size = now.parameters(names), _sizes(now, names)
+    low, high = ([getattr(now.problem.unknowns[n], end) for n in names] for end in ("low", "high"))
     root = np.sqrt(weights[rows])
-    units = np.array([problem.events[i].unit for i in rows])
-    matrix = np.array([slopes[i][2] for i in rows]) * size * (root / units)[:, None]
-    gaps = -np.array([difference(problem, now.marks, i) for i in rows]) * root
+    change = np.array([s[2] for i, s in enumerate(slopes) if i in rows and s is not None])
+    matrix = change * size * (root / now.problem.units[rows])[:, None]
+    gaps = -now.off[rows] * root
     step = np.linalg.lstsq(matrix, gaps, rcond=1e-12)[0]
     step *= min(1.0, LONGEST / max(float(np.max(np.abs(step))), 1e-300))
     before = float(gaps @ gaps)
     for share in (1.0, 0.5, 0.25, 0.1, 0.03):
-        there = _within(problem, names, values + share * step * size)
-        here = _placed(now.oscillator, names, there)
-        marks = tuple(
-            None if mark is None else mark.moved(here, slopes[i] @ (there - values))
-            for i, mark in enumerate(now.marks)
-        )
-        if any(marks[i] is None for i in rows):
+        there = np.clip(values + share * step * size, low, high)
+        after = now.shifted(names, there, slopes)
+        off = after.off[rows] * root
+        if np.any(np.isnan(off)):
             continue
-        off = np.array([difference(problem, marks, i) for i in rows]) * root
         if not patient or off @ off < before:
-            moved = float(np.max(np.abs(there - values) / size))
-            return Fit(here, marks, weights, misfit(problem, marks)), moved
+            return after, float(np.max(np.abs(there - values) / size))
     return None, 0.0
-
-
-def _at(problem: Problem, names: Sequence[str], now: Fit, values: FloatArray, old: FloatArray) -> Fit | None:
-    here = _placed(now.oscillator, names, values)
-    marks = tuple(None if m is None else m.moved(here, m.slopes(names) @ (values - old)) for m in now.marks)
-    if any(marks[i] is None for i in problem.fitted if now.marks[i] is not None):
-        return None
-    return Fit(here, marks, now.weights, misfit(problem, marks))
-
-
-def _within(problem: Problem, names: Sequence[str], values: FloatArray) -> FloatArray:
-    """Values in their ranges."""
-    low = np.array([problem.unknowns[n].low for n in names])
-    high = np.array([problem.unknowns[n].high for n in names])
-    return np.clip(values, low, high)
-
-
-def _placed(here: GearOscillator, names: Sequence[str], values: FloatArray) -> GearOscillator:
-    for name, value in zip(names, values, strict=True):
-        here = here.with_parameter(name, float(value))
-    return here
-
-
-def misfit(problem: Problem, marks: Sequence[Mark | None], rows: Sequence[int] | None = None) -> float:
-    """Sum of the losses of these events, of the fitted ones if none are named."""
-    total = 0.0
-    for i in problem.fitted if rows is None else rows:
-        mark = marks[i]
-        total += loss(problem.events[i], math.nan if mark is None else mark.value, problem.width)
-    return total

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 
-from base import Cost
+from base import Cost, quantity, record
 from dynamics.inverse.events import Event
 from dynamics.inverse.rounding import Rounding
 from dynamics.inverse.scoring import Direction
@@ -13,100 +13,93 @@ from dynamics.oscillator import GearOscillator
 __all__ = ["Candidate", "Identification"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Candidate:
-    """Parameters that explain events.
+    """Parameters that explain events."""
 
-    Parameters
-    ----------
-    oscillator : GearOscillator
-        With the parameters found; one-sided if no event tells where the back flank is.
-    values : dict
-        Unknown to value.
-    spread : dict
-        Unknown to what one unit of the last decimal of each event that agrees leaves open, to first order.
-    found : tuple of float
-        Where each event lies with these parameters; nan if it has no partner.
-    off : tuple of float
-        Difference to the printed value, in units of its last decimal.
-    weights : tuple of float
-        Weight of each event in the last fit, over its trust; 0 if it was not fitted.
-    left_out : tuple of float
-        Difference of each event from what the others say of it, in units; nan where they are too few to say.
-    matched, unmatched : tuple of int
-        Events that have a partner so near that chance would bring one there in less than 1 of 100 cases; the others.
-    outliers : tuple of int
-        Fitted events that the fit came to disregard: no partner, or beyond three times the scale of the differences.
-    misfit : float
-        Sum over the fitted events of trust times ln(1 + difference in units).
-    by_chance : float
-        Trials expected to match as well if the events lay at random.
-    """
+    headline = ("misfit", "by_chance")
 
-    oscillator: GearOscillator
-    values: dict[str, float]
-    spread: dict[str, float]
-    found: tuple[float, ...]
-    off: tuple[float, ...]
-    weights: tuple[float, ...]
-    left_out: tuple[float, ...]
-    matched: tuple[int, ...]
-    unmatched: tuple[int, ...]
-    outliers: tuple[int, ...]
-    misfit: float
-    by_chance: float
+    oscillator: GearOscillator = quantity(
+        "", "the parameters found; one-sided if no event shows where the back flank is"
+    )
+    values: dict[str, float] = quantity("1", "value of each unknown by name")
+    spread: dict[str, float] = quantity(
+        "1",
+        "what one unit of the last decimal of each event that agrees leaves open of each unknown, to first order",
+    )
+    found: tuple[float, ...] = quantity(
+        "1", "where each event lies with these parameters; nan if it has no partner", "event"
+    )
+    off: tuple[float, ...] = quantity(
+        "1", "difference to the printed value, in units of its last decimal", "event"
+    )
+    weights: tuple[float, ...] = quantity(
+        "1", "weight of each event in the last fit, over its trust; 0 if it was not fitted", "event"
+    )
+    left_out: tuple[float, ...] = quantity(
+        "1",
+        "difference of each event from what the others say of it, in units; nan where they are too few to say",
+        "event",
+    )
+    matched: tuple[int, ...] = quantity(
+        "1",
+        "events that have a partner so near that chance would bring one there in less than 1 of 100 cases",
+        "matched",
+    )
+    outliers: tuple[int, ...] = quantity(
+        "1",
+        "fitted events that the fit came to disregard: no partner, or beyond three times the scale of the differences",
+        "outlier",
+    )
+    misfit: float = quantity("1", "sum over the fitted events of trust times ln(1 + difference in units)")
+    by_chance: float = quantity("1", "trials expected to match as well if the events lay at random")
+
+    @property
+    def unmatched(self) -> tuple[int, ...]:
+        """Events that have no such partner."""
+        return tuple(i for i in range(len(self.found)) if i not in self.matched)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Identification:
-    """What the events say about the parameters.
+    """What the events say about the parameters."""
 
-    Parameters
-    ----------
-    events : tuple of Event
-        As given.
-    best : Candidate or None
-        Refined, with round values; None if no trial has any of the events that were tried as the exact one.
-    refined : Candidate or None
-        The same before rounding.
-    roundings : tuple of Rounding
-        What rounding cost and is worth.
-    competitors : tuple of Candidate
-        Other refined trials, the better first, that are not the same parameters.
-    trials : int
-        Trials scanned.
-    by_chance : float
-        Trials expected to match as well as the refined one if the events lay at random.
-    directions : tuple of Direction
-        Singular directions of the unknowns, the best seen first.
-    unseen : tuple of str
-        Unknowns, or unknowns together, that the matched events cannot see, and known parameters that none depends on.
-    reduction : str
-        What was left out at first, and why.
-    error : float
-        Median difference of the fitted events that agree, in units of their last decimals.
-    cost : Cost
-        Effort; iterations are branches followed.
-    converged : bool
-        Whether more events agree than there are unknowns, those not fitted included, and by_chance is below 0.01.
-    message : str
-        What was found.
-    """
+    headline = ("trials", "by_chance")
 
-    events: tuple[Event, ...]
-    best: Candidate | None
-    refined: Candidate | None
-    roundings: tuple[Rounding, ...]
-    competitors: tuple[Candidate, ...]
-    trials: int
-    by_chance: float
-    directions: tuple[Direction, ...]
-    unseen: tuple[str, ...]
-    reduction: str
-    error: float
+    events: tuple[Event, ...] = quantity("", "the events as given")
+    trials: int = quantity("1", "trials scanned")
+    reduction: str = quantity("", "what was left out at first, and why")
     cost: Cost
-    converged: bool
     message: str
+    converged: bool = False
+    best: Candidate | None = quantity(
+        "",
+        "refined, with round values; None if no trial has any of the events that were tried as the exact one",
+        default=None,
+    )
+    refined: Candidate | None = quantity("", "the same before rounding", default=None)
+    roundings: tuple[Rounding, ...] = quantity("", "what rounding cost and is worth", default=())
+    competitors: tuple[Candidate, ...] = quantity(
+        "", "other refined trials, the better first, that are not the same parameters", default=()
+    )
+    by_chance: float = quantity(
+        "1",
+        "trials expected to match as well as the refined one if the events lay at random",
+        default=math.nan,
+    )
+    directions: tuple[Direction, ...] = quantity(
+        "", "singular directions of the unknowns, the best seen first", default=()
+    )
+    unseen: tuple[str, ...] = quantity(
+        "",
+        "unknowns, or unknowns together, that the matched events cannot see, and known parameters that none depends on",
+        default=(),
+    )
+    error: float = quantity(
+        "1",
+        "median difference of the fitted events that agree, in units of their last decimals",
+        default=math.nan,
+    )
 
     def table(self) -> str:
         """Events, parameters, rounding and competitors as text."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.inverse.events import OneOf, Problem
+from base import quantity, record
+from dynamics.inverse.events import OneOf
 from dynamics.inverse.refinement import Fit, moved, refit
 
 __all__ = ["Rounding", "rounded"]
@@ -17,35 +17,26 @@ DIGITS = 5  # significant digits up to which a value counts as round
 PLAIN = 0.05  # a value so near to a round one by chance more often than this says nothing
 
 
-@dataclass(frozen=True)
+@record
 class Rounding:
-    """A value made round.
+    """A value made round."""
 
-    Parameters
-    ----------
-    parameter : str
-        Name.
-    before, after : float
-        Values, the other unknowns refined again.
-    digits : int
-        Significant digits kept; 0 if it is one of the values given.
-    cost : float
-        Rise of the misfit, natural logarithm.
-    worth : float
-        Minus the logarithm of the probability that a value lies so near to one as round by chance; the distance is at
-        least what the events leave open.
-    """
+    headline = ("parameter", "before", "after", "cost", "worth")
 
-    parameter: str
-    before: float
-    after: float
-    digits: int
-    cost: float
-    worth: float
+    parameter: str = quantity("", "name of the parameter")
+    before: float = quantity("1", "value before, the other unknowns refined")
+    after: float = quantity("1", "value taken, the other unknowns refined again")
+    digits: int = quantity("1", "significant digits kept; 0 if it is one of the values given")
+    cost: float = quantity("1", "rise of the misfit, natural logarithm")
+    worth: float = quantity(
+        "1",
+        "minus the logarithm of the probability that a value lies so near to one as round by chance; the distance is "
+        "at least what the events leave open",
+    )
 
 
 def rounded(
-    problem: Problem, names: Sequence[str], start: Fit, open_: Mapping[str, float], rows: Sequence[int]
+    start: Fit, names: Sequence[str], left_open: Mapping[str, float], rows: Sequence[int]
 ) -> tuple[Fit, tuple[Rounding, ...]]:
     """Make values round one after another, refining the others each time.
 
@@ -54,13 +45,11 @@ def rounded(
 
     Parameters
     ----------
-    problem : Problem
-        Events.
-    names : sequence of str
-        Unknowns.
     start : Fit
         Refined.
-    open_ : mapping
+    names : sequence of str
+        Unknowns.
+    left_open : mapping
         What the events leave open of each unknown.
     rows : sequence of int
         Events that are refined with.
@@ -68,23 +57,18 @@ def rounded(
     now, done = start, []
     left = list(names)
     for name in names:
-        unknown = problem.unknowns[name]
+        unknown = start.problem.unknowns[name]
         if not isinstance(unknown, OneOf):
             continue
         left.remove(name)
-        before = now.oscillator.get(name)
-        value, worth = _nearest(unknown, before)
-        there = _with(problem, name, value, now, left, rows)
-        if there is None:
-            continue
-        done.append(Rounding(name, before, value, 0, there.misfit - now.misfit, worth))
-        now = there
+        value, worth = _nearest(unknown, now.oscillator.get(name))
+        taken = _with(now, name, value, 0, worth, left, rows)
+        if taken is not None:
+            done.append(taken[0])
+            now = taken[1]
     while left:
-        best: tuple[Rounding, Fit] | None = None
-        for name in left:
-            found = _roundest(problem, name, now, [n for n in left if n != name], open_[name], rows)
-            if found is not None and (best is None or found[0].worth > best[0].worth):
-                best = found
+        found = [_roundest(now, name, [n for n in left if n != name], left_open[name], rows) for name in left]
+        best = max((f for f in found if f is not None), key=lambda f: f[0].worth, default=None)
         if best is None:
             break
         done.append(best[0])
@@ -94,21 +78,21 @@ def rounded(
 
 
 def _roundest(
-    problem: Problem, name: str, now: Fit, others: list[str], open_: float, rows: Sequence[int]
+    now: Fit, name: str, others: list[str], left_open: float, rows: Sequence[int]
 ) -> tuple[Rounding, Fit] | None:
     """Value of fewest digits that is worth its cost."""
     value = now.oscillator.get(name)
-    if value == 0.0 or not math.isfinite(open_):
+    if value == 0.0 or not math.isfinite(left_open):
         return None
     for digits in range(1, DIGITS + 1):
         near = float(f"{value:.{digits - 1}e}")
         spacing = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
-        chance = min(1.0, 2.0 * max(abs(near - value), open_) / spacing)
+        chance = min(1.0, 2.0 * max(abs(near - value), left_open) / spacing)
         if chance > PLAIN:
             continue
-        there = _with(problem, name, near, now, others, rows)
-        if there is not None and there.misfit - now.misfit <= -math.log(chance):
-            return Rounding(name, value, near, digits, there.misfit - now.misfit, -math.log(chance)), there
+        taken = _with(now, name, near, digits, -math.log(chance), others, rows)
+        if taken is not None and taken[0].cost <= taken[0].worth:
+            return taken
     return None
 
 
@@ -122,10 +106,12 @@ def _nearest(unknown: OneOf, value: float) -> tuple[float, float]:
 
 
 def _with(
-    problem: Problem, name: str, value: float, now: Fit, others: Sequence[str], rows: Sequence[int]
-) -> Fit | None:
-    """Fit with one value held and the others refined."""
-    there = moved(problem, (name,), now, np.array([value]))
-    if there is None or not others:
-        return there
-    return refit(problem, others, there, rows, limit=8)
+    now: Fit, name: str, value: float, digits: int, worth: float, others: Sequence[str], rows: Sequence[int]
+) -> tuple[Rounding, Fit] | None:
+    """What one value held costs, and the fit with the others refined; None if the events are lost."""
+    there = moved(now, (name,), np.array([value]))
+    if there is None:
+        return None
+    if others:
+        there = refit(there, others, rows, limit=8)
+    return Rounding(name, now.oscillator.get(name), value, digits, there.misfit - now.misfit, worth), there

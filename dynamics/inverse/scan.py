@@ -5,14 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue
 from dynamics.inverse.events import Event, OneOf, Problem, Ranged
-from dynamics.inverse.matching import loss
 from dynamics.inverse.reduction import FORCE
 from dynamics.oscillator import GearOscillator
-from dynamics.shooting import find_orbit
+from dynamics.shooting import Orbit, find_orbit
 from dynamics.sweeps import rest_state
 
 __all__ = ["Trial", "anchored", "ranked", "scan", "solved_name"]
@@ -21,20 +20,12 @@ ORDER = ("saddle-node", "period-doubling", "grazing")  # grazings are often prin
 GRID = 8  # values of the solved parameter at which orbits of the anchor's label are searched for
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """Parameters that meet one event exactly.
+class Trial(NamedTuple):
+    """Parameters that meet one event exactly."""
 
-    Parameters
-    ----------
-    oscillator : GearOscillator
-        The parameters.
-    misfit : float
-        Sum of the losses of the events that were looked at.
-    """
-
-    oscillator: GearOscillator
     misfit: float
+    """Sum of the losses of the events that were looked at."""
+    oscillator: GearOscillator
 
 
 def solved_name(problem: Problem) -> str | None:
@@ -74,18 +65,21 @@ def anchored(catalogue: Catalogue, here: GearOscillator, event: Event, name: str
     span = (unknown.low, unknown.high)
     start = here.with_parameter(problem.parameter, event.value)
     found: list[float] = []
+
+    def along(orbit: Orbit) -> list[float]:
+        branch = catalogue.follow(orbit, name, span)
+        return [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
+
     if event.periods in (1, None):
         for end in (span[1], span[0]):
             there = start.with_parameter(name, end)
-            branch = catalogue.follow(find_orbit(there, rest_state(there)), name, span)
-            found += [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
+            found += along(find_orbit(there, rest_state(there)))
             if found:
                 break
     if not found and event.periods != 1:
         for value in Ranged(*span, trials=GRID).values:
             for orbit in catalogue.orbits_of(start.with_parameter(name, value), event, event.value):
-                branch = catalogue.follow(orbit, name, span)
-                found += [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
+                found += along(orbit)
     distinct: list[float] = []
     for value in found:
         if not any(abs(value - other) <= 1e-9 * (span[1] - span[0]) for other in distinct):
@@ -120,14 +114,7 @@ def scan(
             here = here.with_parameter(n, float(value))
         event = problem.events[anchor]
         for there in [here] if name is None else anchored(catalogue, here, event, name):
-            _, partners = catalogue.partners(there, depth)
-            misfit = math.fsum(
-                loss(
-                    problem.events[i], math.nan if (p := partners[i]) is None else p.parameter, problem.width
-                )
-                for i in looked_at
-            )
-            found.append(Trial(there, misfit))
+            found.append(Trial(catalogue.misfit(there, depth, looked_at), there))
         if progress is not None:
             progress(done, len(combinations))
     return sorted(found, key=lambda trial: trial.misfit)

@@ -3,37 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array, quantity, record
 from dynamics.inverse.events import Problem
 from dynamics.inverse.matching import Line
-from dynamics.inverse.refinement import Fit, difference, refit, sensitivity
-from dynamics.oscillator import GearOscillator
+from dynamics.inverse.refinement import Fit, refit
 
 __all__ = ["Direction", "by_chance", "directions", "left_out", "probabilities", "spread", "unseen"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True)
+@record
 class Direction:
-    """A direction in the space of the unknowns, and how well the events see it.
+    """A direction in the space of the unknowns, and how well the events see it."""
 
-    Parameters
-    ----------
-    strength : float
-        Singular value of the sensitivity: units of the last decimals by which all events together move when the
-        unknowns change along the direction by their own size (phases by 1 rad).
-    parts : dict
-        Unknown to its part of the direction; the squares add up to one.
-    """
+    headline = ("strength",)
 
-    strength: float
-    parts: dict[str, float]
+    strength: float = quantity(
+        "1",
+        "singular value of the sensitivity: units of the last decimals by which all events together move when the "
+        "unknowns change along the direction by their own size (phases by 1 rad)",
+    )
+    parts: dict[str, float] = quantity(
+        "1", "part of each unknown in the direction by name; the squares add up to one"
+    )
 
     @property
     def seen(self) -> bool:
@@ -47,7 +42,7 @@ class Direction:
         return " with ".join(n for n in names if abs(self.parts[n]) > 0.1 * most)
 
 
-def probabilities(problem: Problem, lines: Sequence[Line], off: Sequence[float]) -> FloatArray:
+def probabilities(problem: Problem, lines: Sequence[Line], off: Iterable[float]) -> Array:
     r"""Probability that a point of the kind and label lies as near to each event by chance.
 
     :math:`\min(1, 2 n |\mu - \mu_e| / w)` for n such points in a range of width w; at least half a unit counts.
@@ -58,7 +53,7 @@ def probabilities(problem: Problem, lines: Sequence[Line], off: Sequence[float])
         Events.
     lines : sequence of sequences of SpecialPoint
         All points known.
-    off : sequence of float
+    off : iterable of float
         Differences in units; nan where there is no partner.
     """
     chance = np.ones(len(problem.events))
@@ -70,7 +65,7 @@ def probabilities(problem: Problem, lines: Sequence[Line], off: Sequence[float])
     return chance
 
 
-def by_chance(problem: Problem, chance: FloatArray, unknowns: int, trials: int) -> float:
+def by_chance(problem: Problem, chance: Array, unknowns: int, trials: int) -> float:
     r"""Trials expected to match as well if the events lay at random.
 
     As many events as unknowns can always be met: the best fitted ones are set aside, in
@@ -96,52 +91,48 @@ def by_chance(problem: Problem, chance: FloatArray, unknowns: int, trials: int) 
     return float(trials * ways * min(1.0, math.exp(log) * tail))
 
 
-def spread(problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]) -> dict[str, float]:
+def spread(found: Fit, names: Sequence[str], rows: Sequence[int]) -> dict[str, float]:
     """What one unit of the last decimal of each of these events leaves open of each unknown, to first order."""
-    if len(rows) < len(names):
+    matrix = found.sensitivity(names, rows)
+    if len(rows) < len(names) or not np.all(np.isfinite(matrix)):
         return dict.fromkeys(names, math.nan)
-    matrix = sensitivity(problem, names, found.marks, rows)
-    if not np.all(np.isfinite(matrix)):
-        return dict.fromkeys(names, math.nan)
-    size = sizes(found.oscillator, names)
-    open_ = size * np.sum(np.abs(np.linalg.pinv(matrix * size, rcond=1e-14)), axis=1)
-    return dict(zip(names, open_.tolist(), strict=True))
+    size = _sizes(found, names)
+    left_open = size * np.sum(np.abs(np.linalg.pinv(matrix * size, rcond=1e-14)), axis=1)
+    return dict(zip(names, left_open.tolist(), strict=True))
 
 
-def directions(
-    problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]
-) -> tuple[Direction, ...]:
+def directions(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[Direction, ...]:
     """Singular directions of the sensitivity of these events to these parameters, the best seen first."""
-    matrix = sensitivity(problem, names, found.marks, rows)
-    matrix = matrix[np.all(np.isfinite(matrix), axis=1)] * sizes(found.oscillator, names)
+    matrix = found.sensitivity(names, rows)
+    matrix = matrix[np.all(np.isfinite(matrix), axis=1)] * _sizes(found, names)
     matrix = np.vstack([matrix, np.zeros((len(names), len(names)))])
-    _, strengths, ways = np.linalg.svd(matrix, full_matrices=False)
+    _, strengths, rows_of_v = np.linalg.svd(matrix, full_matrices=False)
     return tuple(
-        Direction(float(s), dict(zip(names, way.tolist(), strict=True)))
-        for s, way in zip(strengths, ways, strict=True)
+        Direction(float(s), dict(zip(names, parts.tolist(), strict=True)))
+        for s, parts in zip(strengths, rows_of_v, strict=True)
     )
 
 
-def unseen(problem: Problem, found: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
+def unseen(found: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
     """Directions that the events do not see, and known parameters on which none of them depends."""
+    problem = found.problem
     known = [n for n in found.oscillator.parameters if n not in problem.unknowns and n != problem.parameter]
-    matrix = sensitivity(problem, known, found.marks, rows) * sizes(found.oscillator, known)
+    matrix = found.sensitivity(known, rows) * _sizes(found, known)
     idle = [n for n, column in zip(known, matrix.T, strict=True) if np.all(np.abs(column) < 1e-6)]
     return (*(str(d) for d in seen if not d.seen), *(idle if len(rows) else ()))
 
 
-def left_out(problem: Problem, names: Sequence[str], found: Fit, rows: Sequence[int]) -> tuple[float, ...]:
+def left_out(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[float, ...]:
     """Difference of each event from what the others say of it, in units; nan where they are too few."""
-    off = [math.nan] * len(problem.events)
-    for i in range(len(problem.events)):
+    off = [math.nan] * len(found.marks)
+    for i in range(len(off)):
         if i not in rows:
-            off[i] = difference(problem, found.marks, i)
+            off[i] = float(found.off[i])
         elif len(rows) > len(names):
-            others = refit(problem, names, found, [j for j in rows if j != i], limit=8)
-            off[i] = difference(problem, others.marks, i)
+            off[i] = float(refit(found, names, [j for j in rows if j != i], limit=8).off[i])
     return tuple(off)
 
 
-def sizes(here: GearOscillator, names: Sequence[str]) -> FloatArray:
+def _sizes(found: Fit, names: Sequence[str]) -> Array:
     """What a change is measured by: the value itself, 1 rad for phases."""
-    return np.array([1.0 if "phase" in n else max(abs(here.get(n)), 1e-3) for n in names])
+    return np.array([1.0 if "phase" in n else max(abs(found.oscillator.get(n)), 1e-3) for n in names])

@@ -11,11 +11,10 @@ import numpy as np
 from base import Cost
 from dynamics.inverse.catalogue import EVERY, Catalogue
 from dynamics.inverse.events import Problem
-from dynamics.inverse.refinement import OUTLIER, Fit, agreement, difference, misfit
+from dynamics.inverse.refinement import OUTLIER, Fit, agreement
 from dynamics.inverse.report import Candidate, Identification
 from dynamics.inverse.rounding import Rounding, rounded
 from dynamics.inverse.scoring import by_chance, directions, left_out, probabilities, spread, unseen
-from dynamics.inverse.tracking import marked
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["Solution", "distinct", "identification", "solution"]
@@ -45,44 +44,40 @@ class Solution:
     @property
     def rows(self) -> list[int]:
         """Fitted events that agree."""
-        problem, candidate = self.catalogue.problem, self.candidate
-        return [i for i in problem.fitted if i in candidate.matched and i not in candidate.outliers]
+        candidate = self.candidate
+        return [i for i in self.fit.problem.fitted if i in candidate.matched and i not in candidate.outliers]
 
     @property
     def good(self) -> bool:
         """Whether more events agree than there are unknowns, those not fitted included, and not by chance."""
-        scored = [i for i in self.candidate.matched if not self.catalogue.problem.events[i].fitted]
+        scored = [i for i in self.candidate.matched if not self.fit.problem.events[i].fitted]
         unknowns = len(self.candidate.values)
         enough = len(self.rows) >= unknowns and len(self.rows) + len(scored) > unknowns
         return enough and self.candidate.by_chance < RARE
 
 
-def solution(catalogue: Catalogue, found: Fit, trials: int) -> Solution:
+def solution(catalogue: Catalogue, here: GearOscillator, trials: int) -> Solution:
     """Look for all events at the parameters of a fit, and record what is there."""
-    problem, here = catalogue.problem, found.oscillator
+    problem = catalogue.problem
     names = tuple(problem.unknowns)
-    lines, partners = catalogue.partners(here, EVERY)
-    marks = tuple(None if p is None else marked(here, problem.parameter, p) for p in partners)
-    off = tuple(difference(problem, marks, i) for i in range(len(marks)))
-    there = [i for i in problem.fitted if marks[i] is not None]
-    weights = agreement(problem, marks, there)
-    chance = probabilities(problem, lines, off)
+    lines, fit = catalogue.start(here, EVERY)
+    there = [i for i in problem.fitted if fit.marks[i] is not None]
+    weights = agreement(fit, there)
+    chance = probabilities(problem, lines, fit.off)
     matched = tuple(i for i, p in enumerate(chance) if p < RARE)
-    fit = Fit(here, marks, weights, misfit(problem, marks))
     rows = [i for i in there if i in matched and weights[i] >= OUTLIER]
     candidate = Candidate(
-        here,
-        {n: here.get(n) for n in names},
-        spread(problem, names, fit, rows),
-        tuple(math.nan if m is None else m.value for m in marks),
-        off,
-        tuple(weights.tolist()),
-        left_out(problem, names, fit, rows),
-        matched,
-        tuple(i for i in range(len(marks)) if i not in matched),
-        tuple(i for i in problem.fitted if weights[i] < OUTLIER),
-        fit.misfit,
-        by_chance(problem, chance, len(names), trials),
+        oscillator=here,
+        values={n: here.get(n) for n in names},
+        spread=spread(fit, names, rows),
+        found=tuple(fit.values.tolist()),
+        off=tuple(fit.off.tolist()),
+        weights=tuple(weights.tolist()),
+        left_out=left_out(fit, names, rows),
+        matched=matched,
+        outliers=tuple(i for i in problem.fitted if weights[i] < OUTLIER),
+        misfit=fit.misfit,
+        by_chance=by_chance(problem, chance, len(names), trials),
     )
     return Solution(catalogue, fit, candidate)
 
@@ -102,39 +97,36 @@ def identification(
     """Record of all solutions, the best of them rounded."""
     if not found:
         message = f"{trials} trials, none has one of the events that were tried: widen the ranges, or try more values"
-        return Identification(
-            problem.events, None, None, (), (), trials, math.nan, (), (), reduction, math.nan, cost, False, message
-        )  # fmt: skip
+        return Identification(problem.events, trials, reduction, cost, message)
     first = found[0]
     names = tuple(first.candidate.values)
     kept = distinct([s.candidate.oscillator for s in found], names)
     others = [s.candidate for s in found[1:] if any(s.candidate.oscillator is here for here in kept[1:])]
     best, roundings = _rounded(first, trials)
-    everything = tuple(problem.unknowns)
-    seen = directions(problem, everything, best.fit, best.rows)
-    off = [abs(best.candidate.off[i]) for i in best.rows]
+    seen = directions(best.fit, tuple(problem.unknowns), best.rows)
+    candidate, by_chance = best.candidate, first.candidate.by_chance
+    off = [abs(candidate.off[i]) for i in best.rows]
     error = float(np.median(off)) if off else math.nan
-    candidate = best.candidate
     message = (
         f"{trials} trials; {len(candidate.matched)} of {len(problem.events)} events matched, {len(best.rows)} of "
         f"{len(problem.fitted)} fitted ones agree ({error:.3g} units of the last decimal in the median); "
-        f"{first.candidate.by_chance:.1e} such trials by chance"
+        f"{by_chance:.1e} such trials by chance"
     )
     if not first.good:
         message += ": not identified; give more events, finer trial values or wider ranges"
     return Identification(
-        problem.events, candidate, first.candidate, roundings, tuple(others), trials, first.candidate.by_chance, seen,
-        unseen(problem, best.fit, best.rows, seen), reduction, error, cost, first.good, message,
+        problem.events, trials, reduction, cost, message, first.good, candidate, first.candidate, roundings,
+        tuple(others), by_chance, seen, unseen(best.fit, best.rows, seen), error,
     )  # fmt: skip
 
 
 def _rounded(first: Solution, trials: int) -> tuple[Solution, tuple[Rounding, ...]]:
     """The solution with round values; the same if that would lose an event."""
-    problem, names = first.catalogue.problem, tuple(first.candidate.values)
-    fit, roundings = rounded(problem, names, first.fit, first.candidate.spread, first.rows)
+    names = tuple(first.candidate.values)
+    fit, roundings = rounded(first.fit, names, first.candidate.spread, first.rows)
     if not roundings:
         return first, ()
-    best = solution(first.catalogue, fit, trials)
+    best = solution(first.catalogue, fit.oscillator, trials)
     if not set(best.candidate.matched) >= set(first.candidate.matched):
         return first, ()
     return best, roundings

@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
+from dynamics.states import scale_of
 
 __all__ = ["Mark", "marked"]
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,22 +40,24 @@ class Mark:
     parameter: str
     condition: Condition
     periods: int
-    place: FloatArray
+    place: Array
 
     @property
     def value(self) -> float:
         """The parameter."""
         return float(self.place[2])
 
-    def slopes(self, names: Sequence[str]) -> FloatArray:
-        r"""Change of X, V and the parameter with others, shape (3, names): :math:`-A^{-1} b`, all entries exact.
+    def slopes(self, names: Sequence[str]) -> Array:
+        r"""Change of X, V and the parameter with others, shape (3, names), all entries exact.
 
-        nan where the system is singular or the point cannot be evaluated.
+        The point solves G = 0: the orbit closes (two equations) and its condition holds. With the columns for X, V and
+        the parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular or
+        the point cannot be evaluated.
         """
         here = self.oscillator.with_parameter(self.parameter, self.value)
         low = np.array([self.value, *(here.get(n) for n in names)])
         problem = OrbitProblem(
-            here, (self.parameter, *names), self.periods, low, low + 1.0, _scale(here, self.place)
+            here, (self.parameter, *names), self.periods, low, low + 1.0, scale_of(here, self.place[:2])
         )
         at = problem.evaluate(problem.unknowns(self.place[:2], low))
         lost = np.full((3, len(names)), math.nan)
@@ -72,7 +73,7 @@ class Mark:
         change[:2] *= problem.scale
         return np.asarray(change)
 
-    def moved(self, there: GearOscillator, change: FloatArray) -> Mark | None:
+    def moved(self, there: GearOscillator, change: Array) -> Mark | None:
         """The point at other parameters, `change` the expected change of X, V and the parameter; None if it is lost.
 
         Newton's method on the orbit and its condition together, from that guess.
@@ -80,16 +81,15 @@ class Mark:
         guess = self.place + change
         if not (np.all(np.isfinite(guess)) and (self.parameter != "frequency" or guess[2] > 0.0)):
             return None
-        scale = _scale(there, self.place)
+        scale = scale_of(there, self.place[:2])
         problem = OrbitProblem(
             there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[2]), 1e-3)]), scale
         )
         found = special_orbit(problem, self.condition, problem.unknowns(guess[:2], guess[2:]))
         if found is None:
             return None
-        return Mark(
-            there, self.parameter, self._refreshed(found), self.periods, np.append(found.state, found.value)
-        )
+        place = np.append(found.state, found.value)
+        return replace(self, oscillator=there, condition=self._refreshed(found), place=place)
 
     def _refreshed(self, point: Point) -> Condition:
         """Condition with the phase of the extremum as it is now."""
@@ -100,12 +100,5 @@ class Mark:
 
 def marked(here: GearOscillator, parameter: str, point: SpecialPoint) -> Mark:
     """Mark of a special point of a branch."""
-    period = here.with_parameter(parameter, point.parameter).period
-    phase = 0.0 if math.isnan(point.tau) else (point.tau / (point.periods * period)) % 1.0
-    kindred = 0 if point.kind != "grazing" else int(np.sign(point.acceleration))
-    condition = Condition(point.kind, point.boundary, kindred, phase)
+    condition = Condition.of(here.with_parameter(parameter, point.parameter), point)
     return Mark(here, parameter, condition, point.periods, np.append(point.state, point.parameter))
-
-
-def _scale(here: GearOscillator, place: FloatArray) -> float:
-    return max(float(np.max(np.abs(place[:2]))), here.half_backlash, 1e-300)

@@ -1,0 +1,21 @@
+"""How large motions are, and how far apart states lie."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array
+from dynamics.oscillator import GearOscillator
+
+__all__ = ["apart", "scale_of"]
+
+
+def scale_of(oscillator: GearOscillator, states: npt.ArrayLike) -> float:
+    """Scale of a motion: its largest X or V, or half the backlash if that is more; never zero."""
+    return max(float(np.max(np.abs(states))), oscillator.half_backlash, 1e-300)
+
+
+def apart(state: npt.ArrayLike, states: Array) -> float:
+    """Distance of a state to the nearest of several, in the largest norm."""
+    return float(np.min(np.max(np.abs(states - np.asarray(state)), axis=1)))
