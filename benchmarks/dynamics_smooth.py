@@ -22,11 +22,11 @@ from dynamics import (
     SmoothOscillator,
     TabulatedContact,
     find_orbit,
-    map_derivatives,
     period_map,
     smooth,
 )
 from dynamics.flow import tables
+from dynamics.sensitivity import map_derivatives
 from dynamics.smooth.flow import follow
 from dynamics.smooth.oscillator import Engine
 

@@ -17,6 +17,8 @@ MOTION = """
 import dataclasses, json
 import numpy as np
 import dynamics
+from dynamics.flow import turning_points
+from dynamics.sensitivity import map_derivatives
 
 both = dynamics.GearOscillator(
     stiffness=dynamics.FourierStiffness(1.0, (0.18, 0.05), (0.0, 0.4)),
@@ -27,10 +29,10 @@ for name, pair in (("both sides", both), ("one side", dataclasses.replace(both, 
     for x, v in ((0.3, 0.0), (0.0, 0.9), (-0.7, -0.4)):
         image = dynamics.period_map(pair, (x, v), 2)
         found[f"map, {name}, {x}"] = [*image.states.ravel(), *image.jacobian.ravel(), *image.counts.ravel()]
-    rates = dynamics.map_derivatives(pair, (0.3, 0.0))
+    rates = map_derivatives(pair, (0.3, 0.0))
     found[f"first derivatives, {name}"] = rates.slope
     found[f"second derivatives, {name}"] = rates.second
-    found[f"turns, {name}"] = dynamics.turning_points(pair, (0.3, 0.1))
+    found[f"turns, {name}"] = turning_points(pair, (0.3, 0.1))
     orbit = dynamics.find_orbit(pair, (0.3, 0.0), 1)
     found[f"orbit, {name}"] = [*orbit.state, *np.abs(orbit.multipliers)]
 branch = dynamics.continue_branch(dynamics.find_orbit(both, (0.3, 0.0)), "frequency", (0.6, 0.66))

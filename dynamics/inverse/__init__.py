@@ -1,7 +1,5 @@
 """The inverse problem: which parameters have special points where somebody reports them."""
 
-from dynamics.inverse.events import Event, OneOf, Ranged
-from dynamics.inverse.identifying import identify
-from dynamics.inverse.report import Candidate, Identification
+import lazy_loader as _lazy
 
-__all__ = ["Candidate", "Event", "Identification", "OneOf", "Ranged", "identify"]
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

@@ -197,10 +197,10 @@ class Problem:
         """Weight of each event."""
         return np.array([event.trust for event in self.events])
 
-    def misfit(self, found: Sequence[float], rows: Iterable[int] | None = None) -> float:
+    def misfit(self, found: Sequence[float] | Array, rows: Iterable[int] | None = None) -> float:
         """Sum of the losses of events (the fitted ones if none are named) with computed values, nan for none."""
         wanted = self.fitted if rows is None else rows
-        return math.fsum(self.events[i].loss(found[i], self.width) for i in wanted)
+        return math.fsum(self.events[i].loss(float(found[i]), self.width) for i in wanted)
 
 
 def checked(

@@ -16,18 +16,9 @@ import time
 
 import numpy as np
 
-from dynamics import (
-    Event,
-    FourierStiffness,
-    GearOscillator,
-    Identification,
-    Ranged,
-    contact_orbit,
-    continue_branch,
-    doubled_orbit,
-    find_orbit,
-    identify,
-)
+from dynamics import FourierStiffness, GearOscillator, continue_branch, doubled_orbit, find_orbit
+from dynamics.grazing import contact_orbit
+from dynamics.inverse import Event, Identification, Ranged, identify
 
 BOUNDS = (0.3, 1.3)
 DECIMALS = 6

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 from events import EVENTS
 
-from dynamics import Event, FourierStiffness, GearOscillator, Identification, Ranged, identify
+from dynamics import FourierStiffness, GearOscillator
+from dynamics.inverse import Event, Identification, Ranged, identify
 
 # The article labels few of its points in 6.4. What its text says of the others: the doubling PD3 is of a motion of
 # period one, SN1 and SN2 lie where motions of period two are in hysteresis; of the rest nothing.

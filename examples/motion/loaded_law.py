@@ -32,6 +32,7 @@ from dynamics import (
     fit_fourier,
     smooth,
 )
+from dynamics.flow import turning_points
 from gears import BasicRack, Gear, GearPair, Material
 
 Array = NDArray[np.float64]
@@ -204,7 +205,7 @@ def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Arra
         events = smooth.period_map(here, state, extrema=True, tolerance=1e-8).events
         x = events[events[:, 1] == events[:, 1].max(), 3]
     else:
-        x = dynamics.turning_points(here, state)[:, 1]
+        x = turning_points(here, state)[:, 1]
     return float(x.min()), float(x.max())
 
 

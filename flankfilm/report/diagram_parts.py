@@ -13,7 +13,7 @@ from flankfilm.report.text import number, percent
 if TYPE_CHECKING:
     import xarray as xr
 
-    from dynamics import Stretch
+    from dynamics.labelling import Stretch
     from flankfilm.stages.diagram import DiagramStage
 
 LONGEST = 40

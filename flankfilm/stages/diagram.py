@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from base import SolverError
 
 if TYPE_CHECKING:
-    from dynamics import Diagram, FourierStiffness, GearOscillator, SpecialPoint, Stretch
+    from dynamics import Diagram, FourierStiffness, GearOscillator, SpecialPoint
+    from dynamics.labelling import Stretch
     from flankfilm.stages.engine import Engine
     from flankfilm.stages.motion import FourierStage, ScalingStage
 
@@ -65,7 +66,7 @@ class DiagramStage:
         Branches over the mesh frequency.
     rpm_per_frequency : float or None
         Pinion speed of frequency 1 [rpm].
-    stable : tuple of dynamics.Stretch
+    stable : tuple of Stretch
         Stable motions with their ranges.
     separated, back_contact : tuple of (float, float)
         Frequencies at which some stable motion loses contact, and touches the back flank.
@@ -233,7 +234,7 @@ def _over(series: FourierStiffness, mean: float) -> FourierStiffness:
 
 def _factors(engine: Engine, scaled: ScalingStage, found: Diagram) -> Array:
     """Greatest force over the mean force along stable branches of period 1 and 2, and ISO 6336-1's K_v."""
-    from dynamics import force_range
+    from dynamics.robustness import force_range
 
     rows = []
     for branch in found.branches:

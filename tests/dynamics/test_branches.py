@@ -19,8 +19,8 @@ from dynamics import (
     find_orbits,
     period_map,
     sweep,
-    turning_points,
 )
+from dynamics.flow import turning_points
 
 
 @pytest.fixture(scope="module")

@@ -18,10 +18,10 @@ from dynamics import (
     doubled_orbit,
     find_orbit,
     find_orbits,
-    map_derivatives,
     period_map,
     sweep,
 )
+from dynamics.sensitivity import map_derivatives
 
 
 def lubricated(**changes) -> GearOscillator:

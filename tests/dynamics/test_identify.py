@@ -11,17 +11,8 @@ import numpy as np
 import pytest
 
 from base import InputError
-from dynamics import (
-    Event,
-    FourierStiffness,
-    GearOscillator,
-    OneOf,
-    Ranged,
-    continue_branch,
-    find_orbit,
-    find_orbits,
-    identify,
-)
+from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, find_orbits
+from dynamics.inverse import Event, OneOf, Ranged, identify
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import Problem
 from dynamics.inverse.reduction import reduced, scaled

@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from dynamics import Event, FourierStiffness, GearOscillator, SpecialPoint
+from dynamics import FourierStiffness, GearOscillator, SpecialPoint
+from dynamics.inverse import Event
 from dynamics.inverse.events import Problem
 from dynamics.inverse.matching import match
 from dynamics.inverse.scoring import by_chance, probabilities

@@ -14,9 +14,9 @@ from dynamics import (
     find_orbits,
     manifold,
     period_map,
-    stretches,
 )
 from dynamics.flow import tables
+from dynamics.labelling import stretches
 from dynamics.manifolds import carried, reversed_tables
 
 

@@ -11,13 +11,13 @@ from dynamics import (
     FourierStiffness,
     GearOscillator,
     contact_grazing,
-    contact_orbit,
     continue_branch,
     find_orbit,
     find_orbits,
     period_map,
     sweep,
 )
+from dynamics.grazing import contact_orbit
 from dynamics.shooting import floquet_multipliers
 from dynamics.sweeps import repeat_after
 

@@ -5,14 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics import (
-    FourierStiffness,
-    GearOscillator,
-    continue_branch,
-    find_orbit,
-    force_range,
-    special_sensitivities,
-)
+from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, special_sensitivities
+from dynamics.robustness import force_range
 
 OSC = GearOscillator(FourierStiffness(1.0, (0.18, 0.02), (0.1, -0.4)), 0.05, 0.1, 0.2, 0.5, 0.2, 0.05)
 

@@ -8,7 +8,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from base import InputError
-from dynamics import FourierStiffness, GearOscillator, map_derivatives, period_map, turning_points
+from dynamics import FourierStiffness, GearOscillator, period_map
+from dynamics.flow import turning_points
+from dynamics.sensitivity import map_derivatives
 
 STATE = np.array([0.5, 0.2])
 

@@ -21,10 +21,10 @@ from dynamics import (
     SmoothOscillator,
     SqueezeFilm,
     TabulatedContact,
-    map_derivatives,
     smooth,
     trajectory,
 )
+from dynamics.sensitivity import map_derivatives
 from dynamics.smooth import Surface
 from dynamics.smooth.kernels import tableau
 

@@ -21,6 +21,8 @@ from dynamics import (
     smooth,
 )
 from dynamics.branch import MEETS
+from dynamics.flow import turning_points
+from dynamics.sensitivity import map_derivatives
 from dynamics.smooth import MapPoint, Surface
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
@@ -96,8 +98,8 @@ class ExactMap:
     def evaluate(self, u):
         width, n = self.high - self.low, self.periods
         here = self.oscillator.with_parameter(self.parameter, self.low + u[2] * width)
-        done = dynamics.map_derivatives(here, u[:2] * self.scale, (self.parameter,), n)
-        turns = dynamics.turning_points(here, u[:2] * self.scale, n)[:, :3]
+        done = map_derivatives(here, u[:2] * self.scale, (self.parameter,), n)
+        turns = turning_points(here, u[:2] * self.scale, n)[:, :3]
         turns[:, 0] /= here.period * n
         return MapPoint(
             u.copy(),

@@ -7,16 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from dynamics import (
-    FourierStiffness,
-    GearOscillator,
-    contact_orbit,
-    continue_branch,
-    find_orbit,
-    period_map,
-    trajectory,
-)
+from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, period_map, trajectory
 from dynamics.flow import tables
+from dynamics.grazing import contact_orbit
 
 
 def oscillator(kappa=0.18, phi=0.0, **changes) -> GearOscillator:

@@ -13,16 +13,8 @@ import numpy as np
 import pytest
 
 from base import InputError
-from dynamics import (
-    Event,
-    FourierStiffness,
-    GearOscillator,
-    Ranged,
-    continue_branch,
-    find_orbit,
-    identify,
-    sweep,
-)
+from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, sweep
+from dynamics.inverse import Event, Ranged, identify
 
 SIX = (
     Event("saddle-node", "1-1-0", 0.43701658, 8),

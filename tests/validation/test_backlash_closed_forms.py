@@ -9,8 +9,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from dynamics import FourierStiffness, GearOscillator, contact_grazing, contact_orbit, period_map, trajectory
+from dynamics import FourierStiffness, GearOscillator, contact_grazing, period_map, trajectory
 from dynamics.flow import tables
+from dynamics.grazing import contact_orbit
 
 
 @settings(max_examples=40, deadline=None)
