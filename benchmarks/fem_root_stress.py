@@ -67,8 +67,8 @@ def main():
         worst = int(np.argmax(amplitude[0]))
         print(
             f"{name}: tension {peak.stress_Pa / 1e6:.1f} MPa at {np.degrees(peak.tangent_angle):.1f} deg, "
-            f"{peak.way:.3f} base pitches after A; compression {other.stress_Pa / 1e6:.1f} MPa; one tooth's passage "
-            f"{mean[0, worst] / 1e6:.1f} +- {amplitude[0, worst] / 1e6:.1f} MPa"
+            f"{peak.position:.3f} base pitches after A; compression {other.stress_Pa / 1e6:.1f} MPa; one tooth's "
+            f"passage {mean[0, worst] / 1e6:.1f} +- {amplitude[0, worst] / 1e6:.1f} MPa"
         )
     print(f"a further torque, 40 positions: {1e3 * seconds:.1f} ms of processor time")
     few = fem.mesh_cycle(PAIR, 600.0, 20, bodies)

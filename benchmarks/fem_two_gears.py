@@ -7,7 +7,7 @@ second-order triangles. Both annuli are meshed whole, with edges of a few microm
 tip corners, which may be sharp or rounded. Where teeth i of both gears may touch, one pressure p_j acts on each
 element edge of the tooth whose tip is near (the mortar side); the other flank is the exact involute, whose
 distance from a point is known in closed form: the normals of an involute touch its base circle. With the gaps
-G_j = integral of g over edge j, l_j = dG_j/dphi by the pinion's turn phi and the flexibility C of both gears,
+G_j = integral of g over edge j, l_j = dG_j/dphi by the pinion's turn phi and the compliance C of both gears,
 
     G + C p + l phi >= 0,  p >= 0,  p . (G + C p + l phi) = 0,  -l . p = T/b,
 
@@ -221,19 +221,19 @@ def forces_of(bodies, all_strips, faced, stand):
     return out
 
 
-def active_set(flexibility, gap, rate, moment):
+def active_set(compliance, gap, rate, moment):
     """Pressures and turn: G + C p + l phi >= 0, p >= 0, complementary, -l . p = moment."""
     active = gap < np.quantile(gap, 0.5)
     for _ in range(200):
         a = np.flatnonzero(active)
         matrix = np.zeros((len(a) + 1, len(a) + 1))
-        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = flexibility[np.ix_(a, a)], rate[a], rate[a]
-        scale = np.append(np.full(len(a), np.sqrt(flexibility[0, 0])), np.abs(rate).max())
+        matrix[:-1, :-1], matrix[:-1, -1], matrix[-1, :-1] = compliance[np.ix_(a, a)], rate[a], rate[a]
+        scale = np.append(np.full(len(a), np.sqrt(compliance[0, 0])), np.abs(rate).max())
         scale = 1 / np.where(scale > 0, scale, 1.0)
         solved = scale * np.linalg.solve(scale[:, None] * matrix * scale, scale * np.append(-gap[a], -moment))
         p, phi = np.zeros(len(gap)), solved[-1]
         p[a] = solved[:-1]
-        slack = gap + flexibility @ p + rate * phi
+        slack = gap + compliance @ p + rate * phi
         wrong = (active & (p < 0)) | (~active & (slack < -1e-9 * np.abs(gap).max()))
         if not wrong.any():
             return p, phi
@@ -278,13 +278,13 @@ def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15
         ]
         loads = forces_of(bodies, some, faced, here)
         answers = [body.solve(load) for body, load in zip(bodies, loads, strict=True)]
-        flexibility = sum(load.T @ answer for load, answer in zip(loads, answers, strict=True))
+        compliance = sum(load.T @ answer for load, answer in zip(loads, answers, strict=True))
         weak = np.concatenate([(s.areas * f.gap).sum(axis=1) for s, f in zip(some, faced, strict=True)])
         rate = np.concatenate([(s.areas * f.rate).sum(axis=1) for s, f in zip(some, faced, strict=True)])
         # the gaps hold the displacements so far: take them out, the solution brings all of them
         held = sum(load.T @ u.ravel() for load, u in zip(loads, moved, strict=True))
         p, turn = active_set(
-            0.5 * (flexibility + flexibility.T), weak - held - rate * phi, rate, TORQUE / pair.face_width
+            0.5 * (compliance + compliance.T), weak - held - rate * phi, rate, TORQUE / pair.face_width
         )
         changes.append((turn - phi) * pair.base_radii[0])
         phi, moved = turn, [(answer @ p).reshape(-1, 2) for answer in answers]
@@ -356,7 +356,7 @@ def ours(pair, position, beyond, bodies):
         return float(np.interp(position, cycle.position, values))
 
     forces = {int(o): at(cycle.forces[:, i]) / pair.face_width / 1e3 for i, o in enumerate(cycle.pair_offset)}
-    return at(cycle.approach), forces
+    return at(cycle.transmission_error), forces
 
 
 def line(label, pair, approach, per_mm, note=""):
@@ -410,7 +410,7 @@ def main():
     positions = (np.arange(MEAN) + 0.5) / MEAN
     cycle = fem.mesh_cycle(pair, TORQUE, MEAN, bodies)
     found = [solve(pair, position, 3e-6, 8e-6, 0.0, True, False).approach for position in positions]
-    for label, approach in (("fem.mesh_cycle", cycle.approach), ("two gears", np.array(found))):
+    for label, approach in (("fem.mesh_cycle", cycle.transmission_error), ("two gears", np.array(found))):
         stiffness = cycle.force / pair.face_width / approach / 1e9
         spread = 1e6 * np.ptp(approach)
         print(

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.cost import Cost
-from fem.errors import Fault, FemError
+from base import Array, Cost, Faults, described, quantity, record
 from fem.flamant import hertz_half_width, hertz_indentation
-from fem.flexibility import GearFlexibility
+from fem.gear_compliance import GearCompliance
 from fem.local_law import HertzApproach
 from fem.ring import Ring, mesh_and_factor
 from fem.support import FIXED, Support, held_profiles
@@ -25,59 +23,36 @@ if TYPE_CHECKING:
 
 __all__ = ["PARTS", "Compliance"]
 
-Array = NDArray[np.float64]
-
 PARTS = ("hub_windup", "coupling", "support")
 """Parts that ``Compliance.without`` can leave out."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Compliance:
-    """Flexibility of both gears of a pair as functions of the contact's place.
+    """Compliance of both gears of a pair as functions of the contact's place.
 
-    Attributes
-    ----------
-    pair : gears.GearPair
-    plane : {"strain", "stress"}
-    pinion, wheel : GearFlexibility
-        Held at the bore or hub, with all that is in ``left_out``.
-    tips : (TipStrips, TipStrips)
-        Tips of pinion and wheel, for contact of their edges outside the path.
-    refinements : int
-        Of the mesh in use.
-    sizes : meshes.Sizes
-        Of the mesh before it was refined.
-    reach : int
-        Neighbours with cross terms on either side of a tooth.
-    error : float
-        Estimated relative error of the deflection of a pair, largest along the path (``fem.compliance``).
-    cost : Cost
-    converged : bool
-        Whether ``error`` meets the tolerance asked for.
-    message : str
-    supports : (Support, Support)
-        Of pinion and wheel.
-    left_out : frozenset of str
-        Parts that ``own`` and ``bulk`` leave out.
-    kept_rings : (Ring, Ring) or None
-        The factorised gears where this process computed them; dropped on pickling (see ``rings``).
+    ``pinion`` and ``wheel`` are held at the bore or hub, with all that is in ``left_out``; ``tips`` are those of
+    pinion and wheel, for contact of their edges outside the path. ``rings`` are kept in the process that computed
+    them only.
     """
+
+    headline = ("plane", "refinements")
 
     pair: GearPair
     plane: str
-    pinion: GearFlexibility
-    wheel: GearFlexibility
+    pinion: GearCompliance
+    wheel: GearCompliance
     tips: tuple[TipStrips, TipStrips]
-    refinements: int
-    sizes: Sizes
-    reach: int
-    error: float
+    refinements: int = quantity("1", "refinements of the mesh in use")
+    sizes: Sizes  # of the mesh before it was refined
+    reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
+    error: float = quantity("1", "estimated relative error of a pair's deflection, greatest along the path")
     cost: Cost
     converged: bool
     message: str
     supports: tuple[Support, Support] = (FIXED, FIXED)
     left_out: frozenset[str] = frozenset()
-    kept_rings: tuple[Ring, Ring] | None = field(default=None, repr=False)
+    kept_rings: tuple[Ring, Ring] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
@@ -88,7 +63,7 @@ class Compliance:
         if self.kept_rings is not None:
             return self.kept_rings
         profiles = held_profiles(self.pair, self.supports)
-        return mesh_and_factor(self.pair, self.plane, self.sizes, self.refinements, profiles)[0]
+        return mesh_and_factor(self.pair, self.plane, self.sizes, self.refinements, profiles)
 
     def without(self, *parts: str) -> Compliance:
         """Leave parts out, to compare with models that do not have them.
@@ -106,42 +81,46 @@ class Compliance:
 
         Raises
         ------
-        FemError
+        base.InputError
             A name that is no part.
         """
-        unknown = [name for name in parts if name not in PARTS]
-        if unknown:
-            known = ", ".join(PARTS)
-            raise FemError(*(Fault("parts", repr(name), known, "name a part") for name in unknown))
+        found = Faults()
+        for name in parts:
+            found.choice("parts", name, PARTS, "name a part")
+        found.raise_if_any()
         return replace(self, left_out=self.left_out | set(parts))
 
     @property
+    @described("m/N", "gear")
     def hub_windup(self) -> tuple[float, float]:
-        """Turning of pinion's and wheel's body, along the line of action [m/N at the pair's face width]."""
+        """Turn of pinion's and wheel's body on its hub, along the line of action, at the pair's face width."""
         width = self.pair.face_width
         return self.pinion.hub_windup / width, self.wheel.hub_windup / width
 
     @property
+    @described("m/N", "gear")
     def support(self) -> tuple[float, float]:
-        """What pinion's and wheel's rigid hubs give way along the line of action [m/N]."""
-        first, second = (s.flexibility(r) for s, r in zip(self.supports, self.pair.base_radii, strict=True))
+        """Compliance of pinion's and wheel's rigid hubs along the line of action."""
+        first, second = (s.compliance(r) for s, r in zip(self.supports, self.pair.base_radii, strict=True))
         return first, second
 
     @property
+    @described("m", "gear", shown="mm")
     def rim_thickness(self) -> tuple[float, float]:
-        """From the radius at which pinion and wheel are held to the root circle [m]."""
+        """Thickness from the radius at which pinion and wheel are held to the root circle."""
         first, second = (p.root_radius - p.bore_radius for p in held_profiles(self.pair, self.supports))
         return first, second
 
     @property
     def _common(self) -> float:
-        """What all contacts yield alike beyond the flexibilities of the flanks [m/N]; less what is left out."""
+        """What all contacts yield alike beyond the compliances of the flanks [m/N]; less what is left out."""
         support = 0.0 if "support" in self.left_out else sum(self.support)
         return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
 
     @property
+    @described("m/N")
     def turning(self) -> float:
-        """What hubs and supports move all teeth by alike, which closes no gap, as far as it is in [m/N]."""
+        """What hubs and supports move all teeth by alike, which closes no gap, unless it is left out."""
         if "coupling" in self.left_out:
             return 0.0
         windup = 0.0 if "hub_windup" in self.left_out else sum(self.hub_windup)
@@ -176,7 +155,7 @@ class Compliance:
         return np.asarray(total / self.pair.face_width + self._common)
 
     def bulk(self, rho1: Array, rho2: Array | None = None, leaning: Array | None = None) -> Array:
-        """Bulk flexibility of pairs in order of their rho1, one tooth apart.
+        """Bulk compliance of pairs in order of their rho1, one tooth apart.
 
         Parameters
         ----------
@@ -186,7 +165,7 @@ class Compliance:
             On the wheel; those of the line of action unless given.
         leaning : (2, ..., n) array, optional
             Angles by which forces lean from pinion's and wheel's own normal, away from the tip [rad]: not zero
-            only where that gear's tip corner is in contact. Cross terms alone; the own flexibility of a
+            only where that gear's tip corner is in contact. Cross terms alone; the own compliance of a
             corner belongs to its law (``fem.tip_contact``).
 
         Returns

@@ -17,13 +17,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.errors import Fault, FemError
+from base import Array, Fault, InputError
 
 __all__ = ["RingOfLinks", "ring_of_links"]
-
-Array = NDArray[np.float64]
 
 STEPS = 60
 
@@ -79,7 +76,7 @@ def ring_of_links(stiffness: Array, links: int) -> RingOfLinks:
 
     Raises
     ------
-    FemError
+    base.InputError
         When the chain is not held, so that no displacement decays.
     """
     n = len(stiffness) // 2
@@ -98,7 +95,7 @@ def ring_of_links(stiffness: Array, links: int) -> RingOfLinks:
         if max(np.abs(to_last).max(), np.abs(to_next).max()) <= 1e-18 * size:
             break
     else:
-        raise FemError(Fault("hub", "free", "held on the bore", "give the gear a larger bore"))
+        raise InputError([Fault("hub", "free", "must be held on the bore", "give the gear a larger bore")])
     start = np.linalg.inv(diagonal)
     onward, back = -np.linalg.solve(from_right, behind), -np.linalg.solve(from_left, ahead)
     power, unit = np.linalg.matrix_power, np.eye(n)

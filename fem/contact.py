@@ -1,37 +1,65 @@
-"""Loaded tooth contact over base pitches: load share, approach, secant and tangent stiffness."""
+"""Loaded tooth contact over base pitches: load share, transmission error, secant and tangent stiffness."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from time import perf_counter
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
+from base import Array, Booleans, Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
-from fem.compliance import compliance as _compliance
-from fem.cost import Cost
+from fem.contact_candidates import ContactCandidates
 from fem.cycle import MeshCycle
-from fem.errors import Fault
 from fem.local_law import Film
-from fem.meshing import Meshing
-from fem.setting import Deviations, Setting, setting
+from fem.pair_compliance import compliance as _compliance
+from fem.setting import Deviations, Setting
 from fem.sharing import Solution, solve
 
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["MeshCycle", "mesh_cycle", "torque_sweep"]
+__all__ = ["MeshCycle", "mesh_cycle"]
 
-Array = NDArray[np.float64]
+TORQUE = Limit(0.0, unit="N m", low_open=True, remedy="the pinion drives; give its torque")
 
-MOST_FRICTION = 0.5
+Options = ParamSpec("Options")
 
 
+class _OneOrSeveral(Protocol[Options]):
+    """A function of a torque that gives one cycle, of several torques that gives as many."""
+
+    @overload
+    def __call__(
+        self, pair: GearPair, torque: float, *args: Options.args, **kwargs: Options.kwargs
+    ) -> MeshCycle: ...
+
+    @overload
+    def __call__(
+        self, pair: GearPair, torque: Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
+    ) -> tuple[MeshCycle, ...]: ...
+
+
+def _one_or_several(
+    sweep: Callable[Concatenate[GearPair, Array, Options], tuple[MeshCycle, ...]],
+) -> _OneOrSeveral[Options]:
+    """Let a function of an array of torques take a single torque too, for which it returns a single cycle."""
+
+    @wraps(sweep)
+    def either(
+        pair: GearPair, torque: float | Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
+    ) -> MeshCycle | tuple[MeshCycle, ...]:
+        cycles = sweep(pair, np.atleast_1d(np.asarray(torque, dtype=float)).ravel(), *args, **kwargs)
+        return cycles if np.ndim(torque) else cycles[0]
+
+    return either  # type: ignore[return-value]
+
+
+@_one_or_several
 def mesh_cycle(
     pair: GearPair,
-    torque: float,
+    torque: Array,
     positions: int = 40,
     compliance: Compliance | None = None,
     beyond_path: bool = True,
@@ -44,7 +72,7 @@ def mesh_cycle(
     first_teeth: tuple[int, int] = (0, 0),
     tip_rounding: float | tuple[float, float] = 0.0,
     friction: float = 0.0,
-) -> MeshCycle:
+) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
     For every loaded pair D = sum_j bulk_ij F_j + Hertz(F_i) - s_i(F_i) + gap_i, with sum F_i = torque/r_b1.
@@ -52,8 +80,9 @@ def mesh_cycle(
     Parameters
     ----------
     pair : gears.GearPair
-    torque : float
-        Of the pinion [N m], > 0.
+    torque : float or sequence of float
+        Of the pinion [N m], > 0. A sequence, in any order, gives a tuple of cycles; all that does not depend on
+        the torque is computed once.
     positions : int
         Intervals of a base pitch.
     compliance : Compliance, optional
@@ -61,9 +90,9 @@ def mesh_cycle(
     beyond_path : bool
         Whether tip edges may touch outside A..E (``fem.tip_contact``); they do under usual loads.
     film : Film, optional
-        What the oil props the flanks apart, in series with each pair before the load is shared.
+        Separation of the flanks by the oil, in series with each pair before the load is shared.
     tolerance, plane
-        As for ``fem.compliance``.
+        As for `compliance`.
     deviations : (gears.GearDeviations or None, gears.GearDeviations or None), optional
         Profile and pitch deviations of pinion and wheel, on top of tip relief.
     pitches : int
@@ -83,115 +112,54 @@ def mesh_cycle(
 
     Returns
     -------
-    MeshCycle
+    MeshCycle or tuple of MeshCycle
+        One for each torque of a sequence; ``cost`` is that of all of them together.
 
     Raises
     ------
-    FemError
+    base.InputError
         Input that makes no sense, or the compliance of another pair.
+
+    Examples
+    --------
+    >>> from fem import compliance, mesh_cycle
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> cycle = mesh_cycle(pair, torque=600.0, compliance=compliance(pair, tolerance=0.05))
+    >>> round(cycle.stiffness.mean() / 40e-3 / 1e9, 1)  # N/(mm um)
+    20.5
     """
-    return torque_sweep(
-        pair,
-        (torque,),
-        positions,
-        compliance,
-        beyond_path,
-        film,
-        tolerance,
-        plane,
-        deviations=deviations,
-        pitches=pitches,
-        first_teeth=first_teeth,
-        tip_rounding=tip_rounding,
-        friction=friction,
-    )[0]
-
-
-def torque_sweep(
-    pair: GearPair,
-    torques: ArrayLike,
-    positions: int = 40,
-    compliance: Compliance | None = None,
-    beyond_path: bool = True,
-    film: Film | None = None,
-    tolerance: float = 0.001,
-    plane: str = "strain",
-    *,
-    deviations: Deviations | None = None,
-    pitches: int = 1,
-    first_teeth: tuple[int, int] = (0, 0),
-    tip_rounding: float | tuple[float, float] = 0.0,
-    friction: float = 0.0,
-) -> tuple[MeshCycle, ...]:
-    """Mesh cycles at several torques; all that does not depend on the torque is computed once.
-
-    Parameters
-    ----------
-    torques : (k,) array
-        Of the pinion [N m], > 0, in any order; all other parameters as for ``mesh_cycle``.
-
-    Returns
-    -------
-    tuple of MeshCycle
-        One for each torque; ``cost`` is that of the whole sweep.
-
-    Raises
-    ------
-    FemError
-        Input that makes no sense, or the compliance of another pair.
-    """
-    wanted = np.atleast_1d(np.asarray(torques, dtype=float)).ravel()
-    given = setting(
-        pair,
-        positions,
-        pitches,
-        first_teeth,
-        beyond_path,
-        tip_rounding,
-        deviations,
-        _faults(pair, wanted, compliance, friction),
-    )
-    began = perf_counter()
+    given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding, friction)
+    _check(given, torque, compliance)
+    watch = Stopwatch()
     bodies = compliance if compliance is not None else _compliance(pair, tolerance, plane)
-    ready = perf_counter()
-    contact = solve(given, bodies, wanted / pair.base_radii[0], film, friction)
+    ready = watch.seconds
+    contact = solve(given, bodies, torque / pair.base_radii[0], film)
+    before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
-        perf_counter() - began,
+        watch.seconds,
         bodies.cost.unknowns,
         contact.share.iterations,
-        bodies.cost.annulus_unknowns,
-        {**({} if compliance is not None else bodies.cost.parts), "contact": perf_counter() - ready},
+        parts={**before.parts, "contact": watch.seconds - ready},
+        counts=bodies.cost.counts,
     )
-    return tuple(_result(given, bodies, contact, k, float(t), friction, cost) for k, t in enumerate(wanted))
+    return tuple(_result(given, bodies, contact, k, float(t), cost) for k, t in enumerate(torque))
 
 
-def _faults(
-    pair: GearPair, torques: Array, compliance: Compliance | None, friction: float
-) -> Sequence[Fault]:
-    faults = []
-    if not torques.size:
-        faults.append(Fault("torques", "none", "at least one", "give torques in N m"))
-    faults += [
-        Fault("torque", f"{torque!r}", "finite and > 0 (N m)", "the pinion drives; give its torque")
-        for torque in torques.tolist()
-        if not (np.isfinite(torque) and torque > 0)
-    ]
-    if compliance is not None and compliance.pair != pair:
-        faults.append(Fault("compliance", "of another pair", "of this pair", "compute it anew"))
-    if not (np.isfinite(friction) and 0 <= friction <= MOST_FRICTION):
-        allowed = f"0 to {MOST_FRICTION}"
-        faults.append(Fault("friction", f"{friction!r}", allowed, "dry steel has about 0.2, oiled 0.05"))
-    return faults
+def _check(given: Setting, torque: Array, compliance: Compliance | None) -> None:
+    found = Faults()
+    if not torque.size:
+        found.add("torque", "none", "must be at least one", "give torques in N m")
+    for one in torque.tolist():
+        found.number("torque", one, TORQUE)
+    if compliance is not None and compliance.pair != given.pair:
+        found.add("compliance", "of another pair", "must be of this pair", "compute it anew")
+    given.check(found)
+    found.raise_if_any()
 
 
 def _result(
-    given: Setting,
-    bodies: Compliance,
-    contact: Solution,
-    number: int,
-    torque: float,
-    friction: float,
-    cost: Cost,
+    given: Setting, bodies: Compliance, contact: Solution, number: int, torque: float, cost: Cost
 ) -> MeshCycle:
     where, pairs = contact.where, len(contact.where.offset)
     force = torque / given.pair.base_radii[0]
@@ -216,7 +184,7 @@ def _result(
         forces=forces,
         load_share=(turned * contact.levers).reshape(-1, pairs) / force + bad,
         gaps=where.gap.reshape(-1, pairs),
-        approach=deflection + touch + bad,
+        transmission_error=deflection + touch + bad,
         stiffness=contact.share.tangent[number].ravel() + bad,
         secant_stiffness=force / deflection + bad,
         plane=bodies.plane,
@@ -224,11 +192,10 @@ def _result(
         error=bodies.error,
         cost=cost,
         converged=bodies.converged and not refusal,
-        message=refusal
-        or "; ".join([bodies.message, *_remarks(given, where, forces, edge, closing, friction)]),
+        message=refusal or "; ".join([bodies.message, *_remarks(given, where, forces, edge, closing)]),
         pair=given.pair,
-        meshing=where,
-        friction=float(friction),
+        candidates=where,
+        friction=float(given.friction),
     )
 
 
@@ -239,8 +206,8 @@ def _refusal(contact: Solution, turned: Array, closing: Array) -> str:
         return "a tip edge presses over more than the strips cover; reduce the torque"
     if np.max(closing) > contact.where.reach_gap:
         return (
-            "the approach closes gaps more than a base pitch outside the path, where no contact was looked for; "
-            "reduce the torque or the deviations"
+            "the deflection closes gaps more than a base pitch outside the path, where no contact was looked "
+            "for; reduce the torque or the deviations"
         )
     if np.any(turned[..., contact.where.chamfered] > 0):
         return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
@@ -248,12 +215,7 @@ def _refusal(contact: Solution, turned: Array, closing: Array) -> str:
 
 
 def _remarks(
-    given: Setting,
-    where: Meshing,
-    forces: Array,
-    edge: NDArray[np.bool_],
-    closing: Array,
-    friction: float,
+    given: Setting, where: ContactCandidates, forces: Array, edge: Booleans, closing: Array
 ) -> list[str]:
     """What a reader of the figures should know."""
     remarks = []
@@ -262,17 +224,15 @@ def _remarks(
         form = (
             "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
         )
+        tilted = ", tilted by the same friction as flanks" if given.friction else " without friction"
         remarks.append(
-            f"tip edges outside the path touch as {form} without friction; the shares that they take are "
-            "uncertain by several per cent for real edges"
-            if not friction
-            else f"tip edges outside the path touch as {form}, tilted by the same friction as flanks; the shares "
-            "that they take are uncertain by several per cent for real edges"
+            f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
+            "several per cent for real edges"
         )
-    if friction:
-        remarks.append("friction changes the lever arms only, not the flexibility")
+    if given.friction:
+        remarks.append("friction changes the lever arms only, not the compliance")
     if np.min(where.back_gap) < 0:
-        remarks.append("the teeth jam: their back flanks overlap by the deviations; give more backlash")
+        remarks.append("the teeth jam: their back flanks penetrate by the deviations; give more backlash")
     elif np.min(where.back_gap - closing) < 0:
         remarks.append(
             "the backlash is less than the deflection, so back flanks might touch, which is left out"

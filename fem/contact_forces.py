@@ -10,16 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.contact import MeshCycle
-from fem.fields import contact_half_width, refuse_row
+from base import Array, Faults, Integers
+from fem.cycle import MeshCycle, check_row
+from fem.fields import contact_half_width
 
 if TYPE_CHECKING:
     from gears import GearPair
 
 __all__ = ["ContactForces", "contact_forces"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 MIRROR: Array = np.array([-1.0, 1.0])
 
@@ -48,9 +46,9 @@ class ContactForces:
 
     points: Array
     force_N: Array
-    gear: Index
-    pair: Index
-    tip_edge: Index
+    gear: Integers
+    pair: Integers
+    tip_edge: Integers
     pressure_Pa: Array
     half_width_m: Array
 
@@ -61,29 +59,31 @@ class ContactForces:
         return MappingProxyType({name: getattr(self, name) for name in names})
 
 
-def contact_forces(pair: GearPair, cycle: MeshCycle, position: int) -> ContactForces:
+def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
     """Contacts that bear at one position, with the normals of the flanks that are touched.
 
     Parameters
     ----------
     pair : gears.GearPair
     cycle : MeshCycle
-    position : int
-        Row of the cycle.
+    row : int
+        Of the cycle.
 
     Raises
     ------
-    FemError
+    base.InputError
         A row that the cycle does not have, or that has no finite forces.
     """
-    refuse_row(cycle, position)
-    columns = np.flatnonzero(cycle.forces[position] > 0)
+    found = Faults()
+    check_row(found, cycle, row)
+    found.raise_if_any()
+    columns = np.flatnonzero(cycle.forces[row] > 0)
     points, normals = np.empty((len(columns), 2)), np.empty((len(columns), 2))
     for i, column in enumerate(columns):
-        points[i], normals[i] = _touched(pair, cycle, position, int(column))
-    size = cycle.forces[position, columns]
-    half = np.array([contact_half_width(pair, cycle, position, int(column)) for column in columns])
-    edge = cycle.edge[position, columns]
+        points[i], normals[i] = _touched(pair, cycle, row, int(column))
+    size = cycle.forces[row, columns]
+    half = np.array([contact_half_width(pair, cycle, row, int(column)) for column in columns])
+    edge = cycle.edge[row, columns]
     half = np.where(edge, np.nan, half)
     peak = 2 * size / (np.pi * half * pair.face_width)
     on_wheel = size[:, None] * normals
@@ -98,16 +98,16 @@ def contact_forces(pair: GearPair, cycle: MeshCycle, position: int) -> ContactFo
     )
 
 
-def _touched(pair: GearPair, cycle: MeshCycle, position: int, column: int) -> tuple[Array, Array]:
+def _touched(pair: GearPair, cycle: MeshCycle, row: int, column: int) -> tuple[Array, Array]:
     """Place of a contact, and the normal along the force on the wheel."""
-    start = float(pair.points.A + cycle.position[position] * pair.base_pitch)
+    start = float(pair.points.A + cycle.position[row] * pair.base_pitch)
     placed = pair.placement(start)
     offset = int(cycle.pair_offset[column])
     # a tip edge touches the other gear's flank: the wheel's, when it comes after E
-    after = bool(cycle.edge[position, column]) and start + offset * pair.base_pitch > pair.points.E
+    after = bool(cycle.edge[row, column]) and start + offset * pair.base_pitch > pair.points.E
     touched = 1 if after else 0
     profile = pair.teeth_profiles[touched]
-    rho = cycle.flank_rho[touched][position, column]
+    rho = cycle.flank_rho[touched][row, column]
     angle = (placed.pinion_angle, placed.wheel_angle)[touched]
     angle += (offset if touched == 0 else -offset) * profile.pitch_angle
     c, s = np.cos(angle), np.sin(angle)

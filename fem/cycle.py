@@ -2,113 +2,111 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.cost import Cost
+from base import Array, Booleans, Cost, Faults, Integers, Limit, described, quantity, record
+from fem.contact_candidates import ContactCandidates
 from fem.elasticity import PlaneElasticity
-from fem.meshing import Meshing
 from gears import GearPair, half_width, peak_pressure
 
-__all__ = ["MeshCycle"]
-
-Array = NDArray[np.float64]
+__all__ = ["MeshCycle", "check_row"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class MeshCycle:
     """Some base pitches of a loaded pair; rows are positions, columns pairs in order of growing rho1.
 
-    Attributes
-    ----------
-    torque, force : float
-        Of the pinion [N m], and torque over base radius [N].
-    position : (n,) array
-        Way from A in base pitches, of the pair that entered last at first: midpoints of equal intervals.
-    pair_offset : (pairs,) array of int
-        Base pitches that each column is ahead of the pair that entered last.
-    rho1 : (n, pairs) array
-        Curvature radius on the pinion [m]; nan where there is no contact between A and E.
-    edge : (n, pairs) boolean array
-        Candidates outside the path, where a tip edge touches if it carries force.
-    flank_rho : (2, n, pairs) array
-        Curvature radii of pinion's and wheel's flank at the contact, tip edges included [m].
-    forces : (n, pairs) array
-        Normal forces [N]; zero where unloaded.
-    load_share : (n, pairs) array
-        Share of the torque; rows sum to one.
-    gaps : (n, pairs) array
-        Unloaded gaps along the line of action [m], from the position without any deviation, so they may be
-        negative; inf for pairs that cannot touch.
-    approach : (n,) array
-        D [m]: turn of the pinion times its base radius, hubs' turn, the wheel's hub held. Positive when the
-        teeth yield.
-    stiffness : (n,) array
-        Tangent dF/dD [N/m]: small vibration about the load.
-    secant_stiffness : (n,) array
-        F/(D - D_0) [N/m], D_0 the unloaded transmission error.
-    plane : str
-    beyond_path : bool
-    error : float
-        Estimated relative numerical error of stiffness and deflection.
-    cost : Cost
-        Of this cycle, and of the compliance if it was computed here; of a sweep as a whole.
-    converged : bool
-    message : str
-    pair : gears.GearPair
-    meshing : Meshing
-        Places, teeth, levers and unloaded gaps.
-    friction : float
-        Coefficient of friction with which the forces were tilted; 0 for none.
+    ``pair`` and ``plane`` are as given; ``candidates`` holds the places, teeth, levers and unloaded gaps of all
+    contacts that were looked for, ``beyond_path`` says whether tip edges were among them. ``cost`` includes the
+    compliance if it was computed here; of several torques it is that of all together.
     """
 
-    torque: float
-    force: float
-    position: Array
-    pair_offset: NDArray[np.int64]
-    rho1: Array
-    edge: NDArray[np.bool_]
-    flank_rho: Array
-    forces: Array
-    load_share: Array
-    gaps: Array
-    approach: Array
-    stiffness: Array
-    secant_stiffness: Array
+    headline = ("torque", "mean_stiffness", "mean_secant_stiffness")
+
+    torque: float = quantity("N m", "torque of the pinion")
+    force: float = quantity("N", "torque over the pinion's base radius")
+    position: Array = quantity(
+        "1", "base pitches from A, of the pair that entered last at first: midpoints of intervals", "position"
+    )
+    pair_offset: Integers = quantity("1", "base pitches ahead of the pair that entered last", "pair")
+    rho1: Array = quantity(
+        "m",
+        "curvature radius on the pinion; nan where there is no contact between A and E",
+        "position pair",
+        shown="mm",
+    )
+    edge: Booleans = quantity(
+        "1",
+        "whether a candidate is outside the path, where a tip edge touches if it is loaded",
+        "position pair",
+    )
+    flank_rho: Array = quantity(
+        "m",
+        "curvature radius of pinion's and wheel's flank at the contact, tip edges included",
+        "gear position pair",
+        shown="mm",
+    )
+    forces: Array = quantity("N", "normal force; zero where unloaded", "position pair")
+    load_share: Array = quantity("1", "share of the torque; rows sum to one", "position pair")
+    gaps: Array = quantity(
+        "m",
+        "unloaded gap along the line of action, from the position without any deviation, so it may be negative; "
+        "inf where a pair cannot touch",
+        "position pair",
+        shown="um",
+    )
+    transmission_error: Array = quantity(
+        "m",
+        "loaded static transmission error D, the pinion's turn times its base radius with the wheel's hub held: all "
+        "deflection, relief and deviations; positive when the wheel lags",
+        "position",
+        shown="um",
+        error="error",
+    )
+    stiffness: Array = quantity(
+        "N/m", "tangent dF/dD: small vibration about the load", "position", error="error"
+    )
+    secant_stiffness: Array = quantity(
+        "N/m", "F/(D - D_0), D_0 the unloaded transmission error", "position", error="error"
+    )
     plane: str
     beyond_path: bool
-    error: float
+    error: float = quantity("1", "estimated relative numerical error of stiffness and transmission error")
     cost: Cost
     converged: bool
     message: str
     pair: GearPair
-    meshing: Meshing
-    friction: float = 0.0
+    candidates: ContactCandidates
+    friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
 
     @property
-    def transmission_error(self) -> Array:
-        """Loaded static transmission error, the approach D along the line of action (n,) [m].
-
-        It contains tip relief and deviations (as gaps) and all deflection; positive when the wheel lags.
-        """
-        return self.approach
+    @described("N/m", error="error")
+    def mean_stiffness(self) -> float:
+        """Mean of the tangent stiffness over the positions."""
+        return float(self.stiffness.mean())
 
     @property
+    @described("N/m", error="error")
+    def mean_secant_stiffness(self) -> float:
+        """Mean of the secant stiffness over the positions."""
+        return float(self.secant_stiffness.mean())
+
+    @property
+    @described("m", "position", shown="um")
     def unloaded_transmission_error(self) -> Array:
-        """D at which the gears touch without load (n,) [m]: the smallest gap."""
+        """D at which the gears touch without load: the smallest gap."""
         return np.asarray(self.gaps.min(axis=1))
 
     @property
-    def teeth(self) -> NDArray[np.int64]:
+    def teeth(self) -> Integers:
         """Numbers of the teeth of pinion and wheel in each pair (2, n, pairs)."""
-        return self.meshing.teeth
+        return self.candidates.teeth
 
     @property
+    @described("m", "position", shown="um")
     def back_gap(self) -> Array:
-        """Smallest gap between back flanks without load (n,) [m]: below zero the teeth jam."""
-        return self.meshing.back_gap
+        """Smallest gap between back flanks without load: below zero the teeth jam."""
+        return self.candidates.back_gap
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
         """Line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
@@ -119,17 +117,18 @@ class MeshCycle:
         return load, rho1 * rho2 / (rho1 + rho2), 2 / sum(1 / law.plane_modulus for law in laws)
 
     @property
+    @described("Pa", "position pair", shown="MPa")
     def hertz_pressure(self) -> Array:
-        """Largest Hertz pressure of each contact (n, pairs) [Pa].
+        """Greatest Hertz pressure; nan where two flanks do not touch.
 
-        nan where two flanks do not touch, and at tip edges: there the pressure is no ellipse, and at a sharp
-        corner it has no bound.
+        nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
         """
         return peak_pressure(*self._loaded_radius())
 
     @property
+    @described("m", "position pair", shown="um")
     def half_width(self) -> Array:
-        """Half-width of each Hertz contact (n, pairs) [m]; nan as for ``hertz_pressure``."""
+        """Half-width of the Hertz contact; nan where two flanks do not touch."""
         return half_width(*self._loaded_radius())
 
     def surface_speeds(self, speed: float = 1.0) -> Array:
@@ -143,7 +142,9 @@ class MeshCycle:
             Of the pinion [rad/s].
         """
         first, second = self.pair.base_radii
-        return np.asarray(speed * self.meshing.tangent_arm * np.array([1.0, first / second])[:, None, None])
+        return np.asarray(
+            speed * self.candidates.tangent_arm * np.array([1.0, first / second])[:, None, None]
+        )
 
     def sliding(self, speed: float = 1.0) -> Array:
         """Sliding speed u1 - u2 of each contact (n, pairs) [m/s], negative before C; pinion at [rad/s]."""
@@ -151,8 +152,9 @@ class MeshCycle:
         return np.asarray(first - second)
 
     @property
+    @described("1", "gear position pair")
     def specific_sliding(self) -> Array:
-        """Sliding over the surface's own speed, (u1 - u2)/u1 and (u2 - u1)/u2, (2, n, pairs).
+        """Sliding over the surface's own speed, (u1 - u2)/u1 and (u2 - u1)/u2.
 
         Infinite where a flank is touched on its base circle.
         """
@@ -161,15 +163,16 @@ class MeshCycle:
             return np.asarray((speeds - speeds[::-1]) / speeds)
 
     @property
+    @described("N m", "position")
     def wheel_torque(self) -> Array:
-        """Torque on the wheel (n,) [N m]: of the normal forces, tilted by friction if there is any.
+        """Torque on the wheel of the normal forces, tilted by friction if there is any.
 
         Where a tip edge presses it differs from the torque of the pinion times the ratio even without
         friction, by what the yielding teeth store; over a cycle that evens out.
         """
         slip = np.sign(self.sliding())
-        arm = self.meshing.lever[1] * self.pair.base_radii[1]
-        arm = arm + self.friction * slip * self.meshing.tangent_arm[1]
+        arm = self.candidates.lever[1] * self.pair.base_radii[1]
+        arm = arm + self.friction * slip * self.candidates.tangent_arm[1]
         return np.asarray(np.sum(self.forces * arm, axis=1, where=np.isfinite(arm)))
 
     def friction_loss(self, speed: float) -> Array:
@@ -178,6 +181,17 @@ class MeshCycle:
         return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
 
     @property
+    @described("1")
     def efficiency(self) -> float:
-        """Mean power lost by sliding taken off the power put in, over that; 1 without friction."""
+        """Power put in less the mean power lost by sliding, over the power put in; 1 without friction."""
         return float(1.0 - np.mean(self.friction_loss(1.0)) / self.torque)
+
+
+def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
+    """Note a row that the cycle does not have, or that has no finite forces."""
+    last = len(cycle.position) - 1
+    known = np.isfinite(
+        found.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
+    )
+    if known and not np.all(np.isfinite(cycle.forces[row])):
+        found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Integers
 from fem import flamant
 from fem.line_load import line_loads
 from fem.near_field import Contact, near_field
@@ -20,8 +20,6 @@ from fem.recovery import NodalStress, nodal_stress
 from fem.ring import Ring
 
 __all__ = ["DrawnSector", "GearDrawing", "gear_drawing"]
-
-Array = NDArray[np.float64]
 
 FOCUS = 0.35
 """Size of the cells at a contact, in half-widths of its pressure."""
@@ -158,7 +156,7 @@ class GearDrawing:
         )
 
 
-def _side_nodes(ring: Ring, side: str) -> NDArray[np.int64]:
+def _side_nodes(ring: Ring, side: str) -> Integers:
     """Nodes of a cut from the bore outwards; the hub's node included."""
     return ring.mesh.side_nodes(side)
 
@@ -173,7 +171,7 @@ def gear_drawing(ring: Ring) -> GearDrawing:
     picture = picture_of(mesh)
     cuts = by_cut.shape[1]
 
-    def stress_at(some: NDArray[np.int64]) -> Array:
+    def stress_at(some: Integers) -> Array:
         rows = (3 * some[:, None] + np.arange(3)).ravel()
         return np.asarray(recovery.matrix[rows] @ by_cut)
 

@@ -7,15 +7,12 @@ itself: an edge nearer than twice its length is integrated on panels that halve 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Integers
 from fem import flamant
 from fem.elasticity import PlaneElasticity
 
 __all__ = ["edge_points", "traction_integrals"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _GAUSS, _GAUSS_WEIGHT = np.polynomial.legendre.leggauss(5)
 _GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
@@ -24,7 +21,7 @@ HALVINGS = 14
 """Of the panels on an edge near a load: the last one is 1e-4 of the edge."""
 
 
-def edge_points(points: Array, edges: Index, t: Array) -> tuple[Array, Array, Array]:
+def edge_points(points: Array, edges: Integers, t: Array) -> tuple[Array, Array, Array]:
     """Positions, derivatives by t and shape values on quadratic edges (first, last, middle)."""
     weights = np.stack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)], axis=-1)
     slopes = np.stack([4 * t - 3, 4 * t - 1, 4 - 8 * t], axis=-1)
@@ -38,7 +35,7 @@ def edge_points(points: Array, edges: Index, t: Array) -> tuple[Array, Array, Ar
 
 def traction_integrals(
     points: Array,
-    edges: Index,
+    edges: Integers,
     load: Array,
     inward: Array,
     law: PlaneElasticity,
@@ -83,7 +80,7 @@ def traction_integrals(
     return np.asarray(forces, dtype=float).reshape(-1, loads), np.asarray(work, dtype=float)
 
 
-def _quadrature(points: Array, edges: Index, load: Array) -> tuple[Index, Index, Array, Array]:
+def _quadrature(points: Array, edges: Integers, load: Array) -> tuple[Integers, Integers, Array, Array]:
     """Load, edge, t on the edge and weight of every quadrature point, for all pairs of load and edge."""
     ends = points[edges[:, :2]]
     chord = ends[:, 1] - ends[:, 0]

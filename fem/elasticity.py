@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.errors import Fault, FemError
+from base import Array, Faults, Integers, unclocked
 from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
@@ -17,10 +16,12 @@ if TYPE_CHECKING:
 
     from gears import Material
 
-__all__ = ["PlaneElasticity", "nodal_stress_matrix", "stiffness_matrix", "stress_at"]
+__all__ = ["PlaneElasticity", "check_plane", "nodal_stress_matrix", "stiffness_matrix", "stress_at"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+
+def check_plane(found: Faults, plane: str) -> None:
+    """Note a plane that is neither strain nor stress."""
+    found.choice("plane", plane, ("strain", "stress"), "wide gears are nearer plane strain")
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,9 @@ class PlaneElasticity:
 
     def __post_init__(self) -> None:
         """Refuse an unknown plane."""
-        if self.plane not in ("strain", "stress"):
-            raise FemError(
-                Fault("plane", repr(self.plane), '"strain" or "stress"', "wide gears are nearer plane strain")
-            )
+        found = Faults()
+        check_plane(found, self.plane)
+        found.raise_if_any()
 
     @classmethod
     def of(cls, material: Material, plane: str) -> PlaneElasticity:
@@ -83,7 +83,7 @@ INTEGRATION = 4
 """Order of the quadrature: exact for the stiffness of straight elements with room for curved ones."""
 
 
-def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) -> tuple[Array, Array]:
+def _physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Array) -> tuple[Array, Array]:
     """Gradients (m, q, 6, 2) in space and Jacobian determinants (m, q) at reference points (q,)."""
     reference = shape_gradients(xi, eta)
     jacobian = np.einsum("mix,qir->mqxr", points[triangles], reference)
@@ -95,7 +95,7 @@ def _physical_gradients(points: Array, triangles: Index, xi: Array, eta: Array) 
     return np.einsum("qir,mqrx->mqix", reference, inverse), determinant
 
 
-def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:
+def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
     """Stiffness matrix per unit thickness [Pa] of isoparametric P2 triangles: scikit-fem's mapping and quadrature.
 
     K_(ia)(jb) = integral of lambda d_a N_i d_b N_j + mu (d_b N_i d_a N_j + delta_ab grad N_i . grad N_j).
@@ -112,8 +112,9 @@ def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> c
     -------
     scipy.sparse.csc_array, (2n, 2n)
     """
-    from scipy.sparse import coo_array
-    from skfem import Basis, ElementTriP2
+    with unclocked():
+        from scipy.sparse import coo_array
+        from skfem import Basis, ElementTriP2
 
     basis = Basis(_curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
     slopes = np.stack([field.grad for (field,) in basis.basis])  # (node, direction, element, quadrature)
@@ -132,7 +133,7 @@ def stiffness_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> c
     return coo_array((element.ravel(), (rows, columns)), shape=(size, size)).tocsc()
 
 
-def _curved_mesh(points: Array, triangles: Index) -> MeshTri2:
+def _curved_mesh(points: Array, triangles: Integers) -> MeshTri2:
     """Hand the triangles to scikit-fem with their middles where they are, on the exact curves.
 
     The triangles keep their corners' order (``sort_t=False``), since ours gives the middles' order too.
@@ -149,7 +150,7 @@ def _curved_mesh(points: Array, triangles: Index) -> MeshTri2:
     return replace(straight, doflocs=places)
 
 
-def nodal_stress_matrix(points: Array, triangles: Index, law: PlaneElasticity) -> csc_array:
+def nodal_stress_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
     """Matrix (3n, 2n) from displacements to sigma_xx, sigma_yy, tau_xy at the nodes, averaged over elements.
 
     Row 3 i + c is component c at node i.
@@ -176,7 +177,7 @@ def nodal_stress_matrix(points: Array, triangles: Index, law: PlaneElasticity) -
 
 
 def stress_at(
-    points: Array, triangles: Index, displacement: Array, law: PlaneElasticity, xi: Array, eta: Array
+    points: Array, triangles: Integers, displacement: Array, law: PlaneElasticity, xi: Array, eta: Array
 ) -> Array:
     """In-plane stresses (m, q, 2, 2) [Pa] of each triangle at reference points (q,).
 

@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base.files import replacing
-from fem.compliance import Compliance
+from base import Fault, InputError, replacing
 from fem.contact import mesh_cycle
-from fem.errors import Fault, FemError
 from fem.loaded_gears import LoadedGear, loaded_gears
+from fem.pair_compliance import Compliance
 from meshes.abaqus import mesh_text, number
 from meshes.msh import write_msh
 
@@ -96,7 +95,7 @@ def export_pair(folder: Path, gears: Sequence[LoadedGear], form: str = "inp") ->
 
     Raises
     ------
-    FemError
+    base.InputError
         Another format.
     """
     _check_format(form)
@@ -108,7 +107,9 @@ def export_pair(folder: Path, gears: Sequence[LoadedGear], form: str = "inp") ->
 
 def _check_format(form: str) -> None:
     if form not in FORMATS:
-        raise FemError(Fault("format", repr(form), " or ".join(FORMATS), "inp holds the loads too"))
+        raise InputError(
+            [Fault("format", repr(form), f"must be {' or '.join(FORMATS)}", "inp holds the loads too")]
+        )
 
 
 def export_position(
@@ -130,7 +131,7 @@ def export_position(
     torque : float
         Of the pinion [N m].
     position : float
-        Way from A in base pitches, 0 to 1, of the pair that entered last; the nearest of 500 midpoints is taken.
+        Base pitches from A, 0 to 1, of the pair that entered last; the nearest of 500 midpoints is taken.
     form : {"inp", "msh"}
     compliance : Compliance, optional
         Of this pair; computed in ``plane`` unless given.
@@ -145,11 +146,13 @@ def export_position(
 
     Raises
     ------
-    FemError
+    base.InputError
         Torque, position or format that make no sense.
     """
     if not 0 <= position <= 1:
-        raise FemError(Fault("position", f"{position!r}", "0 to 1 (base pitches after A)", "0.5 is half-way"))
+        raise InputError(
+            [Fault("position", f"{position!r}", "must be 0 to 1 base pitches after A", "0.5 is half a pitch")]
+        )
     _check_format(form)
     cycle = mesh_cycle(pair, torque, PLACES, compliance, plane=plane)
     row = int(np.argmin(np.abs(cycle.position - position)))

@@ -13,18 +13,17 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Faults, Integers
 from fem import flamant
 from fem.bodies import Compliance
-from fem.compliance import compliance as _compliance
-from fem.contact import MeshCycle
+from fem.cycle import MeshCycle, check_row
 from fem.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.elasticity import PlaneElasticity
-from fem.errors import Fault, FemError
-from fem.flexibility import CORNER_CLEARANCE
+from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from fem.near_field import Contact
+from fem.pair_compliance import compliance as _compliance
 from fem.ring import Ring, mesh_and_factor
 from fem.support import held_profiles
 
@@ -32,9 +31,6 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
 __all__ = ["REGIONS", "GearField", "draw_gears", "loaded_fields"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 REGIONS = ("rim", "fillet", "flank")
 """Names of the numbers in ``GearField.region``: inside the root circle, up to the form circle, beyond it."""
@@ -73,10 +69,10 @@ class GearField:
     """
 
     points: Array
-    cells: Index
-    tooth: Index
-    region: Index
-    indicative: Index
+    cells: Integers
+    tooth: Integers
+    region: Integers
+    indicative: Integers
     displacement_m: Array
     stress_Pa: Array
     von_mises_Pa: Array
@@ -98,7 +94,7 @@ class GearField:
         return MappingProxyType({name: getattr(self, name) for name in names})
 
     @property
-    def cell_data(self) -> Mapping[str, Index]:
+    def cell_data(self) -> Mapping[str, Integers]:
         """Numbers of the cells by name, for files."""
         return MappingProxyType({name: getattr(self, name) for name in ("tooth", "region", "indicative")})
 
@@ -120,14 +116,14 @@ def draw_gears(
         pinion, wheel = compliance.rings()
     else:
         profiles = held_profiles(pair, compliance.supports)
-        (pinion, wheel), _ = mesh_and_factor(pair, compliance.plane, compliance.sizes, refinements, profiles)
+        pinion, wheel = mesh_and_factor(pair, compliance.plane, compliance.sizes, refinements, profiles)
     return gear_drawing(pinion), gear_drawing(wheel)
 
 
 def loaded_fields(
     pair: GearPair,
     cycle: MeshCycle,
-    position: int,
+    row: int,
     compliance: Compliance | None = None,
     drawings: tuple[GearDrawing, GearDrawing] | None = None,
 ) -> tuple[GearField, GearField]:
@@ -137,8 +133,8 @@ def loaded_fields(
     ----------
     pair : gears.GearPair
     cycle : MeshCycle
-    position : int
-        Row of the cycle.
+    row : int
+        Of the cycle.
     compliance : Compliance, optional
         The one that the cycle was computed with.
     drawings : tuple of GearDrawing, optional
@@ -150,58 +146,51 @@ def loaded_fields(
 
     Raises
     ------
-    FemError
+    base.InputError
         A row that the cycle does not have, or that has no finite forces.
     """
-    refuse_row(cycle, position)
+    found = Faults()
+    check_row(found, cycle, row)
+    found.raise_if_any()
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     drawn = drawings or draw_gears(pair, bodies)
-    placed = pair.placement(float(pair.points.A + cycle.position[position] * pair.base_pitch))
+    placed = pair.placement(float(pair.points.A + cycle.position[row] * pair.base_pitch))
     turns = ((placed.pinion_angle, np.zeros(2)), (placed.wheel_angle, placed.wheel_centre))
     fields = []
     for gear, (drawing, (angle, centre)) in enumerate(zip(drawn, turns, strict=True)):
-        contacts = _contacts(pair, cycle, position, drawing.ring, gear, bodies)
+        contacts = _contacts(pair, cycle, row, drawing.ring, gear, bodies)
         sectors = drawing.sectors(contacts)
         parts = [_Part.of(sector, angle, centre, pair.teeth_profiles[gear]) for sector in sectors]
         fields.append(_joined(parts, drawing.ring.law))
     return fields[0], fields[1]
 
 
-def refuse_row(cycle: MeshCycle, position: int) -> None:
-    """Raise unless the cycle has that row, with finite forces."""
-    if not 0 <= position < len(cycle.position):
-        allowed = f"0 to {len(cycle.position) - 1}"
-        raise FemError(Fault("position", f"{position!r}", allowed, "give a row of the cycle"))
-    if not np.all(np.isfinite(cycle.forces[position])):
-        raise FemError(Fault("cycle", f"row {position} not solved", "finite forces", cycle.message))
-
-
-def contact_half_width(pair: GearPair, cycle: MeshCycle, position: int, column: int) -> float:
+def contact_half_width(pair: GearPair, cycle: MeshCycle, row: int, column: int) -> float:
     """Half-width of a contact's pressure [m]; an assumed one for a tip edge, that of the corner's clearance."""
-    if cycle.edge[position, column]:
+    if cycle.edge[row, column]:
         return CORNER_CLEARANCE * pair.module
-    radius = pair.path_at(cycle.rho1[position, column]).radius
+    radius = pair.path_at(cycle.rho1[row, column]).radius
     moduli = [PlaneElasticity.of(material, cycle.plane).plane_modulus for material in pair.materials]
-    line_load = np.array([cycle.forces[position, column] / pair.face_width])
+    line_load = np.array([cycle.forces[row, column] / pair.face_width])
     return float(flamant.hertz_half_width(line_load, radius, 2 / sum(1 / modulus for modulus in moduli))[0])
 
 
 def _contacts(
-    pair: GearPair, cycle: MeshCycle, position: int, ring: Ring, gear: int, bodies: Compliance
+    pair: GearPair, cycle: MeshCycle, row: int, ring: Ring, gear: int, bodies: Compliance
 ) -> list[Contact]:
     """List the loads on one gear; a tip edge presses at the least distance from the corner."""
     contacts = []
     flexible = (bodies.pinion, bodies.wheel)[gear]
-    for column in np.flatnonzero(cycle.forces[position] > 0):
-        rho = float(cycle.flank_rho[gear][position, column])
+    for column in np.flatnonzero(cycle.forces[row] > 0):
+        rho = float(cycle.flank_rho[gear][row, column])
         offset = int(cycle.pair_offset[column])
         contacts.append(
             Contact(
                 offset if gear == 0 else -offset,
                 flank_points(ring.mesh, np.array([min(rho, flexible.rho_range[1])])),
-                float(cycle.forces[position, column]) / pair.face_width,
-                contact_half_width(pair, cycle, position, int(column)),
-                bool(cycle.edge[position, column]),
+                float(cycle.forces[row, column]) / pair.face_width,
+                contact_half_width(pair, cycle, row, int(column)),
+                bool(cycle.edge[row, column]),
             )
         )
     return contacts
@@ -212,10 +201,10 @@ class _Part:
     """One sector in the common frame."""
 
     points: Array
-    cells: Index
-    tooth: Index
-    region: Index
-    indicative: Index
+    cells: Integers
+    tooth: Integers
+    region: Integers
+    indicative: Integers
     moved: Array
     stress: Array
 

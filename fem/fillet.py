@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Integers
 from fem.elasticity import PlaneElasticity
 from meshes import SectorMesh
 
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from gears import ToothProfile
 
 __all__ = ["FilletLine", "edge_strain_matrix", "fillet_line", "fillet_stress_matrix", "local_cubic"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 SAMPLES = 81
 """Points on a fillet and its half of the root land; the stress between them is a parabola."""
@@ -100,7 +97,7 @@ def fillet_line(profile: ToothProfile, samples: int = SAMPLES) -> FilletLine:
     return FilletLine(arc, points, tangents, normals, lean, foot)
 
 
-def edge_strain_matrix(points: Array, edges: Index) -> csr_array:
+def edge_strain_matrix(points: Array, edges: Integers) -> csr_array:
     """Matrix (2 edges, 2 nodes) from nodal displacements to tangential strains at the edges' Gauss points.
 
     Parameters

@@ -9,21 +9,18 @@ give all of it. With the free edge's normal stress zero, sigma_t = E* eps_t(u_r)
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from base import Array, Cost, Faults, Integers, Limit, Stopwatch, quantity, record
 from fem import flamant
-from fem.cost import Cost
-from fem.elasticity import PlaneElasticity
-from fem.errors import Fault, FemError
+from fem.elasticity import PlaneElasticity, check_plane
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
-from fem.flexibility import CORNER_CLEARANCE
+from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import LineLoads, flank_points, line_loads
 from fem.ring import Ring, ring_of
 
@@ -33,13 +30,14 @@ if TYPE_CHECKING:
 
 __all__ = ["FilletInfluence", "Fillets", "fillet_influence", "fillets"]
 
-Array = NDArray[np.float64]
-
 LOADS, DEGREE = 24, 14
 
 COARSEST, HALVINGS = 0.16, 3
 """Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
 may halve it."""
+
+TOLERANCE = Limit(0.0, low_open=True, remedy="0.005 is 0.5 %")
+FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
 
 SIDES = ("left", "right")
 
@@ -146,7 +144,7 @@ def fillet_influence(ring: Ring, profile: ToothProfile, rho_low: float, reach: i
     return FilletInfluence(profile, ring.law, line, (low, high), series, noise)
 
 
-def _displacements(ring: Ring, loads: LineLoads, tooth: int, unknowns: NDArray[np.int64]) -> Array:
+def _displacements(ring: Ring, loads: LineLoads, tooth: int, unknowns: Integers) -> Array:
     """Displacements (unknowns, loads) of a tooth's sector, without the half-plane's part on tooth 0."""
     cuts = np.asarray(ring.polar @ ring.interfaces(loads.cut_force, tooth))
     moved = np.empty((len(unknowns), cuts.shape[1]))
@@ -166,30 +164,20 @@ def _displacements(ring: Ring, loads: LineLoads, tooth: int, unknowns: NDArray[n
     return moved
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Fillets:
-    """Influence of loads on the fillets of both gears, and how exact it is.
+    """Influence of loads on the fillets of both gears, and how exact it is."""
 
-    Attributes
-    ----------
-    pair : gears.GearPair
-    plane : {"strain", "stress"}
-    pinion, wheel : FilletInfluence
-    fillet_edge : float
-        Edge length on the fillets of the mesh in use [modules].
-    error : float
-        Estimated relative error of the greatest stress on a fillet, from two nested meshes.
-    cost : Cost
-    converged : bool
-    message : str
-    """
+    headline = ("plane", "fillet_edge")
 
     pair: GearPair
     plane: str
     pinion: FilletInfluence
     wheel: FilletInfluence
-    fillet_edge: float
-    error: float
+    fillet_edge: float = quantity("1", "edge length on the fillets of the mesh in use, in modules")
+    error: float = quantity(
+        "1", "estimated relative error of the greatest stress on a fillet, from two nested meshes"
+    )
     cost: Cost
     converged: bool
     message: str
@@ -216,45 +204,40 @@ def fillets(
 
     Raises
     ------
-    FemError
+    base.InputError
         Tolerance, plane or edge length that make no sense.
     """
-    faults = []
-    if not (np.isfinite(tolerance) and tolerance > 0):
-        faults.append(Fault("tolerance", f"{tolerance!r}", "finite and > 0", "0.005 is 0.5 %"))
-    if plane not in ("strain", "stress"):
-        faults.append(Fault("plane", f"{plane!r}", '"strain" or "stress"', "wide gears: strain"))
-    if fillet_edge is not None and not 0.002 <= fillet_edge <= 1.0:
-        faults.append(Fault("fillet_edge", f"{fillet_edge!r}", "0.002 to 1 (modules)", "leave it out"))
-    if faults:
-        raise FemError(*faults)
-    began = perf_counter()
+    found = Faults()
+    found.number("tolerance", tolerance, TOLERANCE)
+    check_plane(found, plane)
+    if fillet_edge is not None:
+        found.number("fillet_edge", fillet_edge, FILLET_EDGE)
+    found.raise_if_any()
+    watch = Stopwatch()
     edge = COARSEST if fillet_edge is None else fillet_edge
     smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
     results = []
-    unknowns = annulus = 0
-    parts: dict[str, float] = {}
+    unknowns, cost = 0, Cost(0.0)
     starts = pair.points.A, pair.line_of_action - pair.points.E
     for profile, material, start in zip(pair.teeth_profiles, pair.materials, starts, strict=True):
         law = PlaneElasticity.of(material, plane)
         gear_edge = edge
         while True:
-            found, error, ring = _two_meshes(profile, law, gear_edge, start, ceil(pair.contact_ratio) + 2)
-            for stage, seconds in ring.seconds.items():
-                parts[stage] = parts.get(stage, 0.0) + seconds
+            influence, error, ring = _two_meshes(profile, law, gear_edge, start, ceil(pair.contact_ratio) + 2)
+            cost += ring.cost
             if error <= tolerance or gear_edge <= smallest:
                 break
             gear_edge *= 0.5
-        results.append((found, error, gear_edge))
-        unknowns += len(ring.inner) + len(ring.cut)
-        annulus += ring.unknowns
+        results.append((influence, error, gear_edge))
+        unknowns += ring.cost.unknowns
+        cost += Cost(0.0, counts={"annulus_unknowns": ring.unknowns})
     error = max(result[1] for result in results)
     converged = error <= tolerance or fillet_edge is not None
     finest = min(result[2] for result in results)
     message = f"edges of {0.5 * finest:.3g} modules on the fillets, error {error:.1e}"
     if not converged:
         message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
-    cost = Cost(perf_counter() - began, unknowns, 0, annulus, parts)
+    cost = replace(cost, seconds=watch.seconds, unknowns=unknowns)
     return Fillets(pair, plane, results[0][0], results[1][0], 0.5 * finest, error, cost, converged, message)
 
 

@@ -18,8 +18,8 @@ it is; that moves the whole body across the force, which the zero of displacemen
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from fem.elasticity import PlaneElasticity
 
 __all__ = [
@@ -31,8 +31,6 @@ __all__ = [
     "stress",
     "traction",
 ]
-
-Array = NDArray[np.float64]
 
 
 def _frame(points: Array, load: Array, inward: Array) -> tuple[Array, Array, Array]:

@@ -12,18 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Fault, InputError, Integers
 from fem import flamant
 from fem.edge_work import edge_points, traction_integrals
-from fem.errors import Fault, FemError
 from fem.ring import Ring
 from meshes import SectorMesh
 
 __all__ = ["FlankPoints", "LineLoads", "flank_points", "line_loads"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +41,7 @@ class FlankPoints:
     rho: Array
     points: Array
     inward: Array
-    nodes: Index
+    nodes: Integers
     weights: Array
     lean: float = 0.0
 
@@ -81,7 +77,7 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
 
     Raises
     ------
-    FemError
+    base.InputError
         When a radius lies outside the involute.
     """
     rho = np.atleast_1d(np.asarray(rho, dtype=float))
@@ -90,14 +86,9 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     low, high = float(t.min()), float(t.max())
     slack = 1e-9 * high
     if not np.all((rho >= low - slack) & (rho <= high + slack)):
-        raise FemError(
-            Fault(
-                "rho",
-                f"{rho.min():g} to {rho.max():g} m",
-                f"{low:g} to {high:g} m, the involute",
-                "keep loads on the flank",
-            )
-        )
+        allowed = f"must be {low:g} to {high:g} m, the involute"
+        given = f"{rho.min():g} to {rho.max():g} m"
+        raise InputError([Fault("rho", given, allowed, "keep loads on the flank")])
     rho = np.clip(rho, low, high)
     order = np.argsort(t.min(axis=1))
     which = order[np.clip(np.searchsorted(t.min(axis=1)[order], rho, side="right") - 1, 0, len(t) - 1)]
@@ -168,7 +159,7 @@ class LineLoads:
             part[apart, i] = np.einsum("na,na->n", u, where.direction[apart])
         return part
 
-    def _inner(self, tooth: int, some: Index | slice = slice(None)) -> Array:
+    def _inner(self, tooth: int, some: Integers | slice = slice(None)) -> Array:
         """Inner unknowns of a tooth's sector, all or some: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
         inner = -self.ring.inner_by_cut[some] @ cuts
@@ -185,7 +176,7 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     _, gained = _integrals(ring, mesh.facets["bore"], at)
     force = -(on_free + on_sides)
 
-    def singular(unknowns: Index) -> Array:
+    def singular(unknowns: Integers) -> Array:
         points = np.repeat(mesh.points[unknowns[::2] // 2], loads, axis=0)
         source, inward = (
             np.tile(at.points, (len(unknowns) // 2, 1)),
@@ -205,6 +196,6 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     return LineLoads(ring, at, ring.polar.T @ on_cut, solved, known)
 
 
-def _integrals(ring: Ring, edges: Index, at: FlankPoints) -> tuple[Array, Array]:
+def _integrals(ring: Ring, edges: Integers, at: FlankPoints) -> tuple[Array, Array]:
     mesh = ring.mesh
     return traction_integrals(mesh.points, edges, at.points, at.inward, ring.law, mesh.module, at.lean)

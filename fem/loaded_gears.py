@@ -13,13 +13,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.contact import MeshCycle
+from base import Array, Faults
+from fem.cycle import MeshCycle, check_row
 from fem.elasticity import PlaneElasticity
-from fem.errors import Fault, FemError
 from fem.flamant import hertz_half_width
-from fem.flexibility import CORNER_CLEARANCE
+from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from meshes import GearMesh, SectorMesh, Sizes, gear_mesh, mesh_sector
 from meshes.annulus import turned
@@ -28,8 +27,6 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
 __all__ = ["FlankForce", "LoadedGear", "flank_forces", "loaded_gears", "nodal_forces"]
-
-Array = NDArray[np.float64]
 
 SPREAD_POINTS = 256
 """Line loads that stand for a Hertz pressure."""
@@ -135,16 +132,10 @@ def flank_forces(
 
 
 def _check(cycle: MeshCycle, row: int, spread: str) -> None:
-    faults = []
-    rows = len(cycle.position)
-    if not 0 <= row < rows:
-        faults.append(Fault("row", f"{row!r}", f"0 to {rows - 1}", "give a row of the cycle"))
-    elif not np.all(np.isfinite(cycle.forces[row])):
-        faults.append(Fault("cycle", "no forces at this row", "a cycle that converged", cycle.message))
-    if spread not in ("hertz", "line"):
-        faults.append(Fault("spread", repr(spread), '"hertz" or "line"', "the pressure is nearer the truth"))
-    if faults:
-        raise FemError(*faults)
+    found = Faults()
+    check_row(found, cycle, row)
+    found.choice("spread", spread, ("hertz", "line"), "the pressure is nearer the truth")
+    found.raise_if_any()
 
 
 def _inward(profile: ToothProfile, rho: float | Array) -> Array:
@@ -223,10 +214,8 @@ def loaded_gears(
 
     Raises
     ------
-    FemError
-        Row or spread that make no sense.
-    meshes.MeshError
-        Sizes whose cuts do not fit.
+    base.InputError
+        Row or spread that make no sense, sizes whose cuts do not fit.
     """
     start = pair.points.A + cycle.position[row] * pair.base_pitch if 0 <= row < len(cycle.position) else 0.0
     both = flank_forces(pair, cycle, row, spread)

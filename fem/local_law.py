@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+
+from base import Array, Booleans
 
 __all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table"]
-
-Array = NDArray[np.float64]
 
 LEAST_FORCE = 1e-9
 """Force [N] below which the Hertz indentation is taken as linear, since its slope at zero is infinite."""
@@ -100,7 +99,7 @@ class PairLaws:
     """
 
     hertz: HertzApproach
-    edge: NDArray[np.bool_]
+    edge: Booleans
     table: Table | None = None
 
     def approach(self, force: Array) -> Array:

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from fem import flamant
 from fem.elasticity import PlaneElasticity
 from fem.line_load import FlankPoints
 
 __all__ = ["Contact", "near_field"]
-
-Array = NDArray[np.float64]
 
 NEAR, FAR = 4.0, 8.0
 """Hertz within NEAR half-widths of a contact, Flamant beyond FAR."""

@@ -6,15 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Booleans, Integers
 from meshes import SectorMesh
 from meshes.triangle import shape
 
 __all__ = ["Picture", "picture_of"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 # corners of the four children of a triangle, in its reference coordinates (middle one last)
 _CHILDREN = np.array(
@@ -42,9 +39,9 @@ class Picture:
     cells : (m, 6) array
     """
 
-    nodes: Index
+    nodes: Integers
     weights: Array
-    cells: Index
+    cells: Integers
 
     def interpolate(self, values: Array) -> Array:
         """Values (n, ...) at the points from values at the sector's nodes."""
@@ -70,7 +67,7 @@ def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Pi
     curved = _at_curves(mesh)
     longest = LONGEST_SIDE * mesh.module
 
-    def large(parent: Index, place: Array) -> NDArray[np.bool_]:
+    def large(parent: Integers, place: Array) -> Booleans:
         side = np.max(np.linalg.norm(place - np.roll(place, -1, axis=1), axis=2), axis=1)
         found = curved[parent] & (side > longest)
         if focus is not None:
@@ -81,14 +78,14 @@ def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Pi
     return _split(mesh, large)
 
 
-def _at_curves(mesh: SectorMesh) -> NDArray[np.bool_]:
+def _at_curves(mesh: SectorMesh) -> Booleans:
     """Elements with an edge on a flank, a chamfer or the top land."""
     names = [name for name in mesh.facets if name.startswith(("flank", "chamfer", "top"))]
     edges = np.concatenate([mesh.facets[name] for name in names])
     return np.asarray(np.isin(mesh.triangles[:, 3:], edges[:, 2]).any(axis=1))
 
 
-def _split(mesh: SectorMesh, large: Callable[[Index, Array], NDArray[np.bool_]]) -> Picture:
+def _split(mesh: SectorMesh, large: Callable[[Integers, Array], Booleans]) -> Picture:
     """Split elements, and what they were split into, while they are too large."""
     parent = np.arange(len(mesh.triangles))
     corners = np.broadcast_to(np.array([[0.0, 0], [1, 0], [0, 1]]), (len(parent), 3, 2))
@@ -108,7 +105,7 @@ def _split(mesh: SectorMesh, large: Callable[[Index, Array], NDArray[np.bool_]])
     return _merged(mesh, parent, np.concatenate([corners, middles], axis=1))
 
 
-def _places(mesh: SectorMesh, parent: Index, corners: Array) -> Array:
+def _places(mesh: SectorMesh, parent: Integers, corners: Array) -> Array:
     """Positions of reference corners; straight sides are enough to judge sizes."""
     x = mesh.points[mesh.triangles[parent, :3]]
     weight = np.concatenate([1 - corners.sum(axis=2, keepdims=True), corners], axis=2)
@@ -120,7 +117,7 @@ def _area(place: Array) -> Array:
     return np.asarray(d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0])
 
 
-def _merged(mesh: SectorMesh, parent: Index, local: Array) -> Picture:
+def _merged(mesh: SectorMesh, parent: Integers, local: Array) -> Picture:
     """Points at the same place of the same element, and points that are nodes, are shared."""
     values = shape(local[..., 0], local[..., 1]).reshape(-1, 6)
     nodes = np.repeat(mesh.triangles[parent], 6, axis=0)

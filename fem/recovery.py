@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Integers
 from fem import flamant
 from fem.elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.fillet import GAUSS, edge_strain_matrix, local_cubic
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 __all__ = ["NodalStress", "nodal_stress"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 PLACES: Array = np.array([0.0, GAUSS[0], 0.5, GAUSS[1], 1.0])
 
@@ -47,7 +44,7 @@ class NodalStress:
     """
 
     matrix: csr_array
-    nodes: Index
+    nodes: Integers
     tangents: Array
     share: Array
 
@@ -95,7 +92,7 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
     return NodalStress(matrix, listed, t, share)
 
 
-def _on_curve(points: Array, edges: Index) -> tuple[Index, Array, csr_array]:
+def _on_curve(points: Array, edges: Integers) -> tuple[Integers, Array, csr_array]:
     """Nodes along a chain of edges, tangents there, and the matrix to their tangential strains."""
     from scipy.sparse import csr_array
 

@@ -11,14 +11,12 @@ left; the hub (bore) is held.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Cost, Integers, Stopwatch, unclocked
 from fem.chain import RingOfLinks, ring_of_links
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 
@@ -29,9 +27,6 @@ if TYPE_CHECKING:
     from meshes import SectorMesh, Sizes
 
 __all__ = ["Ring", "mesh_and_factor", "ring_of"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,15 +51,15 @@ class Ring:
         Stiffness of the sector as seen from its cuts, polar components.
     links : RingOfLinks
         The closed ring, in polar components of the cuts.
-    seconds : mapping of str to float
-        Time of assembly, factorisation and condensation.
+    cost : Cost
+        Of assembly, factorisation and condensation.
     """
 
     mesh: SectorMesh
     law: PlaneElasticity
-    inner: Index
-    cut: Index
-    hub: Index
+    inner: Integers
+    cut: Integers
+    hub: Integers
     factor: Any
     K_ic: csc_array
     K_ih: csc_array
@@ -75,7 +70,7 @@ class Ring:
     polar: csc_array
     schur: Array
     links: RingOfLinks
-    seconds: Mapping[str, float]
+    cost: Cost
 
     @property
     def unknowns(self) -> int:
@@ -117,14 +112,13 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     mesh : SectorMesh
     law : PlaneElasticity
     """
-    from time import perf_counter
+    with unclocked():
+        from scipy.sparse import block_diag, csc_array
+        from scipy.sparse.linalg import splu
 
-    from scipy.sparse import block_diag, csc_array
-    from scipy.sparse.linalg import splu
-
-    began = perf_counter()
+    watch = Stopwatch()
     stiffness = stiffness_matrix(mesh.points, mesh.triangles, law)
-    assembled = perf_counter()
+    assembled = watch.seconds
     hub_nodes = np.unique(mesh.facets["bore"])
     right = np.setdiff1d(mesh.side_nodes("right"), hub_nodes, assume_unique=True)
     left = np.setdiff1d(mesh.side_nodes("left"), hub_nodes, assume_unique=True)
@@ -139,7 +133,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    factored = perf_counter()
+    factored = watch.seconds
     K_ic, K_cc = csc_array(rows[:, cut]), csc_array(stiffness[cut][:, cut])
     inner_by_cut = factor.solve(K_ic.toarray())
     outward = mesh.points[np.concatenate(by_radius)]
@@ -149,7 +143,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     schur = polar.T @ (polar.T @ (K_cc.toarray() - K_ic.T @ inner_by_cut)).T
     schur = 0.5 * (schur + schur.T)
     links = ring_of_links(schur, mesh.teeth)
-    condensed = perf_counter()
+    condensed = watch.seconds
     return Ring(
         mesh,
         law,
@@ -166,14 +160,16 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
         polar,
         schur,
         links,
-        MappingProxyType(
-            {"assemble": assembled - began, "factor": factored - assembled, "condense": condensed - factored}
+        Cost(
+            condensed,
+            len(inner) + len(cut),
+            parts={"assemble": assembled, "factor": factored - assembled, "condense": condensed - factored},
         ),
     )
 
 
-def _unknowns(nodes: Index) -> Index:
-    unknowns: Index = (2 * nodes[:, None] + np.arange(2)).ravel()
+def _unknowns(nodes: Integers) -> Integers:
+    unknowns: Integers = (2 * nodes[:, None] + np.arange(2)).ravel()
     return unknowns
 
 
@@ -183,8 +179,8 @@ def mesh_and_factor(
     sizes: Sizes,
     refinements: int,
     profiles: tuple[ToothProfile, ToothProfile] | None = None,
-) -> tuple[tuple[Ring, Ring], dict[str, float]]:
-    """Mesh, assemble, factorise and condense both gears; seconds by stage.
+) -> tuple[Ring, Ring]:
+    """Mesh, assemble, factorise and condense both gears.
 
     Parameters
     ----------
@@ -195,17 +191,10 @@ def mesh_and_factor(
     profiles : tuple of gears.ToothProfile, optional
         Instead of the pair's own teeth: held at other radii.
     """
-    from time import perf_counter
-
     from meshes import mesh_sector
 
-    rings, seconds = [], {"mesh": 0.0}
-    for profile, material in zip(profiles or pair.teeth_profiles, pair.materials, strict=True):
-        began = perf_counter()
-        mesh = mesh_sector(profile, sizes, refinements)
-        seconds["mesh"] += perf_counter() - began
-        ring = ring_of(mesh, PlaneElasticity.of(material, plane))
-        for stage, duration in ring.seconds.items():
-            seconds[stage] = seconds.get(stage, 0.0) + duration
-        rings.append(ring)
-    return (rings[0], rings[1]), seconds
+    first, second = (
+        ring_of(mesh_sector(profile, sizes, refinements), PlaneElasticity.of(material, plane))
+        for profile, material in zip(profiles or pair.teeth_profiles, pair.materials, strict=True)
+    )
+    return first, second

@@ -1,4 +1,4 @@
-"""Contact of all pairs at all positions and torques: flexibilities, laws and levers put together and solved."""
+"""Contact of all pairs at all positions and torques: compliances, laws and levers put together and solved."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Integers
 from fem.bodies import Compliance
+from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
 from fem.local_law import Film, FilmLaw, PairLaws, Table
-from fem.meshing import REACHES, Meshing, meshing
 from fem.setting import Setting
 from fem.tip_contact import edge_laws
 
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from gears import LoadShare
 
 __all__ = ["Solution", "solve"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +28,7 @@ class Solution:
     closing the deflection less the hubs' wind-up.
     """
 
-    where: Meshing
+    where: ContactCandidates
     share: LoadShare
     kappa: Array
     levers: Array
@@ -38,12 +36,12 @@ class Solution:
     closing: Array
 
 
-def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, friction: float) -> Solution:
-    """Solve, with candidates farther out if the approach reaches beyond the first ones."""
+def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -> Solution:
+    """Solve, with candidates farther out if the deflection reaches beyond the first ones."""
     from gears.load_sharing import share_load
 
     for reach in REACHES:
-        where = meshing(given, reach)
+        where = contact_candidates(given, reach)
         kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
         table, largest = _edge_table(given, bodies, where)
         rho1, rho2 = where.rho
@@ -57,7 +55,7 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, f
         middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
         laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table)
         oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
-        levers = _levers(given, where, friction) / kappa
+        levers = _levers(given, where) / kappa
         touch = where.gap.min(axis=-1)
         share = share_load(
             force[:, None, None],
@@ -65,7 +63,7 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, f
             laws,
             where.gap - touch[..., None],
             oil,
-            levers if friction else None,
+            levers if given.friction else None,
         )
         closing = share.approach - bodies.turning * force[:, None, None]
         if np.max(closing + touch) <= where.reach_gap:
@@ -73,19 +71,20 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None, f
     return Solution(where, share, kappa, levers, largest, closing)
 
 
-def _levers(given: Setting, where: Meshing, friction: float) -> Array:
+def _levers(given: Setting, where: ContactCandidates) -> Array:
     """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
     lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
     first, second = given.pair.base_radii
     arm = np.where(where.touchable, arm, 0.0)
-    return np.asarray(lever[0] + friction * np.sign(arm[0] / first - arm[1] / second) * arm[0] / first)
+    slip = np.sign(arm[0] / first - arm[1] / second)
+    return np.asarray(lever[0] + given.friction * slip * arm[0] / first)
 
 
-def _edge_table(given: Setting, bodies: Compliance, where: Meshing) -> tuple[Table | None, Array]:
+def _edge_table(given: Setting, bodies: Compliance, where: ContactCandidates) -> tuple[Table | None, Array]:
     """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N]."""
     if not where.edge.any():
         return None, np.zeros(0)
-    places: list[NDArray[np.int64]] = []
+    places: list[Integers] = []
     laws: list[tuple[Array, Array]] = []
     ends: list[Array] = []
     for corner, chosen in where.corners():
@@ -117,7 +116,7 @@ def _extended(values: Array, points: int) -> Array:
     return np.concatenate([values, beyond], axis=1)
 
 
-def _leave_out_corner(bodies: Compliance, matrix: Array, where: Meshing) -> None:
+def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:
     """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
 
     The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.

@@ -5,18 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Faults, Limit
 from fem.bodies import Compliance
-from fem.compliance import compliance as _compliance
-from fem.errors import Fault, FemError
+from fem.pair_compliance import compliance as _compliance
 
 if TYPE_CHECKING:
     from gears import GearPair
 
 __all__ = ["single_pair_stiffness"]
 
-Array = NDArray[np.float64]
+FORCE = Limit(0.0, unit="N", low_open=True, remedy="give the force along the line of action")
 
 
 def single_pair_stiffness(
@@ -46,23 +45,29 @@ def single_pair_stiffness(
 
     Raises
     ------
-    FemError
+    base.InputError
         Force not positive and finite, or a place off the path of contact.
+
+    Examples
+    --------
+    >>> from fem import compliance, single_pair_stiffness
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> bodies = compliance(pair, tolerance=0.05)
+    >>> at_C = single_pair_stiffness(pair, force=17736.3, rho1=pair.points.C, compliance=bodies)
+    >>> float(at_C[0] / 40e-3 / 1e9).__round__(1)  # N/(mm um)
+    14.8
     """
     bodies = compliance or _compliance(pair, tolerance, plane)
     rho1 = np.atleast_1d(np.asarray(rho1, dtype=float))
     points = pair.points
-    faults = []
-    if not (np.isfinite(force) and force > 0):
-        faults.append(
-            Fault("force", f"{force!r}", "finite and > 0 (N)", "give the force along the line of action")
-        )
+    found = Faults()
+    found.number("force", force, FORCE)
     slack = 1e-9 * points.E
     if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):
-        allowed = f"{points.A:g} to {points.E:g} m, the path of contact"
-        faults.append(Fault("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E"))
-    if faults:
-        raise FemError(*faults)
+        allowed = f"must be {points.A:g} to {points.E:g} m, the path of contact"
+        found.add("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E")
+    found.raise_if_any()
     approach = bodies.own(rho1) * force + bodies.hertz(rho1).approach(np.full(len(rho1), float(force)))
     stiffness: Array = force / approach
     return stiffness

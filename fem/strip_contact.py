@@ -8,13 +8,11 @@ y = K^-1 gap give p = D x - y, so F = D l . x - l . y: a law is found by letting
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Booleans, Integers
 from fem.elasticity import PlaneElasticity
 
 __all__ = ["flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest"]
-
-Array = NDArray[np.float64]
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
@@ -129,9 +127,9 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
 def _close(
     inverse: Array,
     kernel: Array,
-    closed: NDArray[np.bool_],
-    rows: NDArray[np.int64],
-    strip: NDArray[np.int64],
+    closed: Booleans,
+    rows: Integers,
+    strip: Integers,
 ) -> None:
     """Add one closed strip to the inverse of each row; other rows and columns of the inverse are zero."""
     held = closed[rows]

@@ -13,15 +13,17 @@ normal leans by some hundredths of a radian; that is left out of what the suppor
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, isfinite
+from math import inf
 from typing import TYPE_CHECKING
 
-from fem.errors import Fault, FemError
+from base import Faults, Limit
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
 __all__ = ["FIXED", "Support", "held_profiles", "on_both"]
+
+HUB_RADIUS = Limit(0.0, unit="m", low_open=True, remedy="leave it out: the bore")
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Support:
 
     Raises
     ------
-    FemError
+    base.InputError
         Stiffness not positive, or a hub radius that is not positive and finite.
     """
 
@@ -50,23 +52,19 @@ class Support:
 
     def __post_init__(self) -> None:
         """Refuse values that no support has."""
-        faults = [
-            Fault(f"support.{name}", f"{value!r}", f"> 0 ({unit}), inf for rigid", "give its stiffness")
-            for name, value, unit in (
-                ("radial_stiffness", self.radial_stiffness, "N/m"),
-                ("torsional_stiffness", self.torsional_stiffness, "N m/rad"),
-            )
-            if not value > 0
-        ]
-        if self.hub_radius is not None and not (isfinite(self.hub_radius) and self.hub_radius > 0):
-            allowed = "finite and > 0 (m)"
-            faults.append(
-                Fault("support.hub_radius", f"{self.hub_radius!r}", allowed, "leave it out: the bore")
-            )
-        if faults:
-            raise FemError(*faults)
+        found = Faults()
+        for name, value, unit in (
+            ("radial_stiffness", self.radial_stiffness, "N/m"),
+            ("torsional_stiffness", self.torsional_stiffness, "N m/rad"),
+        ):
+            if not value > 0:
+                allowed = f"must be more than 0 {unit}, inf for rigid"
+                found.add(f"support.{name}", f"{value!r}", allowed, "give its stiffness")
+        if self.hub_radius is not None:
+            found.number("support.hub_radius", self.hub_radius, HUB_RADIUS)
+        found.raise_if_any()
 
-    def flexibility(self, base_radius: float) -> float:
+    def compliance(self, base_radius: float) -> float:
         """1/k_r + r_b^2/k_t along the line of action [m/N]."""
         return 1 / self.radial_stiffness + base_radius**2 / self.torsional_stiffness
 
@@ -86,18 +84,19 @@ def held_profiles(pair: GearPair, supports: tuple[Support, Support]) -> tuple[To
 
     Raises
     ------
-    FemError
+    base.InputError
         A hub inside the bore, or one that leaves less than 0.05 modules of rim.
     """
-    faults, held = [], []
+    found, held = Faults(), []
     for name, profile, support in zip(("pinion", "wheel"), pair.teeth_profiles, supports, strict=True):
         radius = profile.bore_radius if support.hub_radius is None else support.hub_radius
         most = profile.root_radius - 0.05 * profile.module
         if support.hub_radius is not None and not profile.bore_radius <= radius <= most:
-            allowed = f"{profile.bore_radius:g} (bore) to {most:g} m (0.05 modules under the root circle)"
+            allowed = (
+                f"must be {profile.bore_radius:g} (bore) to {most:g} m (0.05 modules under the root circle)"
+            )
             remedy = "the hub fills the bore and leaves a rim"
-            faults.append(Fault(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy))
+            found.add(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy)
         held.append(replace(profile, bore_radius=radius))
-    if faults:
-        raise FemError(*faults)
+    found.raise_if_any()
     return held[0], held[1]

@@ -3,7 +3,7 @@
 Before A the wheel's tip corner meets the pinion's flank, after E the pinion's corner the wheel's flank. The
 contact starts at the corner, or where its rounding is nearest, and spreads along the flank. Its pressure is
 solved for on strips of that flank (``fem.strip_contact``): the body with the corner answers with its
-finite-element displacements (``fem.tip_strips``), the other one as a half-plane plus its flexibility ``own``.
+finite-element displacements (``fem.tip_strips``), the other one as a half-plane plus its compliance ``own``.
 The unloaded gap is exact (``fem.tip_geometry``). Without friction the force on a strip stands on the flank
 that is touched, so it leans from the normal of the corner's own flank by the angle at which the flanks open,
 some hundredths of a radian, away from the tip.
@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from fem.elasticity import PlaneElasticity
 from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
 from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
 __all__ = ["EdgeLaw", "edge_laws", "nearest_gap"]
-
-Array = NDArray[np.float64]
 
 ARC_STRIP, ARC_FINE, ARC_REACH = 0.02, 0.25, 0.7
 """On a rounding: width of the strips, the length that is covered by them, and the length covered at all (in

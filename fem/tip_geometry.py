@@ -13,14 +13,22 @@ from math import cos, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from base import Array
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["TipRound", "chamfer_gap", "corner_angle", "lever_ratio", "opening", "tip_round", "unloaded_gap"]
-
-Array = NDArray[np.float64]
+__all__ = [
+    "TipRound",
+    "chamfer_gap",
+    "chamfer_length",
+    "corner_angle",
+    "lever_ratio",
+    "opening",
+    "tip_round",
+    "unloaded_gap",
+]
 
 
 def unloaded_gap(
@@ -162,6 +170,11 @@ def tip_round(profile: ToothProfile, radius: float) -> TipRound:
     return TipRound(radius, start, sqrt(end**2 - 2 * profile.base_radius * start))
 
 
+def chamfer_length(profile: ToothProfile) -> float:
+    """Length of the chamfer's straight line [m]; 0 without one."""
+    return float(np.linalg.norm(np.diff(profile.chamfer(np.array([0.0, 1.0])), axis=0)))
+
+
 def chamfer_gap(pair: GearPair, corner: int, place: Array, start: float = 0.0) -> Array:
     """Least gap of a chamfer behind the corner, along the chamfer and at its end (n,) [m]; inf without one.
 
@@ -180,8 +193,7 @@ def chamfer_gap(pair: GearPair, corner: int, place: Array, start: float = 0.0) -
         return np.full(len(place), np.inf)
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     turn = pi - corner_angle(profile)
-    length = float(np.linalg.norm(np.diff(profile.chamfer(np.array([0.0, 1.0])), axis=0)))
-    way = start + (length - start) * np.linspace(0.1, 1.0, 10)
-    end = np.full(len(way), profile.flank_rho[1])
-    gap, _ = unloaded_gap(radii, pair.line_of_action, place, end, way * cos(turn), -way * sin(turn))
+    along = start + (chamfer_length(profile) - start) * np.linspace(0.1, 1.0, 10)
+    end = np.full(len(along), profile.flank_rho[1])
+    gap, _ = unloaded_gap(radii, pair.line_of_action, place, end, along * cos(turn), -along * sin(turn))
     return np.asarray(gap.min(axis=1))

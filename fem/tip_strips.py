@@ -2,7 +2,7 @@
 
 By finite elements: half-plane plus regular part, which knows the free edge beyond the corner. Near the corner
 only the wedge is seen, whose answer is the same at every scale but for c_ab ln(scale), c_ab the tensor of
-``fem.flexibility.wedge_logarithms``.
+``fem.gear_compliance.wedge_logarithms``.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from fem.elasticity import PlaneElasticity
-from fem.flexibility import corner_logarithm, hub_windup, wedge_logarithms
+from fem.gear_compliance import corner_logarithm, hub_windup, wedge_logarithms
 from fem.line_load import FlankPoints, flank_points, line_loads
 from fem.strip_contact import flat_kernels
 
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from gears import ToothProfile
 
 __all__ = ["RATIO", "REACH", "TipStrips", "sharp_layout", "tip_strips"]
-
-Array = NDArray[np.float64]
 
 FIRST_EDGE, RATIO, REACH, RESOLVED = 1e-4, 1.25, 0.5, 0.01
 """End of the strip at the corner, ratio of successive widths, total width, and the distance from the corner

@@ -54,7 +54,7 @@ def write_vtk_series(
     Returns
     -------
     Path
-        The ``.pvd``; its time is the way from A over the base pitch.
+        The ``.pvd``; its time is the position in base pitches from A.
     """
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions

@@ -12,11 +12,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from base.files import replacing
+from base import Array, Integers, replacing
 
 __all__ = ["VERTEX", "Grid", "write_grid", "write_series"]
 
-Array = NDArray[np.float64]
 Values = NDArray[np.generic]
 
 VERTEX, TRIANGLE6 = 1, 22
@@ -55,7 +54,7 @@ class Grid:
     """
 
     points: Array
-    cells: NDArray[np.int64]
+    cells: Integers
     cell_type: int = TRIANGLE6
     point_data: Mapping[str, Values] = field(default_factory=dict)
     cell_data: Mapping[str, Values] = field(default_factory=dict)

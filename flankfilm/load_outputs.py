@@ -11,7 +11,7 @@ from flankfilm.dataset import Quantity
 
 if TYPE_CHECKING:
     from fem import MeshCycle
-    from fem.root_stress import GearRootStress
+    from fem.tooth_root import GearRootStress
     from flankfilm.stages.loads import TorqueStage
     from flankfilm.stages.roots import RootStage
 
@@ -154,13 +154,13 @@ def root_stress(found: RootStage) -> Found:
 
 def passing(gear: GearRootStress) -> dict[str, Any]:
     """Follow one tooth through the mesh: a row for each instant."""
-    order = np.argsort(gear.way, axis=None, kind="stable")
+    order = np.argsort(gear.tooth_position, axis=None, kind="stable")
 
     def tangent(arc: Any) -> Any:
         return np.degrees(np.interp(arc.ravel()[order], gear.line.arc, gear.line.tangent_angle))
 
     return {
-        "way_base_pitches": gear.way.ravel()[order],
+        "way_base_pitches": gear.tooth_position.ravel()[order],
         "tension_Pa": gear.tension_Pa.ravel()[order],
         "tension_tangent_deg": tangent(gear.tension_arc),
         "compression_Pa": gear.compression_Pa.ravel()[order],

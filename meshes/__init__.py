@@ -1,11 +1,8 @@
 """Curved second-order meshes of gears with named boundaries, and files of them for other programs.
 
-gmsh is imported only when something is meshed.
+Nothing is imported before it is used; gmsh only when something is meshed.
 """
 
-from meshes.annulus import GearMesh, gear_mesh
-from meshes.errors import Fault, MeshError
-from meshes.outline import Sizes
-from meshes.sector import SectorMesh, mesh_sector, refined
+import lazy_loader as _lazy
 
-__all__ = ["Fault", "GearMesh", "MeshError", "SectorMesh", "Sizes", "gear_mesh", "mesh_sector", "refined"]
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

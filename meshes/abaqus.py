@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Integers
 from meshes.annulus import GearMesh
 
 __all__ = ["mesh_text", "number", "set_names"]
-
-Index = NDArray[np.int64]
 
 
 def number(value: float) -> str:
@@ -93,13 +91,13 @@ def _signed(tooth: int) -> str:
     return str(tooth) if tooth >= 0 else f"MINUS_{-tooth}"
 
 
-def _members(numbers: Index) -> Iterator[str]:
+def _members(numbers: Integers) -> Iterator[str]:
     """Sixteen numbers a line, as many as Abaqus takes."""
     for start in range(0, len(numbers), 16):
         yield ", ".join(map(str, numbers[start : start + 16].tolist()))
 
 
-def _sides(mesh: GearMesh, edges: Index) -> tuple[Index, Index]:
+def _sides(mesh: GearMesh, edges: Integers) -> tuple[Integers, Integers]:
     """Element of each edge and which of its sides (1, 2, 3) it is, by the node in the edge's middle."""
     middles = mesh.triangles[:, 3:].ravel()
     order = np.argsort(middles, kind="stable")

@@ -7,15 +7,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.errors import Fault, MeshError
+from base import Array, Fault, InputError, Integers
 from meshes.sector import SectorMesh
 
 __all__ = ["GearMesh", "gear_mesh"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +35,11 @@ class GearMesh:
     """
 
     points: Array
-    triangles: Index
-    tooth: Index
-    facets: Mapping[str, Index]
-    facet_tooth: Mapping[str, Index]
-    nodes: Mapping[int, Index]
+    triangles: Integers
+    tooth: Integers
+    facets: Mapping[str, Integers]
+    facet_tooth: Mapping[str, Integers]
+    nodes: Mapping[int, Integers]
 
 
 def turned(points: Array, angle: float) -> Array:
@@ -73,7 +69,7 @@ def gear_mesh(
 
     Raises
     ------
-    MeshError
+    base.InputError
         When the cuts of neighbouring sectors do not fit.
     """
     z = sector.teeth
@@ -81,11 +77,11 @@ def gear_mesh(
     others = others or {}
     points: list[Array] = []
     triangles, tooth, nodes = [], [], {}
-    facets: dict[str, list[Index]] = {}
-    owners: dict[str, list[Index]] = {}
+    facets: dict[str, list[Integers]] = {}
+    owners: dict[str, list[Integers]] = {}
     start = 0
-    left_of: dict[int, Index] = {}  # joined node numbers of a sector's left cut
-    right_of: dict[int, Index] = {}
+    left_of: dict[int, Integers] = {}  # joined node numbers of a sector's left cut
+    right_of: dict[int, Integers] = {}
     for k in wanted:
         mesh = others.get(k, sector)
         place = turned(mesh.points, k * 2 * np.pi / z)
@@ -96,7 +92,9 @@ def gear_mesh(
             side = mesh.side_nodes(mine)
             already = np.concatenate(points)[theirs] if len(side) == len(theirs) else np.empty((0, 2))
             if len(already) == 0 or not np.allclose(place[side], already, rtol=0, atol=1e-9 * mesh.module):
-                raise MeshError(Fault(f"tooth {k}", "cut of other nodes", "matching cuts", "use equal sizes"))
+                raise InputError(
+                    [Fault(f"tooth {k}", "cut of other nodes", "must have matching cuts", "use equal sizes")]
+                )
             number[side] = theirs
         fresh = np.flatnonzero(number < 0)
         number[fresh] = start + np.arange(len(fresh))

@@ -8,9 +8,8 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.errors import Fault, MeshError
+from base import Array, Fault, InputError, Integers, unclocked
 from meshes.outline import crossing
 
 __all__ = ["triangulate"]
@@ -19,7 +18,7 @@ _one_at_a_time = threading.Lock()  # gmsh keeps one state per process
 _names = count()
 
 
-def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def triangulate(polygon: Array) -> tuple[Array, Integers]:
     """Triangles inside a simple closed polygon, graded by the lengths of its edges.
 
     Parameters
@@ -36,29 +35,26 @@ def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
 
     Raises
     ------
-    MeshError
+    base.InputError
         When the polygon cuts itself (gmsh could then run for ever), or gmsh does not keep its edges.
     """
     if not np.all(np.isfinite(polygon)):
-        raise MeshError(Fault("outline", "nan or inf", "finite coordinates", "check the tooth's profile"))
+        remedy = "check the tooth's profile"
+        raise InputError([Fault("outline", "nan or inf", "must have finite coordinates", remedy)])
     cut = crossing(polygon)
     if cut is not None:
         where = polygon[cut[0]]
-        raise MeshError(
-            Fault(
-                "outline",
-                f"edges {cut[0]} and {cut[1]} cross near ({where[0]:g}, {where[1]:g})",
-                "an outline that does not cut itself",
-                "use smaller elements, or check the tooth's profile and the bore",
-            )
-        )
+        crossed = f"edges {cut[0]} and {cut[1]} cross near ({where[0]:g}, {where[1]:g})"
+        remedy = "use smaller elements, or check the tooth's profile and the bore"
+        raise InputError([Fault("outline", crossed, "must not cut itself", remedy)])
     scale = float(np.max(np.ptp(polygon, axis=0)))
     # rounded, so that gears which differ in size alone get the same triangles whatever the last bit is
     shape = np.round(polygon / scale, 9)
     with _one_at_a_time:
         points, triangles = _fill(shape)
     if not np.allclose(points[: len(polygon)], shape, rtol=0, atol=1e-13):
-        raise MeshError(Fault("outline", "moved by gmsh", "nodes kept in place", "use smaller elements"))
+        allowed = "must keep its nodes in place"
+        raise InputError([Fault("outline", "moved by gmsh", allowed, "use smaller elements")])
     points *= scale
     points[: len(polygon)] = polygon
     a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
@@ -67,7 +63,7 @@ def triangulate(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
     return points, triangles
 
 
-def _fill(polygon: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _fill(polygon: Array) -> tuple[Array, Integers]:
     gmsh = _load_gmsh()
     began = not gmsh.isInitialized()
     if began:
@@ -108,23 +104,16 @@ def _keep_broken_pipes_harmless() -> None:
 def _load_gmsh() -> Any:
     """Load gmsh; where its shared libraries are missing say which, and what installs them."""
     try:
-        import gmsh
+        with unclocked():
+            import gmsh
     except OSError as fault:
         packages = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
-        raise MeshError(
-            Fault(
-                "gmsh",
-                str(fault),
-                "the shared libraries that gmsh loads",
-                f"on Debian or Ubuntu: sudo apt-get install --no-install-recommends {packages}",
-            )
-        ) from fault
+        remedy = f"on Debian or Ubuntu: sudo apt-get install --no-install-recommends {packages}"
+        raise InputError([Fault("gmsh", str(fault), "requires shared libraries", remedy)]) from fault
     return gmsh
 
 
-def _mesh_polygon(
-    gmsh: object, polygon: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _mesh_polygon(gmsh: object, polygon: Array) -> tuple[Array, Integers]:
     model = gmsh.model  # type: ignore[attr-defined]
     geo, n = model.geo, len(polygon)
     corners = [geo.addPoint(float(x), float(y), 0.0) for x, y in polygon]

@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from base.files import replacing
+from base import Integers, replacing
 from meshes.annulus import GearMesh
 
 __all__ = ["write_msh"]
-
-Index = NDArray[np.int64]
 
 LINE3, TRIANGLE6 = 8, 9
 """gmsh's numbers of second-order lines (first, last, middle) and triangles (corners, middles of 01, 12, 20)."""
@@ -60,11 +57,11 @@ def write_msh(path: Path, mesh: GearMesh) -> Path:
 
 
 def _entities(
-    mesh: GearMesh, curves: Mapping[tuple[int, int], Index], surfaces: Mapping[tuple[int, int], Index]
+    mesh: GearMesh, curves: Mapping[tuple[int, int], Integers], surfaces: Mapping[tuple[int, int], Integers]
 ) -> list[str]:
     """Bounding box and physical groups of each curve and surface; none names its own boundary."""
 
-    def box(nodes: Index) -> str:
+    def box(nodes: Integers) -> str:
         low, high = mesh.points[nodes.ravel()].min(axis=0), mesh.points[nodes.ravel()].max(axis=0)
         return f"{low[0]!s} {low[1]!s} 0 {high[0]!s} {high[1]!s} 0"
 
@@ -85,7 +82,7 @@ def _nodes(mesh: GearMesh) -> list[str]:
 
 
 def _elements(
-    curves: Mapping[tuple[int, int], Index], surfaces: Mapping[tuple[int, int], Index]
+    curves: Mapping[tuple[int, int], Integers], surfaces: Mapping[tuple[int, int], Integers]
 ) -> list[str]:
     count = sum(map(len, curves.values())) + sum(map(len, surfaces.values()))
     lines = ["$Elements", f"{len(curves) + len(surfaces)} {count} 1 {count}"]

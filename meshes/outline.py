@@ -13,16 +13,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.errors import Fault, MeshError
+from base import Array, Faults, Limit
 
 if TYPE_CHECKING:
     from gears import ToothProfile
 
 __all__ = ["Curve", "Sizes", "cut", "sector_curves"]
 
-Array = NDArray[np.float64]
+
+LENGTH = Limit(0.0, unit="modules", low_open=True, remedy="give a positive edge length")
+LAYER_GROWTH = Limit(1.0, remedy="layers grow towards the bore")
 
 
 @dataclass(frozen=True)
@@ -55,17 +56,10 @@ class Sizes:
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not positive."""
-        faults = [
-            Fault(f"sizes.{name}", f"{value:g}", "finite and > 0 (modules)", "give a positive edge length")
-            for name, value in vars(self).items()
-            if not (np.isfinite(value) and value > 0)
-        ]
-        if np.isfinite(self.layer_growth) and self.layer_growth < 1:
-            faults.append(
-                Fault("sizes.layer_growth", f"{self.layer_growth:g}", ">= 1", "layers grow towards the bore")
-            )
-        if faults:
-            raise MeshError(*faults)
+        found = Faults()
+        for name, value in vars(self).items():
+            found.number(f"sizes.{name}", value, LAYER_GROWTH if name == "layer_growth" else LENGTH)
+        found.raise_if_any()
 
     def scaled(self, factor: float) -> Sizes:
         """Sizes of a similar mesh with all edges longer by a factor."""

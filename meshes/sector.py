@@ -9,9 +9,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.errors import Fault, MeshError
+from base import Array, Fault, InputError, Integers
 from meshes.gmsh_fill import triangulate
 from meshes.outline import Curve, Sizes, cut, polar, sector_curves
 from meshes.triangle import NODES, shape_gradients
@@ -20,9 +19,6 @@ if TYPE_CHECKING:
     from gears import ToothProfile
 
 __all__ = ["SectorMesh", "mesh_sector", "refined"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +46,8 @@ class SectorMesh:
     """
 
     points: Array
-    triangles: Index
-    facets: Mapping[str, Index]
+    triangles: Integers
+    facets: Mapping[str, Integers]
     parameters: Mapping[str, Array]
     curves: Mapping[str, Curve]
     teeth: int
@@ -64,10 +60,10 @@ class SectorMesh:
         """Displacement components of the sector."""
         return 2 * len(self.points)
 
-    def side_nodes(self, side: str) -> Index:
+    def side_nodes(self, side: str) -> Integers:
         """Nodes of a cut to the neighbour (``"left"`` or ``"right"``) from the bore outwards."""
         nodes = np.unique(self.facets[f"side_{side}"])
-        ordered: Index = nodes[np.argsort(np.linalg.norm(self.points[nodes], axis=1))]
+        ordered: Integers = nodes[np.argsort(np.linalg.norm(self.points[nodes], axis=1))]
         return ordered
 
 
@@ -94,7 +90,7 @@ def mesh_sector(
 
     Raises
     ------
-    MeshError
+    base.InputError
         Outline that cuts itself, or an element turned inside out.
     """
     sizes = sizes or Sizes()
@@ -106,7 +102,7 @@ def mesh_sector(
     cuts = [cut(curve) for curve in curves]
     polygon = np.concatenate([curve.at(t[:-1]) for curve, t in zip(curves, cuts, strict=True)])
     points, triangles = triangulate(polygon)
-    ends: dict[str, tuple[Index, Array]] = {}
+    ends: dict[str, tuple[Integers, Array]] = {}
     first = 0
     for curve, t in zip(curves, cuts, strict=True):
         nodes = np.arange(first, first + len(t)) % len(polygon)
@@ -145,11 +141,11 @@ def _layer_radii(rim: float, bore: float, sizes: Sizes, module: float) -> Array:
 
 def _add_layers(
     points: Array,
-    triangles: Index,
-    ends: dict[str, tuple[Index, Array]],
+    triangles: Integers,
+    ends: dict[str, tuple[Integers, Array]],
     angles: Array,
     radii: Array,
-) -> tuple[Array, Index]:
+) -> tuple[Array, Integers]:
     """Rings of split quadrilaterals under the rim; the cuts and the bottom are continued."""
     columns = len(angles) - 1
     above = np.append(ends["bottom"][0][:, 0], ends["bottom"][0][-1, 1])
@@ -182,8 +178,8 @@ def _add_layers(
 
 def _second_order(
     corners: Array,
-    triangles: Index,
-    ends: Mapping[str, tuple[Index, Array]],
+    triangles: Integers,
+    ends: Mapping[str, tuple[Integers, Array]],
     curves: Mapping[str, Curve],
     gear: tuple[int, float, float],
 ) -> SectorMesh:
@@ -198,9 +194,8 @@ def _second_order(
         low, high = np.sort(nodes, axis=1).T
         found = np.searchsorted(unique, low * len(corners) + high)
         if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
-            raise MeshError(
-                Fault(name, "edges lost", "every edge of the outline kept", "use smaller elements")
-            )
+            allowed = "must keep every edge of the outline"
+            raise InputError([Fault(name, "edges lost", allowed, "use smaller elements")])
         points[len(corners) + found] = curves[name].at(t.mean(axis=1))
         facets[name] = np.column_stack([nodes, len(corners) + found])
         parameters[name] = t
@@ -216,21 +211,16 @@ def _second_order(
     )
 
 
-def _refuse_inverted(points: Array, triangles: Index) -> None:
+def _refuse_inverted(points: Array, triangles: Integers) -> None:
     gradients = shape_gradients(NODES[:, 0], NODES[:, 1])
     jacobian = np.einsum("mix,qir->mqxr", points[triangles], gradients)
     determinant = np.linalg.det(jacobian)
     bad = np.flatnonzero(determinant.min(axis=1) <= 0)
     if len(bad):
         x, y = points[triangles[bad[0], :3]].mean(axis=0)
-        raise MeshError(
-            Fault(
-                "elements",
-                f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})",
-                "positive Jacobian",
-                "use smaller elements on curved boundaries",
-            )
-        )
+        found = f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})"
+        remedy = "use smaller elements on curved boundaries"
+        raise InputError([Fault("elements", found, "must have positive Jacobians", remedy)])
 
 
 def refined(mesh: SectorMesh) -> SectorMesh:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from base import Array
 
 __all__ = ["NODES", "shape", "shape_gradients"]
-
-Array = NDArray[np.float64]
 
 NODES: Array = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
 """Reference coordinates of the six nodes."""

@@ -119,7 +119,7 @@ def article_pair() -> GearPair:
 def setting(held: bool) -> Setting:
     """Finite elements: deflections under every force, and the scales."""
     pair = article_pair()
-    cycles = fem.torque_sweep(
+    cycles = fem.mesh_cycle(
         pair, TORQUE * np.array(SHARES), POSITIONS, fem.compliance(pair, tolerance=0.002), not held
     )
     if not all(cycle.converged for cycle in cycles):

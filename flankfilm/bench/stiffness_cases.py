@@ -19,7 +19,7 @@ POSITIONS = 40
 
 
 def compliance(quick: bool) -> tuple[Case, ...]:
-    """Both gears' flexibility and the mesh cycle held to the path, by edge length and by tolerance."""
+    """Both gears' compliance and the mesh cycle held to the path, by edge length and by tolerance."""
     import fem
     from meshes import Sizes
 
@@ -56,7 +56,7 @@ def compliance(quick: bool) -> tuple[Case, ...]:
     return (
         Case(
             "compliance",
-            "Flexibility of both gears",
+            "Compliance of both gears",
             f"Pair 36/40 at {TORQUE:g} N m, from nothing: two nested meshes of both gears, all flank loads, and "
             f"the mesh cycle at {POSITIONS} positions with contact held to the path of contact. The estimate is "
             "the largest along the path, cross terms of neighbouring teeth included. The closed forms leave "

@@ -30,7 +30,7 @@ def root_stress(stage: RootStage, results: xr.Dataset) -> Part:
                     f"{name}, greatest {what}",
                     number(1e-6 * peak.stress_Pa),
                     number(1e-6 * peak.von_mises_Pa),
-                    f"{peak.way:.3f}",
+                    f"{peak.position:.3f}",
                     f"{math.degrees(peak.tangent_angle):.1f}",
                 )
             )

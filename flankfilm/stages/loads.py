@@ -54,7 +54,7 @@ def torques(engine: Engine) -> TorqueStage:
     scene = engine.scene
     assert scene.operating is not None
     wanted = sorted({*scene.operating.torques_Nm, pinion_torque(scene)})
-    cycles = fem.torque_sweep(
+    cycles = fem.mesh_cycle(
         engine["pair"],
         wanted,
         positions=engine["dry cycle"].phase.size,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fem
+from base import InputError
 from gears import BasicRack, Gear, GearPair, Material
 from meshes import Sizes
 from tests.fem.conftest import true_error
@@ -54,9 +55,9 @@ def test_tolerance_chooses_the_mesh(article_pair):
 def test_a_tolerance_that_cannot_be_met_is_said_so(article_pair, monkeypatch):
     import sys
 
-    with pytest.raises(fem.FemError, match="at least 2e-06"):
+    with pytest.raises(InputError, match="at least 2e-06"):
         fem.compliance(article_pair, 1e-6)
-    monkeypatch.setattr(sys.modules["fem.compliance"], "FINEST", 1)
+    monkeypatch.setattr(sys.modules["fem.pair_compliance"], "FINEST", 1)
     bodies = fem.compliance(article_pair, 2e-6)
     assert not bodies.converged
     assert "above the tolerance" in bodies.message
@@ -156,10 +157,10 @@ def test_factorised_gears_are_kept_in_the_process_and_come_back_after_travel(art
 
 
 def test_all_faults_at_once(article_pair):
-    with pytest.raises(fem.FemError) as caught:
+    with pytest.raises(InputError) as caught:
         fem.compliance(article_pair, tolerance=0.0, plane="shell", refinements=9)
     assert [fault.where for fault in caught.value.faults] == ["tolerance", "plane", "refinements"]
-    with pytest.raises(fem.FemError) as caught:
+    with pytest.raises(InputError) as caught:
         fem.single_pair_stiffness(article_pair, float("nan"), [1.0], fem.compliance(article_pair))
     assert [fault.where for fault in caught.value.faults] == ["force", "rho1"]
 
@@ -168,4 +169,4 @@ def test_cost_says_what_was_solved(article_bodies):
     cost = article_bodies.cost
     assert {"mesh", "assemble", "factor", "condense", "solve", "tips"} <= set(cost.parts)
     assert sum(cost.parts.values()) <= cost.seconds
-    assert cost.annulus_unknowns > 30 * cost.unknowns
+    assert cost.counts["annulus_unknowns"] > 30 * cost.unknowns

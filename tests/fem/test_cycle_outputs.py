@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.compliance import mesh_and_factor
 from fem.line_load import flank_points, line_loads
+from fem.ring import mesh_and_factor
 from gears import Gear, GearPair, Material
 from meshes import Sizes
 
@@ -178,7 +178,7 @@ def test_what_teeth_yield_to_tangential_forces_is_small(article_pair, article_bo
     By Maxwell and Betti it is the tangential displacement, towards the tip, under a normal load. In approach
     friction points to the pinion's root and to the wheel's tip.
     """
-    rings, _ = mesh_and_factor(article_pair, "strain", Sizes(), 1)
+    rings = mesh_and_factor(article_pair, "strain", Sizes(), 1)
     rho1 = np.array([article_pair.points.A + 1e-4, article_pair.points.C, article_pair.points.E - 1e-4])
     towards_tip = []
     for ring, rho in zip(rings, (rho1, article_pair.line_of_action - rho1), strict=True):
@@ -194,33 +194,35 @@ def test_what_teeth_yield_to_tangential_forces_is_small(article_pair, article_bo
 
 
 def test_tangent_with_friction_is_the_derivative(article_pair, article_bodies):
-    low, mid, high = fem.torque_sweep(
+    low, mid, high = fem.mesh_cycle(
         article_pair, [599.99, 600.0, 600.01], 40, article_bodies, False, friction=0.2
     )
-    slope = (high.force - low.force) / (high.approach - low.approach)
+    slope = (high.force - low.force) / (high.transmission_error - low.transmission_error)
     np.testing.assert_allclose(mid.stiffness, slope, rtol=1e-6)
 
 
 @pytest.mark.parametrize("beyond", [False, True])
 def test_a_sweep_is_its_torques_one_by_one(article_pair, article_bodies, beyond):
     torques = [1e-6, 600.0, 1.0, 3000.0]
-    sweep = fem.torque_sweep(article_pair, torques, 20, article_bodies, beyond)
+    sweep = fem.mesh_cycle(article_pair, torques, 20, article_bodies, beyond)
     for torque, cycle in zip(torques, sweep, strict=True):
         alone = fem.mesh_cycle(article_pair, torque, 20, article_bodies, beyond)
         assert cycle.torque == torque
-        for name in ("approach", "stiffness", "secant_stiffness"):
+        for name in ("transmission_error", "stiffness", "secant_stiffness"):
             np.testing.assert_allclose(getattr(cycle, name), getattr(alone, name), rtol=1e-8)
         np.testing.assert_allclose(cycle.forces, alone.forces, rtol=1e-7, atol=1e-9 * cycle.force)
         assert cycle.message == alone.message
 
 
 def test_a_sweep_refuses_only_the_torques_that_are_too_large(article_pair, article_bodies):
-    fine, wild = fem.torque_sweep(article_pair, [600.0, 2e6], 8, article_bodies)
+    fine, wild = fem.mesh_cycle(article_pair, [600.0, 2e6], 8, article_bodies)
     assert fine.converged
     assert not wild.converged
-    assert np.all(np.isnan(wild.approach))
+    assert np.all(np.isnan(wild.transmission_error))
     np.testing.assert_allclose(
-        fine.approach, fem.mesh_cycle(article_pair, 600.0, 8, article_bodies).approach, rtol=1e-9
+        fine.transmission_error,
+        fem.mesh_cycle(article_pair, 600.0, 8, article_bodies).transmission_error,
+        rtol=1e-9,
     )
 
 
@@ -230,7 +232,7 @@ def test_a_film_is_swept_too(article_pair, article_bodies):
         assert rho1.ndim == 2
         return 2e-6 * (1 + forces / 10.0) ** -0.13, -0.26e-7 * (1 + forces / 10.0) ** -1.13
 
-    sweep = fem.torque_sweep(article_pair, [10.0, 600.0], 10, article_bodies, film=film)
+    sweep = fem.mesh_cycle(article_pair, [10.0, 600.0], 10, article_bodies, film=film)
     for cycle in sweep:
         alone = fem.mesh_cycle(article_pair, cycle.torque, 10, article_bodies, film=film)
-        np.testing.assert_allclose(cycle.approach, alone.approach, rtol=1e-9)
+        np.testing.assert_allclose(cycle.transmission_error, alone.transmission_error, rtol=1e-9)

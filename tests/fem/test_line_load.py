@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem import FemError
+from base import InputError
 from fem.elasticity import PlaneElasticity
 from fem.flamant import hertz_indentation
-from fem.flexibility import corner_logarithm, flexibility, sample_places, sampled, wedge_logarithms
+from fem.gear_compliance import corner_logarithm, gear_compliance, sample_places, sampled, wedge_logarithms
 from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
 from gears import Gear, GearPair
@@ -45,7 +45,7 @@ def test_the_tip_corner_stays_on_the_flank_and_beyond_it_is_refused(ring):
     at = flank_points(ring.mesh, np.array([end]))
     # the flank's normal there, not the top land's
     assert at.inward[0] @ (-PROFILE.normal(end) * [-1, 1]) > 0.999
-    with pytest.raises(FemError, match="rho"):
+    with pytest.raises(InputError, match="rho"):
         flank_points(ring.mesh, np.array([end * 1.001]))
 
 
@@ -198,7 +198,7 @@ def test_wedge_coefficient(degrees, number):
 
 def test_fit_along_the_flank(ring, loads):
     places = sample_places(PROFILE, PAIR.points.A, 20)
-    flexible = flexibility(ring, PROFILE, sampled(ring, places))
+    flexible = gear_compliance(ring, PROFILE, sampled(ring, places))
     own = loads.regular_at_load()
     least = own.min() + hertz_indentation(0.1 * PROFILE.module, LAW, PROFILE.module)
     assert flexible.fit_error < 1e-4 * least

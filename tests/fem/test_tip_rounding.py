@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.flexibility import corner_logarithm
+from fem.gear_compliance import corner_logarithm
 from fem.local_law import Table
 from fem.tip_contact import edge_laws, nearest_gap
 from fem.tip_geometry import chamfer_gap, corner_angle, tip_round, unloaded_gap
@@ -65,7 +65,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     width, m = article_pair.face_width, article_pair.module
     modulus = article_bodies.pinion.law.plane_modulus
     star = article_bodies.pinion.law.plane_poisson
-    # own flexibility of the wheel's tip where the arc is nearest, distance by the flanks' angle
+    # own compliance of the wheel's tip where the arc is nearest, distance by the flanks' angle
     turn = (profile.flank_rho[1] - (article_pair.line_of_action - place[0])) / article_pair.base_radii[1]
     flank = (law.where[0] - place[0]) / article_pair.base_radii[0]
     distance = one.start - radius * (flank - turn)
@@ -91,7 +91,7 @@ def test_vanishing_rounding_is_the_sharp_corner(article_pair, article_bodies):
     for radius in (8e-6, 2e-6, 0.5e-6):
         cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, tip_rounding=radius)
         assert cycle.converged
-        off.append(np.abs(cycle.approach / sharp.approach - 1).max())
+        off.append(np.abs(cycle.transmission_error / sharp.transmission_error - 1).max())
     assert off[0] > off[1] > off[2]
     assert off[2] < 2e-3
 
@@ -106,7 +106,7 @@ def test_a_rounding_takes_the_tip_out_of_contact(article_pair, article_bodies):
     edge = [c.forces[outside].sum() for c in cycles]
     assert np.all(np.diff(edge) < 0)
     assert np.all(np.diff([c.secant_stiffness.mean() for c in cycles]) < 0)
-    assert np.all(np.diff([np.ptp(c.approach) for c in cycles]) > 0)
+    assert np.all(np.diff([np.ptp(c.transmission_error) for c in cycles]) > 0)
     assert "rounded corners" in cycles[1].message
     one_sided = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, tip_rounding=(0.0, 20e-6))
     assert "rounded or sharp" in one_sided.message
@@ -115,8 +115,8 @@ def test_a_rounding_takes_the_tip_out_of_contact(article_pair, article_bodies):
 
 def test_no_step_where_the_contact_moves_onto_the_arc(article_pair, article_bodies):
     cycle = fem.mesh_cycle(article_pair, 600.0, 2000, article_bodies, tip_rounding=50e-6)
-    around = np.append(cycle.approach, cycle.approach[0])
-    assert np.abs(np.diff(around)).max() < 3e-3 * cycle.approach.mean()
+    around = np.append(cycle.transmission_error, cycle.transmission_error[0])
+    assert np.abs(np.diff(around)).max() < 3e-3 * cycle.transmission_error.mean()
 
 
 def test_held_to_the_path_the_path_is_shorter(article_pair, article_bodies):
@@ -142,7 +142,7 @@ def test_chamfer_stands_farther_off_than_its_corner_near_the_path():
     assert np.all(np.isinf(chamfer_gap(GearPair(Gear(36), Gear(40), 2e-3, 0.04), 0, way)))
 
 
-def wedge_flexibility(angle, rounded, place, half=0.05, far=300.0, fine=0.02, growth=0.12):
+def wedge_compliance(angle, rounded, place, half=0.05, far=300.0, fine=0.02, growth=0.12):
     """Regular part times E* of a wedge under a load spread over 2 half, by plain finite elements.
 
     Straight P2 triangles of scikit-fem, another program than the one under test; the arc has radius 1, the
@@ -222,12 +222,12 @@ def test_material_missing_from_the_round_hardly_matters(article_pair):
     """
     angle = corner_angle(article_pair.teeth_profiles[0])
     beside = 1 / np.tan(0.5 * angle) + 0.06
-    sharp, rounded = (wedge_flexibility(angle, some, beside) for some in (False, True))
+    sharp, rounded = (wedge_compliance(angle, some, beside) for some in (False, True))
     assert 0 < rounded - sharp < 1e-3  # less material, more flexible
     # the same elements see the wedge's logarithm, so they would have seen a difference
     half = 0.5 * angle
     lean = 0.5 * np.pi - half
     slope = 2 / np.pi - np.cos(lean) ** 2 / (half + 0.5 * np.sin(angle))
     slope -= np.sin(lean) ** 2 / (half - 0.5 * np.sin(angle))
-    change = wedge_flexibility(angle, False, 3 * beside) - sharp
+    change = wedge_compliance(angle, False, 3 * beside) - sharp
     assert change == pytest.approx(slope * np.log(3), rel=0.03)

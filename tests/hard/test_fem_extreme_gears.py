@@ -86,7 +86,7 @@ def test_solved_within_its_tolerance(name):
         cycle = fem.mesh_cycle(pair, torque, 20, bodies, beyond_path=beyond)
         assert cycle.converged
         np.testing.assert_allclose(cycle.load_share.sum(axis=1), 1.0, atol=1e-12)
-        assert np.all(np.isfinite(cycle.approach))
+        assert np.all(np.isfinite(cycle.transmission_error))
         assert np.all(cycle.stiffness > 0)
 
 
@@ -141,7 +141,7 @@ def test_a_pointed_tooth_is_refused_before_it_is_meshed():
 
 
 def test_loads_at_the_tip_corner_and_at_the_start_of_the_fillet():
-    """Towards the corner the flexibility grows by its logarithm, on the corner it stays where the last place is."""
+    """Towards the corner the compliance grows by its logarithm, on the corner it stays where the last place is."""
     pair = pair_of(z=(17, 43))
     bodies = fem.compliance(pair)
     rho_form, rho_end = pair.teeth_profiles[0].flank_rho

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshes import MeshError, Sizes, gear_mesh, mesh_sector
+from base import InputError
+from meshes import Sizes, gear_mesh, mesh_sector
 from tests.meshes.conftest import area, exact_area
 
 
@@ -44,5 +45,5 @@ def test_some_teeth_and_a_finer_one_among_them(article_profile):
 
 def test_cuts_that_do_not_fit_are_refused(article_profile):
     sector = mesh_sector(article_profile)
-    with pytest.raises(MeshError, match="cut"):
+    with pytest.raises(InputError, match="cut"):
         gear_mesh(sector, teeth=range(3), others={1: mesh_sector(article_profile, Sizes(root=0.2, rim=0.4))})

@@ -1,6 +1,6 @@
 """Loaded contact against two whole gears whose contacts are all resolved by their elements.
 
-Reference: benchmarks/fem_two_gears.py (docs/validation/two_gears.md), which uses nothing of the flexibilities, of the
+Reference: benchmarks/fem_two_gears.py (docs/validation/two_gears.md), which uses nothing of the compliances, of the
 local laws or of the tip strips: pressures on element edges of 3 um at the tip corners and 8 um on the flanks, exact
 complementarity, gaps and directions of the deformed flanks. Its own error is a few hundredths of a per cent, at C
 with the edges free a tenth (15.613 with edges of 3 um and deformed flanks, 15.625 with edges of 1 um, undeformed).
@@ -43,7 +43,7 @@ def at(cycle, place, values):
 
 def stiffness(cycle, place):
     """By the approach, which is smoother along the path than its inverse."""
-    return cycle.force / PAIR.face_width / at(cycle, place, cycle.approach) / 1e9
+    return cycle.force / PAIR.face_width / at(cycle, place, cycle.transmission_error) / 1e9
 
 
 def edge_force(cycle, place, offset):
@@ -94,5 +94,5 @@ def test_rounded_edges_at_the_pitch_point(bodies, radius, k, force):
 
 def test_mean_and_spread_over_a_cycle(bodies):
     cycle = fem.mesh_cycle(PAIR, 600.0, 10, bodies)
-    assert np.mean(cycle.force / 0.04 / cycle.approach) / 1e9 == pytest.approx(20.176, rel=2e-3)
-    assert np.ptp(cycle.approach) * 1e6 == pytest.approx(7.579, rel=5e-3)
+    assert np.mean(cycle.force / 0.04 / cycle.transmission_error) / 1e9 == pytest.approx(20.176, rel=2e-3)
+    assert np.ptp(cycle.transmission_error) * 1e6 == pytest.approx(7.579, rel=5e-3)

@@ -8,17 +8,13 @@ the third is nu sigma_t.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Cost, Faults, Integers, Stopwatch, described, quantity, record
 from fem.contact import MeshCycle
-from fem.cost import Cost
 from fem.elasticity import PlaneElasticity
-from fem.errors import Fault, FemError
 from fem.fillet import MIRROR, FilletLine
 from fem.fillet_influence import FilletInfluence, Fillets
 from fem.fillet_influence import fillets as _fillets
@@ -28,91 +24,80 @@ if TYPE_CHECKING:
 
 __all__ = ["GearRootStress", "RootPeak", "RootStress", "root_stress"]
 
-Array = NDArray[np.float64]
-
 LOADED, OTHER = 0, 1
 """Fillet under the loaded flank, in tension when its tooth bears, and the one on the other side."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class RootPeak:
-    """The greatest stress of a cycle and where it acts.
+    """The greatest stress of a cycle and where it acts."""
 
-    Attributes
-    ----------
-    stress_Pa : float
-        Principal stress along the fillet, negative in compression.
-    von_mises_Pa : float
-    row : int
-        Position of the cycle.
-    tooth : int
-        Base pitches that the tooth is ahead of the pair that entered last.
-    way : float
-        Base pitches since the tooth's pair passed A.
-    arc : float
-        Arc length from the middle of the gap [m].
-    tangent_angle : float
-        Between the fillet's tangent and the tooth's centre line [rad].
-    point : (2,) array
-        In the tooth's frame, centre line along +y, the loaded flank on the left [m].
-    """
+    headline = ("stress_Pa", "position")
 
-    stress_Pa: float
-    von_mises_Pa: float
-    row: int
-    tooth: int
-    way: float
-    arc: float
-    tangent_angle: float
-    point: Array
+    stress_Pa: float = quantity(
+        "Pa", "principal stress along the fillet, negative in compression", shown="MPa"
+    )
+    von_mises_Pa: float = quantity("Pa", "von Mises stress", shown="MPa")
+    row: int = quantity("1", "position of the cycle, counted")
+    tooth: int = quantity("1", "base pitches that the tooth is ahead of the pair that entered last")
+    position: float = quantity("1", "base pitches since the tooth's pair passed A")
+    arc: float = quantity("m", "arc length from the middle of the gap between two teeth", shown="mm")
+    tangent_angle: float = quantity("rad", "angle between the fillet's tangent and the tooth's centre line")
+    point: Array = quantity(
+        "m",
+        "place in the tooth's frame, centre line along +y, the loaded flank on the left",
+        "axis",
+        shown="mm",
+    )
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class GearRootStress:
-    """Stress along the fillets of one gear's teeth.
+    """Stress along the fillets of one gear's teeth, at the sample points of ``line``."""
 
-    Attributes
-    ----------
-    line : FilletLine
-        Sample points.
-    law : PlaneElasticity
-    position : (n,) array
-        As of the mesh cycle: way from A over the base pitch of the pair that entered last.
-    tooth : (teeth,) array of int
-        Base pitches that each tooth is ahead of that pair; beside the loaded ones one more at either end.
-    tangential_Pa : (n, teeth, 2, samples) array
-        Principal stress along the fillet under the loaded flank (0) and along the other one (1).
-    """
+    headline = ("greatest_tension_Pa", "greatest_compression_Pa")
 
     line: FilletLine
     law: PlaneElasticity
-    position: Array
-    tooth: NDArray[np.int64]
-    tangential_Pa: Array
+    position: Array = quantity("1", "base pitches from A, of the pair that entered last", "position")
+    tooth: Integers = quantity(
+        "1", "base pitches ahead of that pair; beside the loaded teeth one more at either end", "tooth"
+    )
+    tangential_Pa: Array = quantity(
+        "Pa",
+        "principal stress along the fillet, under the loaded flank first, along the other one second",
+        "position tooth fillet sample",
+        shown="MPa",
+    )
 
     @property
-    def way(self) -> Array:
-        """Base pitches since each tooth's pair passed A, (n, teeth)."""
+    @described("1", "position tooth")
+    def tooth_position(self) -> Array:
+        """Base pitches since each tooth's pair passed A."""
         return np.asarray(self.position[:, None] + self.tooth)
 
     @property
+    @described("Pa", "position tooth", shown="MPa")
     def tension_Pa(self) -> Array:
-        """Greatest principal stress along the fillet under the loaded flank, (n, teeth)."""
+        """Greatest principal stress along the fillet under the loaded flank."""
         return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
 
     @property
+    @described("m", "position tooth", shown="mm")
     def tension_arc(self) -> Array:
-        """Where that acts: arc length from the middle of the gap, (n, teeth) [m]."""
+        """Place of the greatest stress: arc length from the middle of the gap."""
         return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
 
     @property
+    @described("Pa", "position tooth", shown="MPa")
     def compression_Pa(self) -> Array:
-        """Least principal stress along the other fillet, negative in compression, (n, teeth)."""
+        """Least principal stress along the other fillet, negative in compression."""
         return -_extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
 
     @property
+    @described("m", "position tooth", shown="mm")
     def compression_arc(self) -> Array:
-        """Where that acts: arc length from the middle of the gap, (n, teeth) [m]."""
+        """Place of the least stress: arc length from the middle of the gap."""
         return _extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
 
     def von_mises(self, principal: Array | float) -> Array:
@@ -122,13 +107,25 @@ class GearRootStress:
 
     @property
     def greatest_tension(self) -> RootPeak:
-        """Of all teeth and positions."""
+        """Greatest tension of all teeth and positions, and where it acts."""
         return self._peak(self.tension_Pa, self.tension_arc, LOADED)
 
     @property
     def greatest_compression(self) -> RootPeak:
-        """Of all teeth and positions."""
+        """Greatest compression of all teeth and positions, and where it acts."""
         return self._peak(self.compression_Pa, self.compression_arc, OTHER)
+
+    @property
+    @described("Pa", shown="MPa")
+    def greatest_tension_Pa(self) -> float:
+        """Greatest tension under a loaded flank, of all teeth and positions."""
+        return self.greatest_tension.stress_Pa
+
+    @property
+    @described("Pa", shown="MPa")
+    def greatest_compression_Pa(self) -> float:
+        """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
+        return self.greatest_compression.stress_Pa
 
     def _peak(self, stress: Array, arc: Array, side: int) -> RootPeak:
         row, column = np.unravel_index(np.argmax(np.abs(stress)), stress.shape)
@@ -151,13 +148,13 @@ class GearRootStress:
 
         Returns
         -------
-        way : (n teeth,) array
+        position : (n teeth,) array
             Base pitches since its pair passed A, growing.
         tangential_Pa : (n teeth, 2, samples) array
         """
-        order = np.argsort(self.way, axis=None, kind="stable")
+        order = np.argsort(self.tooth_position, axis=None, kind="stable")
         flat = self.tangential_Pa.reshape(-1, *self.tangential_Pa.shape[2:])
-        return self.way.ravel()[order], flat[order]
+        return self.tooth_position.ravel()[order], flat[order]
 
     def fatigue(self) -> tuple[Array, Array]:
         """Amplitude and mean over one tooth's passage at every sample, each (2, samples) [Pa].
@@ -171,26 +168,33 @@ class GearRootStress:
         return 0.5 * (high - low), 0.5 * (high + low)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class RootStress:
-    """Root stress of both gears along a mesh cycle.
+    """Root stress of both gears along a mesh cycle."""
 
-    Attributes
-    ----------
-    pinion, wheel : GearRootStress
-    error : float
-        Estimated relative numerical error of the greatest stresses: of the fillets' mesh and of the forces.
-    cost : Cost
-    converged : bool
-    message : str
-    """
+    headline = ("pinion_tension_Pa", "wheel_tension_Pa")
 
     pinion: GearRootStress
     wheel: GearRootStress
-    error: float
+    error: float = quantity(
+        "1",
+        "estimated relative numerical error of the greatest stresses: of the fillets' mesh and of the forces",
+    )
     cost: Cost
     converged: bool
     message: str
+
+    @property
+    @described("Pa", shown="MPa", error="error")
+    def pinion_tension_Pa(self) -> float:
+        """Greatest tension on the pinion's fillets."""
+        return self.pinion.greatest_tension_Pa
+
+    @property
+    @described("Pa", shown="MPa", error="error")
+    def wheel_tension_Pa(self) -> float:
+        """Greatest tension on the wheel's fillets."""
+        return self.wheel.greatest_tension_Pa
 
 
 def root_stress(
@@ -216,27 +220,26 @@ def root_stress(
 
     Raises
     ------
-    FemError
+    base.InputError
         Fillets of another pair or plane, or a cycle without forces.
     """
-    faults = []
+    found = Faults()
     if fillets is not None and fillets.pair != pair:
-        faults.append(Fault("fillets", "of another pair", "of this pair", "compute them anew"))
+        found.add("fillets", "of another pair", "must be of this pair", "compute them anew")
     if fillets is not None and fillets.plane != cycle.plane:
-        faults.append(Fault("fillets", f"plane {fillets.plane}", f"plane {cycle.plane}", "use one plane"))
+        found.add("fillets", f"plane {fillets.plane}", f"must be of plane {cycle.plane}", "use one plane")
     if not np.all(np.isfinite(cycle.forces)):
-        faults.append(Fault("cycle", "not converged", "with finite forces", cycle.message))
-    if faults:
-        raise FemError(*faults)
-    began = perf_counter()
+        found.add("cycle", "not converged", "must have finite forces", cycle.message)
+    found.raise_if_any()
+    watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
-    ready = perf_counter()
+    ready = watch.seconds
     both = [
         _gear_stress(pair, cycle, influence, gear)
         for gear, influence in enumerate((roots.pinion, roots.wheel))
     ]
-    parts = {**({} if fillets is not None else roots.cost.parts), "superpose": perf_counter() - ready}
-    cost = Cost(perf_counter() - began, roots.cost.unknowns, 0, roots.cost.annulus_unknowns, parts)
+    parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
+    cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
         both[0],
         both[1],

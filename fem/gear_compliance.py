@@ -1,4 +1,4 @@
-"""Flexibility of one gear's flank: own tooth and neighbouring teeth, as smooth functions of rho.
+"""Compliance of one gear's flank: own tooth and neighbouring teeth, as smooth functions of rho.
 
 Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear,
 root, body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a
@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from base import Array
 from fem.elasticity import PlaneElasticity
 from fem.line_load import flank_points, line_loads
 from fem.ring import Ring
@@ -31,15 +31,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FlankSamples",
-    "GearFlexibility",
+    "GearCompliance",
     "corner_logarithm",
-    "flexibility",
+    "gear_compliance",
     "hub_windup",
     "sampled",
     "wedge_logarithms",
 ]
-
-Array = NDArray[np.float64]
 
 CORNER_CLEARANCE = 0.01
 """Loads nearer to the tip corner than this (in modules of rho) are placed at this distance."""
@@ -48,7 +46,7 @@ CROSS_DEGREE = 12
 
 
 @dataclass(frozen=True, eq=False)
-class GearFlexibility:
+class GearCompliance:
     """What a gear's flank yields per unit line load, without the local indentation.
 
     Attributes
@@ -228,9 +226,9 @@ def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> Flan
     return FlankSamples(rho, loads.regular_at_load(), np.array(cross), np.array(corner))
 
 
-def flexibility(
+def gear_compliance(
     ring: Ring, profile: ToothProfile, samples: FlankSamples, flank: str = "left"
-) -> GearFlexibility:
+) -> GearCompliance:
     """Interpolate samples at ``sample_places``.
 
     Parameters
@@ -251,7 +249,7 @@ def flexibility(
     fit = np.linalg.pinv(basis)
     cross = fit @ samples.cross @ fit.T
     remainder = float(np.max(np.abs(basis @ cross @ basis.T - samples.cross)))
-    return GearFlexibility(
+    return GearCompliance(
         (low, high),
         rho_end,
         profile.base_radius,

@@ -1,4 +1,4 @@
-"""Flexibility of both gears of a pair to a tolerance: choice of the mesh, estimate of its error.
+"""Compliance of both gears of a pair to a tolerance: choice of the mesh, estimate of its error.
 
 The displacement at a load along the load is an energy, so its error is the square of the energy norm of the
 finite elements' error: it falls nearly with the fourth power of the edge length (curved second-order elements;
@@ -10,19 +10,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, floor, log2
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array, Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
-from fem.cost import Cost
-from fem.elasticity import PlaneElasticity
-from fem.errors import Fault, FemError
+from fem.elasticity import PlaneElasticity, check_plane
 from fem.flamant import hertz_indentation
-from fem.flexibility import FlankSamples, GearFlexibility, flexibility, sample_places, sampled
-from fem.ring import Ring, mesh_and_factor, ring_of
+from fem.gear_compliance import FlankSamples, GearCompliance, gear_compliance, sample_places, sampled
+from fem.ring import Ring, ring_of
 from fem.support import Support, held_profiles, on_both
 from fem.tip_strips import tip_strips
 
@@ -30,15 +27,18 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import Sizes
 
-__all__ = ["Compliance", "Cost", "compliance", "mesh_and_factor"]
-
-Array = NDArray[np.float64]
+__all__ = ["Compliance", "compliance"]
 
 ORDER = 3.0
 """Order of convergence of the displacement at a load: 4 in the limit, 3 to 3.7 on meshes in use, least at the tip."""
 
-FINEST, LEAST_TOLERANCE = 4, 2e-6
-"""Most refinements that a tolerance may ask for, and the least tolerance that they can meet."""
+FINEST = 4
+"""Most refinements that a tolerance may ask for."""
+
+TOLERANCE = Limit(2e-6, remedy="0.001 is 0.1 %")
+"""The least one can be met with those refinements."""
+
+REFINEMENTS = Limit(1, FINEST + 1, remedy="leave it out", whole=True)
 
 SAMPLES = (20, 32, 48, 64)
 """Loads along a flank: more of them where the fit leaves too much."""
@@ -46,12 +46,13 @@ SAMPLES = (20, 32, 48, 64)
 
 @dataclass(frozen=True, eq=False)
 class _Gear:
-    """One gear on one mesh: fitted flexibility, change of the samples from the coarser mesh."""
+    """One gear on one mesh: fitted compliance, change of the samples from the coarser mesh."""
 
     ring: Ring
-    fine: GearFlexibility
+    fine: GearCompliance
     samples: FlankSamples
     coarse: FlankSamples
+    cost: Cost
 
     def change(self, rho: Array) -> Array:
         """By how much ``own`` grew from the coarser mesh at rho (n,) [m] [m per N/m]."""
@@ -71,7 +72,7 @@ def compliance(
     refinements: int | None = None,
     supports: Support | tuple[Support, Support] | None = None,
 ) -> Compliance:
-    """Flexibility of both gears, on the coarsest mesh that meets a tolerance.
+    """Compliance of both gears, on the coarsest mesh that meets a tolerance.
 
     Two nested meshes are solved and the finer one is used. Its error is taken from the difference of the two
     with the order of convergence 3, plus what the fit along the flank leaves out. Where that is above the
@@ -97,33 +98,38 @@ def compliance(
 
     Raises
     ------
-    FemError
+    base.InputError
         Tolerance or plane that make no sense, a hub that does not fit.
+
+    Examples
+    --------
+    >>> from fem import compliance
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> bodies = compliance(pair, tolerance=0.05)
+    >>> bodies.converged and bodies.error < 0.05
+    True
     """
     from meshes import Sizes
 
-    faults = []
-    if not (np.isfinite(tolerance) and tolerance >= LEAST_TOLERANCE):
-        allowed = f"finite and at least {LEAST_TOLERANCE:g}"
-        faults.append(Fault("tolerance", f"{tolerance!r}", allowed, "0.001 is 0.1 %"))
-    if plane not in ("strain", "stress"):
-        faults.append(Fault("plane", f"{plane!r}", '"strain" or "stress"', "wide gears: strain"))
-    if refinements is not None and not 1 <= refinements <= FINEST + 1:
-        faults.append(Fault("refinements", f"{refinements!r}", f"1 to {FINEST + 1}", "leave it out"))
-    if faults:
-        raise FemError(*faults)
-    began = perf_counter()
+    found = Faults()
+    found.number("tolerance", tolerance, TOLERANCE)
+    check_plane(found, plane)
+    if refinements is not None:
+        found.number("refinements", refinements, REFINEMENTS)
+    found.raise_if_any()
+    watch = Stopwatch()
     held = on_both(supports)
     profiles = held_profiles(pair, held)
     # every tooth that may touch together with another one, tip edges outside the path at both ends included
     reach = ceil(pair.contact_ratio) + 1
     sizes, level = sizes or Sizes(), refinements or 1
-    parts: dict[str, float] = {}
+    cost = Cost(0.0)
     while True:
         gears = [
-            _solved(pair, gear, profiles[gear], plane, sizes, level, tolerance, reach, parts)
-            for gear in (0, 1)
+            _solved(pair, gear, profiles[gear], plane, sizes, level, tolerance, reach) for gear in (0, 1)
         ]
+        cost = sum((gear.cost for gear in gears), cost)
         mesh_error, fit_error = _errors(pair, (gears[0], gears[1]))
         error = mesh_error + fit_error
         finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance))
@@ -137,11 +143,14 @@ def compliance(
             f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
         )
     rings = gears[0].ring, gears[1].ring
-    unknowns = sum(len(ring.inner) + len(ring.cut) for ring in rings)
-    started = perf_counter()
+    started = watch.seconds
     first, second = (tip_strips(*both) for both in zip(rings, profiles, strict=True))
-    parts["tips"] = perf_counter() - started
-    cost = Cost(perf_counter() - began, unknowns, 0, sum(ring.unknowns for ring in rings), parts)
+    cost = Cost(
+        watch.seconds,
+        sum(len(ring.inner) + len(ring.cut) for ring in rings),
+        parts={**cost.parts, "tips": watch.seconds - started},
+        counts={"annulus_unknowns": sum(ring.unknowns for ring in rings)},
+    )
     return Compliance(
         pair,
         plane,
@@ -169,34 +178,28 @@ def _solved(
     level: int,
     tolerance: float,
     reach: int,
-    parts: dict[str, float],
 ) -> _Gear:
-    """Solve one gear on two nested meshes; its seconds by stage are added to ``parts``."""
+    """Solve one gear on two nested meshes."""
     from meshes import mesh_sector
 
-    began = perf_counter()
+    watch = Stopwatch()
     mesh = mesh_sector(profile, sizes, level)
-    seconds = {"mesh": perf_counter() - began}
+    meshed = watch.seconds
     assert mesh.coarser is not None
     law = PlaneElasticity.of(pair.materials[gear], plane)
     rings = [ring_of(one, law) for one in (mesh.coarser, mesh)]
-    for ring in rings:
-        for stage, duration in ring.seconds.items():
-            seconds[stage] = seconds.get(stage, 0.0) + duration
-    started = perf_counter()
+    started = watch.seconds
     # tip edges touch the flanks inside A..E too (fem.tip_contact): no flank is loaded below these ends
     low = (pair.points.A, pair.line_of_action - pair.points.E)[gear]
     local = float(hertz_indentation(0.1 * pair.module, law, pair.module))
     for count in SAMPLES:
         samples = sampled(rings[1], sample_places(profile, low, count), reach)
-        fine = flexibility(rings[1], profile, samples)
+        fine = gear_compliance(rings[1], profile, samples)
         if fine.fit_error <= 0.1 * tolerance * (local + float(np.min(samples.own))):
             break
     coarse = sampled(rings[0], samples.rho, reach)
-    seconds["solve"] = perf_counter() - started
-    for stage, duration in seconds.items():
-        parts[stage] = parts.get(stage, 0.0) + duration
-    return _Gear(rings[1], fine, samples, coarse)
+    own = Cost(watch.seconds, parts={"mesh": meshed, "solve": watch.seconds - started})
+    return _Gear(rings[1], fine, samples, coarse, sum((ring.cost for ring in rings), own))
 
 
 def _errors(pair: GearPair, gears: tuple[_Gear, _Gear]) -> tuple[float, float]:

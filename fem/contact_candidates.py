@@ -7,31 +7,29 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem.setting import Deviations, Setting, setting
+from base import Array, Booleans, Faults, Integers
+from fem.setting import Deviations, Setting
 from fem.tip_contact import nearest_gap
 from fem.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
 
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["Meshing", "meshing", "unloaded_transmission_error"]
-
-Array = NDArray[np.float64]
+__all__ = ["ContactCandidates", "contact_candidates", "unloaded_transmission_error"]
 
 REACHES = (0.6, 1.0)
 """Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
 
 
 @dataclass(frozen=True, eq=False)
-class Meshing:
+class ContactCandidates:
     """Pairs that might touch. n positions of all pitches; a base pitch has its own n_1 of them.
 
     Attributes
     ----------
     position : (n,) array
-        Way from A in base pitches, of the pair that entered last at first.
+        Base pitches from A, of the pair that entered last at first.
     offset : (pairs,) array of int
         Base pitches that each column is ahead of the pair that entered last.
     place : (n_1, pairs) array
@@ -43,7 +41,7 @@ class Meshing:
     lever : (2, n, pairs) array
         Lever of the normal about the axes, over the base radii.
     tangent_arm : (2, n, pairs) array
-        Way from the foot of each axis on the normal to the contact [m], rho on the path.
+        Distance from the foot of each axis on the normal to the contact [m], rho on the path.
     leaning : (2, n_1, pairs) array
         Angle from the normal of pinion's and wheel's flank to the force [rad], away from the tip; not zero at the
         gear's own tip edge alone.
@@ -60,27 +58,27 @@ class Meshing:
     """
 
     position: Array
-    offset: NDArray[np.int64]
+    offset: Integers
     place: Array
     rho: Array
-    touchable: NDArray[np.bool_]
-    edge: NDArray[np.bool_]
+    touchable: Booleans
+    edge: Booleans
     lever: Array
     tangent_arm: Array
     leaning: Array
     gap: Array
-    teeth: NDArray[np.int64]
+    teeth: Integers
     back_gap: Array
-    chamfered: NDArray[np.bool_]
+    chamfered: Booleans
     reach_gap: float
 
-    def corners(self) -> tuple[tuple[int, NDArray[np.bool_]], ...]:
+    def corners(self) -> tuple[tuple[int, Booleans], ...]:
         """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
         before = self.edge & (self.place < 0.5 * (self.place.min() + self.place.max()))
         return (1, before), (0, self.edge & ~before)
 
 
-def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
+def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCandidates:
     """Candidates for contact at midpoints of equal intervals of each base pitch, and their unloaded gaps."""
     pair, positions = given.pair, given.positions
     start, end = given.ends
@@ -120,7 +118,7 @@ def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, given.pitches, 1)
     every = np.broadcast_to(teeth, (2, given.pitches, positions, len(offset)))
-    return Meshing(
+    return ContactCandidates(
         position=(np.arange(given.pitches)[:, None] + within).ravel(),
         offset=offset,
         place=place,
@@ -141,8 +139,8 @@ def meshing(given: Setting, reach: float = REACHES[0]) -> Meshing:
 def _reach_gap(given: Setting, reach: float) -> float:
     """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
     start, end = given.ends
-    way = reach * given.pair.base_pitch
-    before, after = _edges(given, 1, np.array([start - way])), _edges(given, 0, np.array([end + way]))
+    apart = reach * given.pair.base_pitch
+    before, after = _edges(given, 1, np.array([start - apart])), _edges(given, 0, np.array([end + apart]))
     return float(min(before.gap[0], after.gap[0]))
 
 
@@ -155,7 +153,7 @@ class _Edges:
     arm: Array
     leaning: Array
     gap: Array
-    chamfered: NDArray[np.bool_]
+    chamfered: Booleans
 
 
 def _edges(given: Setting, corner: int, place: Array) -> _Edges:
@@ -193,8 +191,19 @@ def unloaded_transmission_error(
 
     Raises
     ------
-    FemError
+    base.InputError
         Input that makes no sense.
+
+    Examples
+    --------
+    >>> from fem import unloaded_transmission_error
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> unloaded_transmission_error(pair, positions=3)
+    array([0., 0., 0.])
     """
-    given = setting(pair, positions, pitches, first_teeth, beyond_path, tip_rounding, deviations)
-    return np.asarray(meshing(given, REACHES[-1]).gap.min(axis=-1).ravel())
+    given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
+    found = Faults()
+    given.check(found)
+    found.raise_if_any()
+    return np.asarray(contact_candidates(given, REACHES[-1]).gap.min(axis=-1).ravel())

@@ -1,0 +1,12 @@
+from .bodies import Compliance as Compliance
+from .contact import mesh_cycle as mesh_cycle
+from .contact_candidates import unloaded_transmission_error as unloaded_transmission_error
+from .cycle import MeshCycle as MeshCycle
+from .fillet_influence import Fillets as Fillets
+from .fillet_influence import fillets as fillets
+from .local_law import Film as Film
+from .pair_compliance import compliance as compliance
+from .single_pair import single_pair_stiffness as single_pair_stiffness
+from .support import Support as Support
+from .tooth_root import RootStress as RootStress
+from .tooth_root import root_stress as root_stress
