@@ -1,0 +1,193 @@
+r"""By how much films separate two flanks, as a function of place and force, around solved films.
+
+Near a film solved at the force :math:`F_0` the separation follows
+
+.. math:: s(F) = s_0 \, (F/F_0)^{-n}, \qquad n = F_0 / (k \, s_0),
+
+which meets value and slope :math:`ds/dF = -1/k` there, stays positive and falls with the force: the form that
+every film formula has. Iterated with new films it needs two or three rounds, where a straight line
+can turn negative at small forces.
+
+Behind a meniscus that stays in place n is up to hundreds, since a heavier contact widens towards it: the dry
+contact's edge, :math:`b \propto \sqrt{F}`, comes nearer, by the distance :math:`d(F) = X (F/F_0)^{-1/2} - 1` in
+half-widths, X the meniscus' place at :math:`F_0`. Where the edge reaches it the film ends; a lighter contact leaves
+it behind and is flooded, with the separation :math:`S_0 (F/F_0)^{-m}`. In between
+
+.. math:: s(F) = \frac{S_0 \, (F/F_0)^{-m}}{1 + c \, (d_0/d)^q},
+   \qquad c = \frac{S_0}{s_0} - 1, \quad q = 2 (n - m) \frac{1 + c}{c} \frac{X - 1}{X},
+
+with the same value and slope at :math:`F_0`; q comes out near one for line contacts.
+
+Between two films along the path, what each gives at the force in question
+is weighted linearly: place changes radius and speed by little from one film to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base import Array
+
+__all__ = ["FilmLaw", "HeldMeniscus", "PlacedFilm"]
+
+_LEAST_RATIO = 0.01
+_LEAST_DISTANCE = 1e-12
+_LARGEST_LOGARITHM = 300.0
+
+
+@dataclass(frozen=True, eq=False)
+class HeldMeniscus:
+    """What bounds films behind a meniscus that stays in place, at the solved forces.
+
+    Attributes
+    ----------
+    place : ndarray, shape (n,)
+        X, distance of the meniscus from the middle of the contact, over the half-width [-]; above one.
+    flooded_separation, flooded_exponent : ndarray, shape (n,)
+        S_0 [m] and m [-] of the flooded contact.
+    """
+
+    place: Array
+    flooded_separation: Array
+    flooded_exponent: Array
+
+    def bound(
+        self, film: NDArray[np.intp], separation: Array, exponent: Array, ratio: Array
+    ) -> tuple[Array, Array]:
+        """Separation [m] and its local exponent at forces over solved ones."""
+        flooded, slow, place = self.flooded_separation[film], self.flooded_exponent[film], self.place[film]
+        lacking = flooded / separation - 1.0
+        bounds = (lacking > 0.0) & (exponent > slow) & (place > 1.0)
+        c, first = np.where(bounds, lacking, 1.0), np.where(bounds, place, 2.0)
+        q = np.where(bounds, 2.0 * (exponent - slow) * (1.0 + c) / c * (first - 1.0) / first, 0.0)
+        edge = first * ratio**-0.5
+        distance = np.maximum(edge - 1.0, _LEAST_DISTANCE)
+        choked = c * np.exp(np.minimum(q * np.log((first - 1.0) / distance), _LARGEST_LOGARITHM))
+        held = np.where(edge > 1.0, flooded * ratio**-slow / (1.0 + choked), 0.0)
+        steep = slow + q * choked / (1.0 + choked) * edge / (2.0 * distance)
+        plain = separation * ratio ** np.where(bounds, 0.0, -exponent)
+        return np.where(bounds, held, plain), np.where(bounds, steep, exponent)
+
+
+@dataclass(frozen=True, eq=False)
+class FilmLaw:
+    """Films along the path of contact, as load sharing takes them.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (n,)
+        Curvature radius of the pinion's flank at the films, rising [m].
+    force : ndarray, shape (n,)
+        Force at which each film was solved [N].
+    separation : ndarray, shape (n,)
+        Separation there [m].
+    exponent : ndarray, shape (n,)
+        n, at least zero [-].
+    held : HeldMeniscus, optional
+        For films behind a meniscus. Where its flooded separation is no larger, or its exponent no less than n,
+        the plain power law stands.
+    """
+
+    rho1: Array
+    force: Array
+    separation: Array
+    exponent: Array
+    held: HeldMeniscus | None = None
+
+    def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
+        """Separation [m] and its slope [m/N] at given places and forces.
+
+        Below a hundredth of a solved force the law goes on along its tangent: the power law would grow
+        without bound where the pair lets go, and a slope that jumps has Newton's method of the load sharing
+        step to and fro across it. Places beyond the films have the nearest one.
+
+        Parameters
+        ----------
+        rho1 : ndarray
+            Places [m]; NaN where no film is wanted: zero there.
+        forces : ndarray
+            Of the same shape [N].
+        """
+        _, share, found = self._beside(rho1, forces)
+        separation, slope = ((1 - share) * a + share * b for a, b in zip(*found, strict=True))
+        some = np.isfinite(rho1)
+        return np.where(some, separation, 0.0), np.where(some, slope, 0.0)
+
+    def carried(self, figure: Array, rho1: Array, forces: Array) -> Array:
+        """Figure of the films, such as a thickness, at other places and forces: in proportion to the separation.
+
+        Parameters
+        ----------
+        figure : ndarray, shape (n,)
+            Of each film.
+        rho1, forces : ndarray
+            As of a call.
+
+        Returns
+        -------
+        ndarray
+            NaN without force or place.
+        """
+        (first, second), share, found = self._beside(rho1, forces)
+        (below, _), (above, _) = found
+        between = (1 - share) * figure[first] * below / self.separation[first]
+        between = between + share * figure[second] * above / self.separation[second]
+        return np.where(np.isfinite(rho1) & (forces > 0.0), between, np.nan)
+
+    def stiffness(self, rho1: Array) -> Array:
+        """Film stiffness at the solved forces, infinite at NaN [N/m]."""
+        (first, second), share = self._neighbours(rho1)
+        yielding = self.exponent * self.separation / self.force
+        between = np.where(np.isfinite(rho1), (1 - share) * yielding[first] + share * yielding[second], 0.0)
+        return np.divide(1.0, between, out=np.full_like(between, np.inf), where=between > 0)
+
+    def _neighbours(self, rho1: Array) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
+        """Films on either side of each place, and the share of the second."""
+        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
+        second = np.clip(np.searchsorted(self.rho1, place), min(1, self.rho1.size - 1), self.rho1.size - 1)
+        first = np.maximum(second - 1, 0)
+        step = self.rho1[second] - self.rho1[first]
+        share = np.divide(place - self.rho1[first], step, out=np.zeros_like(place), where=step > 0)
+        return (first, second), share
+
+    def _beside(
+        self, rho1: Array, forces: Array
+    ) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array, list[tuple[Array, Array]]]:
+        """Films on either side of each place, the share of the second, and what each gives at the forces."""
+        (first, second), share = self._neighbours(rho1)
+        # a meniscus lies where the force of its place put it: between two films, where the force between theirs would
+        between = (1 - share) * self.force[first] + share * self.force[second]
+        solved = [self.force[film] if self.held is None else between for film in (first, second)]
+        found = [self._one(film, forces, at) for film, at in zip((first, second), solved, strict=True)]
+        return (first, second), share, found
+
+    def _one(self, film: NDArray[np.intp], forces: Array, solved: Array) -> tuple[Array, Array]:
+        """Separation and slope by one film each, taken as solved at the given forces."""
+        exponent = self.exponent[film]
+        ratio = np.maximum(forces / solved, _LEAST_RATIO)
+        below = np.minimum(forces - ratio * solved, 0.0)
+        if self.held is not None:
+            separation, local = self.held.bound(film, self.separation[film], exponent, ratio)
+        else:
+            separation, local = self.separation[film] * ratio**-exponent, exponent
+        slope = -local * separation / (ratio * solved)
+        return separation + slope * below, slope
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedFilm:
+    """A film law at fixed places, in the form of `gears.share_load`."""
+
+    law: FilmLaw
+    rho1: Array
+
+    def approach(self, force: Array) -> Array:
+        """Separation of each pair, shape (positions, pairs) [m]."""
+        return self.law(self.rho1, force)[0]
+
+    def slope(self, force: Array) -> Array:
+        """Derivative of the separation by the force, shape (positions, pairs) [m/N]."""
+        return self.law(self.rho1, force)[1]

@@ -1,0 +1,282 @@
+"""Films of all loaded contacts of a mesh cycle, in the order of the path: flooded, starved or mixed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from base import Array, Fault, Faults, InputError, SolverError
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
+
+if TYPE_CHECKING:
+    from ehl import Film, FormulaFilm, LineContact, Lubricant, Meniscus, MixedFilm, OilLayer, Roughness
+    from gears import GearPair
+
+    Solved: TypeAlias = Film | MixedFilm | FormulaFilm
+    Supply: TypeAlias = Meniscus | OilLayer | None
+
+__all__ = [
+    "FilmModel",
+    "PathFilms",
+    "PlacedMeniscus",
+    "contacts_of",
+    "film_inside",
+    "films_of",
+    "held_the_other_way",
+    "law_of",
+]
+
+LEAST_SHARE = 1e-3
+"""Pairs with less than this part of the force get no film: they hardly touch, and what their film
+separates them by moves the load share by less than their own part."""
+
+
+@dataclass(frozen=True)
+class PlacedMeniscus:
+    """A meniscus that each contact's own load places, and that stays in that place when the load changes from there.
+
+    Attributes
+    ----------
+    half_widths : float
+        Distance ahead of the contact's middle over the half-width of the dry contact, above one.
+    """
+
+    half_widths: float
+
+
+@dataclass(frozen=True)
+class FilmModel:
+    """How films are computed.
+
+    Attributes
+    ----------
+    name : str
+        ``"ehl"``: solved; ``"dowson"``: by Dowson's formula.
+    definition : str or None
+        Definition of the film stiffness; by the model's own unless given.
+    supply : ehl.Meniscus, ehl.OilLayer, PlacedMeniscus or None
+        What is held at the inlet; None for flooded contacts.
+    roughness : ehl.Roughness or None
+        Of both flanks together; None for smooth ones.
+    grid : str
+        As of `ehl.solve`.
+    """
+
+    name: str = "ehl"
+    definition: str | None = None
+    supply: Meniscus | OilLayer | PlacedMeniscus | None = None
+    roughness: Roughness | None = None
+    grid: str = "graded"
+
+    def __post_init__(self) -> None:
+        """Check that the parts go together."""
+        faults = Faults()
+        faults.choice("film.name", self.name, ("ehl", "dowson"))
+        if self.name == "dowson":
+            for part, allowed in (("supply", "flooded contacts"), ("roughness", "smooth flanks")):
+                if getattr(self, part) is not None:
+                    faults.add(f"film.{part}", "", f"requires solved films; formulas are of {allowed}")
+        faults.raise_if_any()
+
+    @property
+    def stiffness(self) -> str:
+        """Definition of the film stiffness that goes in series with the teeth."""
+        return self.definition or ("dowson-central" if self.name == "dowson" else "approach")
+
+    @property
+    def held(self) -> str:
+        """``"flooded"``, ``"meniscus"`` or ``"oil-layer"``."""
+        if self.supply is None:
+            return "flooded"
+        return "oil-layer" if type(self.supply).__name__ == "OilLayer" else "meniscus"
+
+    def supply_of(self, contact: LineContact) -> Supply:
+        """Supply of one contact.
+
+        Raises
+        ------
+        InputError
+            For a meniscus inside the dry contact.
+        """
+        from ehl import Meniscus
+
+        held = self.supply
+        if isinstance(held, PlacedMeniscus):
+            return Meniscus(-held.half_widths * contact.half_width)
+        if isinstance(held, Meniscus) and -held.position <= contact.half_width:
+            edge = 1e3 * contact.half_width
+            allowed = f"must be more than {edge:.4g} mm ahead, the half-width of a contact on the path"
+            remedy = "nearer in no film forms; move it out, or give its place in half-widths"
+            raise InputError(
+                [Fault("supply.position", f"{-1e3 * held.position:g} mm ahead", allowed, remedy)]
+            )
+        return held
+
+
+@dataclass(frozen=True)
+class PathFilms:
+    """Films in the order of the path.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (n,)
+        Curvature radius of the pinion's flank at the contacts [m].
+    films : tuple
+        One for each contact.
+    flooded : tuple of Film
+        The smooth, flooded films of the same contacts; empty unless something is held at the inlet.
+    """
+
+    rho1: Array
+    films: tuple[Solved, ...]
+    flooded: tuple[Film, ...] = ()
+
+
+def contacts_of(
+    pair: GearPair, cycle: MeshCycle, speed: float, lubricant: Lubricant
+) -> tuple[Array, tuple[LineContact, ...]]:
+    """Line contacts that the loaded pairs of a cycle make, with their places on the path [m]."""
+    from ehl import LineContact
+
+    touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
+    position, number = np.nonzero(touching)
+    order = np.argsort(cycle.rho1[position, number], kind="stable")
+    position, number = position[order], number[order]
+    rho1 = cycle.rho1[position, number]
+    path = pair.path_at(rho1)
+    contacts = tuple(
+        LineContact(
+            load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
+        )
+        for w, u, r in zip(
+            (cycle.forces[position, number] / pair.face_width).tolist(),
+            path.entrainment(speed).tolist(),
+            path.radius.tolist(),
+            strict=True,
+        )
+    )
+    return rho1, contacts
+
+
+def films_of(
+    model: FilmModel,
+    rho1: Array,
+    contacts: tuple[LineContact, ...],
+    before: PathFilms | None,
+    tolerance: float,
+) -> PathFilms:
+    """Films of all contacts, each solved from its neighbour, or from itself of the round before.
+
+    Raises
+    ------
+    SolverError
+        Where a film has no solution.
+    """
+    from ehl import dowson
+
+    if model.name == "dowson":
+        return PathFilms(rho1, tuple(dowson(contact) for contact in contacts))
+    old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
+    flooded: tuple[Film, ...] = ()
+    if model.supply is not None:
+        smooth = replace(model, supply=None, roughness=None)
+        flooded = tuple(
+            film_inside(film)
+            for film in _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
+        )
+    supplies = tuple(model.supply_of(contact) for contact in contacts)
+    return PathFilms(rho1, _solved(model, rho1, contacts, supplies, old.films, tolerance), flooded)
+
+
+def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> PathFilms:
+    """Solve the same starved films with their meniscus held instead of their layer, or the layer instead of it."""
+    from ehl import Meniscus, OilLayer
+
+    inside = tuple(film_inside(film) for film in path.films)
+    contacts = tuple(film.contact for film in path.films)
+    by_layer = model.held == "oil-layer"
+    supplies = tuple(
+        None if not film.starved else Meniscus(film.inlet) if by_layer else OilLayer(film.flow)
+        for film in inside
+    )
+    return replace(path, films=_solved(model, path.rho1, contacts, supplies, path.films, tolerance))
+
+
+def _solved(
+    model: FilmModel,
+    rho1: Array,
+    contacts: tuple[LineContact, ...],
+    supplies: tuple[Supply, ...],
+    before: tuple[Solved, ...],
+    tolerance: float,
+) -> tuple[Solved, ...]:
+    """Solve contacts one after the other, each from what it was before, or from the last."""
+    from ehl import solve, solve_mixed
+
+    found: list[Solved] = []
+    for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
+        near = before[i] if before else found[-1] if found else None
+        start = None if near is None else film_inside(near)
+        film: Film | MixedFilm
+        if model.roughness is None:
+            film = solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
+        else:
+            film = solve_mixed(contact, model.roughness, tolerance, supply, start)
+        if not film.converged:
+            raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
+        found.append(film)
+    return tuple(found)
+
+
+def film_inside(film: Solved) -> Film:
+    """Film itself: of a mixed film that of the load which the asperities leave to it."""
+    from ehl import MixedFilm
+
+    return film.film if isinstance(film, MixedFilm) else film  # type: ignore[return-value]
+
+
+def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
+    """Gather the films along the path into a law.
+
+    Raises
+    ------
+    SolverError
+        Where a film separates the flanks by less than its error.
+    """
+    force = np.array([face_width * film.contact.load for film in path.films])
+    separations = np.array([film.separation for film in path.films])
+    if np.any(separations <= 0.0):
+        where = 1e3 * path.rho1[int(np.argmin(separations))]
+        raise SolverError(
+            f"the film at rho1 = {where:.3f} mm separates the flanks by less than its error: it is as good "
+            'as dry; take film.model = "none"'
+        )
+    exponent = np.array([_exponent(film, definition) for film in path.films])
+    if not path.flooded or not any(_by_meniscus(film) for film in path.films):
+        return FilmLaw(path.rho1, force, separations, exponent)
+    held = HeldMeniscus(
+        np.array([-film.inlet / film.contact.half_width for film in map(film_inside, path.films)]),
+        np.array([film.separation for film in path.flooded]),
+        np.array([_exponent(film, "approach") for film in path.flooded]),
+    )
+    return FilmLaw(path.rho1, force, separations, exponent, held)
+
+
+def _by_meniscus(film: Solved) -> bool:
+    from ehl import Meniscus
+
+    return isinstance(film_inside(film).supply, Meniscus)
+
+
+def _exponent(film: Solved, definition: str) -> float:
+    """Exponent by which a film's separation falls with the load.
+
+    At light loads of thin, soft contacts a film's slope can vanish or turn within its error: then a constant.
+    """
+    slope = getattr(film, "separation_slope", None)
+    if definition != "approach" or slope is None:
+        slope = -1.0 / film.stiffness(definition)
+    return max(-slope * film.contact.load / film.separation, 0.0)

@@ -1,0 +1,112 @@
+"""Mesh cycles beyond one torque and one base pitch: over torques, and tooth by tooth over a revolution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Cost, SolverError, quantity, record
+from flankfilm.coupling.loaded_teeth import LoadedTeeth
+
+if TYPE_CHECKING:
+    from fem import MeshCycle
+
+__all__ = ["TorqueCurves", "revolution", "torque_curves"]
+
+REVOLUTION_POSITIONS = 40
+
+
+@record
+class TorqueCurves:
+    """Mesh stiffness and transmission error over torque, dry; ``message`` says why torques are missing."""
+
+    torque: Array = quantity("N m", "torque of the pinion", "torque")
+    secant_stiffness: Array = quantity("N/m", "mean force over deflection", "torque", error="error")
+    stiffness: Array = quantity("N/m", "mean slope of force over deflection", "torque", error="error")
+    transmission_error: Array = quantity("m", "transmission error, peak to peak", "torque", shown="um")
+    harmonic_1: Array = quantity("1", "first harmonic of the secant stiffness over its mean", "torque")
+    error: float
+    cost: Cost
+    converged: bool
+    message: str
+
+
+def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) -> TorqueCurves:
+    """Mesh cycles by finite elements at several torques from one compliance.
+
+    Parameters
+    ----------
+    teeth : LoadedTeeth
+        Its own torque is one of them.
+    torques : iterable of float
+        Of the pinion [N m].
+    positions : int
+        Of a base pitch.
+
+    Raises
+    ------
+    SolverError
+        Where none of them converged.
+    """
+    import fem
+
+    cycles = fem.mesh_cycle(
+        teeth.pair,
+        sorted({*torques, teeth.torque}),
+        positions=positions,
+        compliance=teeth.compliance,
+        **teeth.flanks.arguments(),
+    )
+    good = [cycle for cycle in cycles if cycle.converged]
+    if not good:
+        raise SolverError(f"mesh cycles over torque: {cycles[0].message}")
+    refused = [cycle for cycle in cycles if not cycle.converged]
+    spectra = [np.abs(np.fft.rfft(cycle.secant_stiffness)) for cycle in good]
+    return TorqueCurves(
+        torque=np.array([cycle.torque for cycle in good]),
+        secant_stiffness=np.array([cycle.secant_stiffness.mean() for cycle in good]),
+        stiffness=np.array([cycle.stiffness.mean() for cycle in good]),
+        transmission_error=np.array([np.ptp(cycle.transmission_error) for cycle in good]),
+        harmonic_1=np.array([2 * s[1] / s[0] for s in spectra]),
+        error=max(cycle.error for cycle in good),
+        cost=cycles[0].cost,
+        converged=not refused,
+        message="; ".join(f"{cycle.torque:g} N m: {cycle.message}" for cycle in refused),
+    )
+
+
+def revolution(
+    teeth: LoadedTeeth, pitches: int | None = None, first_teeth: tuple[int, int] = (0, 0)
+) -> MeshCycle:
+    """Mesh cycle tooth by tooth, with pitch deviations, by finite elements.
+
+    Parameters
+    ----------
+    teeth : LoadedTeeth
+        With the deviations of the pitches in its flanks.
+    pitches : int, optional
+        Base pitches; a revolution of the pinion unless given.
+    first_teeth : (int, int)
+        Teeth of pinion and wheel in the first pair.
+
+    Raises
+    ------
+    SolverError
+        Where the loaded contact did not converge.
+    """
+    import fem
+
+    cycle = fem.mesh_cycle(
+        teeth.pair,
+        teeth.torque,
+        positions=REVOLUTION_POSITIONS,
+        compliance=teeth.compliance,
+        pitches=pitches or teeth.pair.pinion.teeth,
+        first_teeth=first_teeth,
+        **teeth.flanks.arguments(),
+    )
+    if not cycle.converged:
+        raise SolverError(f"revolution: {cycle.message}")
+    return cycle

@@ -1,0 +1,202 @@
+"""The motion swept up and down, portraits of what the sweeps met, and where contact is first lost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from base import Array, Cost, Fault, InputError, Stopwatch, quantity, record, unclocked
+from flankfilm.coupling.oscillator import PairOscillator
+
+if TYPE_CHECKING:
+    from dynamics import GearOscillator, SweepResult
+
+__all__ = ["Portrait", "SpeedSweep", "frequencies_of", "speed_sweep"]
+
+MOST_PORTRAITS = 6
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A settled motion at one parameter value.
+
+    Attributes
+    ----------
+    frequency : float
+        Mesh frequency over the natural frequency.
+    direction : str
+        Sweep that met it, ``"up"`` or ``"down"``.
+    label : str
+        Motion n-p-q.
+    displacement, velocity : ndarray
+        Trajectory, dimensionless.
+    section : ndarray, shape (points, 2)
+        States at tau = 0.
+    """
+
+    frequency: float
+    direction: str
+    label: str
+    displacement: Array
+    velocity: Array
+    section: Array
+
+
+@record
+class SpeedSweep:
+    """Motion swept up and down in speed.
+
+    ``states`` and ``labels`` go by direction, ``"up"`` and ``"down"``; ``portraits`` are settled motions at chosen
+    values, ``messages`` what the solvers have to report.
+    """
+
+    headline = ("least_grazing", "half_backlash")
+
+    frequency: Array = quantity("1", "mesh over natural frequency", "value")
+    speed: Array | None = quantity("rad/s", "pinion speed", "value", shown="rpm")
+    states: Mapping[str, Array] = quantity("1", "displacement and velocity at tau = 0", "value kept state")
+    labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "value")
+    grazings: Array = quantity(
+        "1", "where the orbit that never leaves contact touches the backlash", "grazing"
+    )
+    half_backlash: float = quantity("1", "half the backlash D")
+    portraits: tuple[Portrait, ...]
+    error: float
+    cost: Cost
+    messages: tuple[str, ...]
+
+    @property
+    def least_grazing(self) -> float | None:
+        """Least frequency at which contact is lost."""
+        return float(self.grazings.min()) if self.grazings.size else None
+
+    @property
+    def converged(self) -> bool:
+        """Whether no solver has anything to report."""
+        return not self.messages
+
+    @property
+    def message(self) -> str:
+        """All messages in one."""
+        return "; ".join(self.messages)
+
+
+def speed_sweep(
+    motion: PairOscillator,
+    speed: ArrayLike | None = None,
+    *,
+    frequency: ArrayLike | None = None,
+    portraits: Sequence[float] = (),
+) -> SpeedSweep:
+    """Sweep the speed up and down.
+
+    Parameters
+    ----------
+    motion : PairOscillator
+    speed : array_like, shape (values,)
+        Pinion speeds [rad/s], rising.
+    frequency : array_like, shape (values,)
+        Instead of them: mesh frequencies over the natural one.
+    portraits : sequence of float
+        Frequencies of the portraits; one for each kind of motion where there are none.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> from flankfilm.coupling import PairOscillator, given_series
+    >>> series = given_series(1.0, [0.18], [0.0])
+    >>> oscillator = GearOscillator(series.stiffness, 0.05, 0.1, 0.2, 0.5, 0.2)
+    >>> swept = speed_sweep(PairOscillator(oscillator, None, series), frequency=[0.6, 0.65, 0.7])
+    >>> [label for label in swept.labels["up"]], round(swept.least_grazing, 4)
+    (['1-0-0', '1-1-0', '1-1-0'], 0.6335)
+    """
+    with unclocked():
+        from dynamics import contact_grazing, sweep
+    watch = Stopwatch()
+    values, speeds = frequencies_of(motion, speed, frequency)
+    oscillator = motion.oscillator
+    found = {
+        direction: sweep(oscillator, parameter="frequency", values=values, direction=direction)
+        for direction in ("up", "down")
+    }
+    grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
+    told = [(result.message, result.converged) for result in found.values()]
+    told.append((grazing.message, grazing.converged))
+    return SpeedSweep(
+        frequency=values,
+        speed=speeds,
+        states={direction: result.states for direction, result in found.items()},
+        labels={direction: result.labels for direction, result in found.items()},
+        portraits=tuple(
+            _portrait(oscillator, found[direction], direction, index)
+            for direction, index in _choices(values, portraits, found)
+        ),
+        grazings=np.asarray(grazing),
+        half_backlash=oscillator.half_backlash,
+        error=max(result.error for result in found.values()),
+        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
+        messages=tuple(message for message, converged in told if not converged),
+    )
+
+
+def frequencies_of(
+    motion: PairOscillator, speed: ArrayLike | None, frequency: ArrayLike | None
+) -> tuple[Array, Array | None]:
+    """Frequencies of pinion speeds [rad/s], or those given, with the speeds where there are any.
+
+    Raises
+    ------
+    InputError
+        Where both are given, or neither; for speeds of an oscillator in its own units.
+    """
+    if (speed is None) == (frequency is None):
+        raise InputError([Fault("speed", "", "or frequency must be given, one of both")])
+    if frequency is not None:
+        return np.asarray(frequency, dtype=np.float64), None
+    if motion.scales is None:
+        raise InputError(
+            [Fault("speed", "", "requires an oscillator with physical scales", "give frequency")]
+        )
+    speeds = np.asarray(speed, dtype=np.float64)
+    return np.array([motion.scales.frequency(one) for one in speeds.tolist()]), speeds
+
+
+def _choices(
+    frequency: Array, wanted: Sequence[float], found: Mapping[str, SweepResult]
+) -> list[tuple[str, int]]:
+    """Choose direction and index of each portrait: those asked for, else one for each kind of motion."""
+    if wanted:
+        nearest = [int(np.argmin(np.abs(frequency - w))) for w in wanted]
+        return [(d, i) for i in nearest for d in _different(found, i)]
+    longest: dict[str, tuple[int, str, int]] = {}
+    for direction, result in found.items():
+        at = 0
+        for label, run in groupby(result.labels):
+            length = len(list(run))
+            if length > longest.get(label, (0, "", 0))[0]:
+                longest[label] = (length, direction, at + length // 2)
+            at += length
+    kept = sorted(longest.values(), reverse=True)[:MOST_PORTRAITS]
+    return sorted(((d, i) for _, d, i in kept), key=lambda choice: choice[1])
+
+
+def _different(found: Mapping[str, SweepResult], index: int) -> tuple[str, ...]:
+    """Directions whose motions differ at a value: one where both sweeps met the same."""
+    labels = {result.labels[index] for result in found.values()}
+    return ("up",) if len(labels) == 1 else ("up", "down")
+
+
+def _portrait(oscillator: GearOscillator, result: SweepResult, direction: str, index: int) -> Portrait:
+    from dynamics import trajectory
+
+    frequency = float(result.values[index])
+    states = result.states[index]
+    periods = int(result.periods[index]) or 60
+    here = oscillator.with_parameter("frequency", frequency)
+    motion = trajectory(here, states[-1], periods=periods)
+    return Portrait(frequency, direction, result.labels[index], motion.x, motion.v, motion.poincare)

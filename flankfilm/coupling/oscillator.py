@@ -1,0 +1,205 @@
+"""The oscillator that a pair's mesh stiffness drives, and its scales."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from base import Cost, described, quantity, record
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.series import MeshSeries, mesh_series
+
+if TYPE_CHECKING:
+    from dynamics import GearOscillator, Scaling
+    from gears import GearPair
+
+__all__ = ["PairOscillator", "pair_inertias", "pair_oscillator", "pair_scales"]
+
+MEAN_FORCE = 0.1
+"""Dimensionless mean force that the length scale is chosen for, unless that is given."""
+
+
+@record
+class PairOscillator:
+    """Oscillator of a pair, and its scales where there are physical ones.
+
+    ``scales``, ``pair`` and all physical figures are None or zero for an oscillator in its own units; ``oscillator``
+    is at the pair's speed.
+    """
+
+    headline = ("natural_frequency", "mean_force", "half_backlash", "frequency")
+
+    oscillator: GearOscillator
+    scales: Scaling | None
+    series: MeshSeries
+    pair: GearPair | None = None
+    force: float = quantity("N", "normal force", default=0.0)
+    error_amplitude: float = quantity(
+        "m", "amplitude of the unloaded transmission error", shown="um", default=0.0
+    )
+    backlash: float = quantity("m", "whole backlash along the line of action", shown="um", default=0.0)
+    inertias: tuple[float, float] = quantity(
+        "kg m2", "moments of inertia of pinion and wheel", "gear", default=(0.0, 0.0)
+    )
+    cost: Cost = Cost(0.0)
+    converged: bool = True
+    message: str = ""
+
+    @property
+    def error(self) -> float | None:
+        """Relative error of the mean stiffness; None where it is unknown."""
+        return None if self.series.cycle is None else self.series.cycle.mean_error
+
+    @property
+    @described("1")
+    def mean_force(self) -> float:
+        """Mean force F_m."""
+        return self.oscillator.mean_force
+
+    @property
+    @described("1")
+    def half_backlash(self) -> float:
+        """Half the backlash D."""
+        return self.oscillator.half_backlash
+
+    @property
+    @described("1")
+    def frequency(self) -> float:
+        """Mesh frequency omega over the natural one."""
+        return self.oscillator.frequency
+
+    @property
+    @described("Hz")
+    def natural_frequency(self) -> float | None:
+        """Natural frequency; None for an oscillator in its own units."""
+        return None if self.scales is None else self.scales.natural_frequency
+
+    def rows(self) -> tuple[tuple[str, str, str], ...]:
+        """Quantities, physical and dimensionless, as text for tables."""
+        osc, scales = self.oscillator, self.scales
+        own = {
+            "mean force F_m": osc.mean_force,
+            "error amplitude epsilon": osc.error_amplitude,
+            "half backlash D": osc.half_backlash,
+            "damping ratio zeta": osc.damping_ratio,
+            "mesh frequency omega": osc.frequency,
+        }
+        if scales is None:
+            return tuple((name, "", f"{value:.6g}") for name, value in own.items())
+        physical = (
+            f"{self.force:.6g} N",
+            f"{1e6 * self.error_amplitude:.4g} µm",
+            f"{1e6 * self.backlash / 2:.4g} µm",
+            f"{scales.damping(osc.damping_ratio):.4g} N s/m",
+            f"{scales.rpm(osc.frequency):.6g} rpm of the pinion",
+        )
+        rows = [
+            (name, text, f"{value:.6g}") for (name, value), text in zip(own.items(), physical, strict=True)
+        ]
+        rows += [
+            ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
+            ("mean stiffness k_m", f"{scales.mean_stiffness:.5g} N/m", "1"),
+            ("equivalent mass m_e", f"{scales.equivalent_mass:.5g} kg", "1"),
+            ("natural frequency", f"{scales.natural_frequency:.5g} Hz", "1"),
+            ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
+        ]
+        return tuple(rows)
+
+
+def pair_oscillator(
+    pair: GearPair,
+    stiffness: MeshCycle | MeshSeries,
+    torque: float,
+    speed: float,
+    *,
+    damping_ratio: float = 0.05,
+    error_amplitude: float = 0.0,
+    error_phase: float = 0.0,
+    extra_inertia: tuple[float, float] = (0.0, 0.0),
+    length_scale: float | None = None,
+    one_sided: bool = False,
+) -> PairOscillator:
+    """Oscillator of a pair along the line of action, driven by its mesh stiffness.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    stiffness : MeshCycle or MeshSeries
+        Of a mesh cycle the first harmonic of the secant is taken.
+    torque, speed : float
+        Of the pinion [N m], [rad/s].
+    damping_ratio : float
+        Dimensionless.
+    error_amplitude, error_phase : float
+        Of the unloaded transmission error [m], [rad]; the deflection is in the stiffness already.
+    extra_inertia : (float, float)
+        What turns with pinion and wheel [kg m2].
+    length_scale : float, optional
+        b_c [m]; such that the dimensionless mean force is 0.1 unless given.
+    one_sided : bool
+        Whether the back flanks cannot touch.
+
+    Raises
+    ------
+    InputError
+        With every fault of the arguments.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from flankfilm.coupling import mesh_cycle
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> cycle = mesh_cycle(pair, 600.0, model="potential-energy")
+    >>> motion = pair_oscillator(pair.with_backlash(50e-6), cycle, torque=600.0, speed=209.44)
+    >>> round(motion.mean_force, 3), 6e3 < motion.natural_frequency < 8e3
+    (0.1, True)
+    """
+    series = mesh_series(stiffness, order=1) if isinstance(stiffness, MeshCycle) else stiffness
+    force = pair.normal_force(torque)
+    scales = pair_scales(pair, torque, series.mean, extra_inertia, length_scale)
+    oscillator = scales.oscillator(
+        stiffness=series.stiffness,
+        damping_ratio=damping_ratio,
+        force=force,
+        error_amplitude=error_amplitude,
+        half_backlash=0.5 * pair.backlash,
+        speed=speed,
+        error_phase=error_phase,
+    )
+    return PairOscillator(
+        replace(oscillator, one_sided=one_sided),
+        scales,
+        series,
+        pair,
+        force,
+        error_amplitude,
+        pair.backlash,
+        pair_inertias(pair, extra_inertia),
+    )
+
+
+def pair_inertias(pair: GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+    """Moments of inertia of pinion and wheel with what turns with them [kg m2]."""
+    first, second = pair.moments_of_inertia
+    return first + extra[0], second + extra[1]
+
+
+def pair_scales(
+    pair: GearPair,
+    torque: float,
+    mean_stiffness: float,
+    extra_inertia: tuple[float, float] = (0.0, 0.0),
+    length_scale: float | None = None,
+) -> Scaling:
+    """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`."""
+    from dynamics import Scaling
+
+    return Scaling.from_inertias(
+        inertias=pair_inertias(pair, extra_inertia),
+        base_radii=pair.base_radii,
+        mean_stiffness=mean_stiffness,
+        cycles_per_revolution=pair.pinion.teeth,
+        length=length_scale,
+        force=pair.normal_force(torque) if length_scale is None else None,
+        mean_force=MEAN_FORCE if length_scale is None else None,
+    )

@@ -1,0 +1,115 @@
+"""Root stress along the mesh cycle by finite elements, beside ISO 6336-3, and fields of the loaded gears."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Cost, SolverError, Stopwatch, quantity, record, unclocked
+
+if TYPE_CHECKING:
+    import fem
+    from fem.fields import GearField
+    from gears import GearPair
+    from gears.closed_form import Iso6336RootStress
+
+__all__ = ["LoadedFields", "RootStresses", "pitch_point_fields", "root_stresses"]
+
+
+@record
+class RootStresses:
+    """Root stress of both gears along the mesh cycle, and the nominal stress by ISO 6336-3 where that has an answer."""
+
+    headline = ("iso_fault",)
+
+    stress: fem.RootStress
+    iso: Iso6336RootStress | None
+    iso_fault: str = quantity("", "why ISO 6336-3 has no answer")
+    error: float | None
+    cost: Cost
+    converged: bool = True
+    message: str = ""
+
+
+@record
+class LoadedFields:
+    """Stress and displacement of both gears, in the common frame, with a pair at the pitch point."""
+
+    position: int = quantity("1", "row of the mesh cycle")
+    pinion: GearField
+    wheel: GearField
+    error: float | None
+    cost: Cost
+    converged: bool = True
+    message: str = ""
+
+
+def root_stresses(pair: GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) -> RootStresses:
+    """Stress at the fillets with the forces of a loaded contact.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : fem.MeshCycle
+        With the film where there is one.
+    fillets : fem.Fillets
+        Of the same gears with plain flanks.
+    """
+    with unclocked():
+        import fem
+        from gears import GeometryError
+        from gears.closed_form import iso6336_3
+    watch = Stopwatch()
+    found = fem.root_stress(pair, cycle, replace(fillets, pair=pair))
+    iso, fault = None, ""
+    try:
+        iso = iso6336_3(pair, pair.normal_force(cycle.torque))
+    except GeometryError as error:
+        fault = str(error)
+    return RootStresses(found, iso, fault, found.error, Cost(watch.seconds))
+
+
+def fillets_of(pair: GearPair, tolerance: float, plane: str = "strain") -> fem.Fillets:
+    """What loads anywhere on the flanks do to the fillets, by a mesh made for them.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+        With plain flanks, and bores as large as the rigid hubs: what a hub fills carries no stress.
+    tolerance : float
+        Relative, of the stress.
+    plane : str
+        ``"strain"`` or ``"stress"``.
+
+    Raises
+    ------
+    SolverError
+        Where the tolerance was missed.
+    """
+    import fem
+
+    found = fem.fillets(pair, tolerance=tolerance, plane=plane)
+    if not found.converged:
+        raise SolverError(f"root stress: {found.message}")
+    return found
+
+
+def pitch_point_fields(pair: GearPair, cycle: fem.MeshCycle, compliance: fem.Compliance) -> LoadedFields:
+    """Fields with a pair nearest to the pitch point.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : fem.MeshCycle
+        Loaded contact that the fields belong to.
+    compliance : fem.Compliance
+    """
+    with unclocked():
+        from fem.fields import loaded_fields
+    watch = Stopwatch()
+    distance = np.abs(np.where(np.isfinite(cycle.rho1), cycle.rho1, np.inf) - pair.points.C)
+    position = int(np.argmin(distance.min(axis=1)))
+    pinion, wheel = loaded_fields(pair, cycle, position, compliance=compliance)
+    return LoadedFields(position, pinion, wheel, compliance.error, Cost(watch.seconds))

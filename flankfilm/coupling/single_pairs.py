@@ -1,0 +1,145 @@
+"""Stiffness of one pair of teeth along the path of contact by every model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from base import Array, Cost, Faults, Stopwatch, quantity, record, unclocked
+
+if TYPE_CHECKING:
+    import fem
+    from gears import GearPair, PathOfContact
+    from gears.closed_form import Iso6336Stiffness
+
+__all__ = ["CLOSED_FORMS", "MODELS", "SinglePairs", "closed_form", "single_pair_stiffness", "single_pairs"]
+
+CLOSED_FORMS = {
+    "ishikawa": "Ishikawa",
+    "weber-banaschek": "Weber-Banaschek",
+    "potential-energy": "potential energy, Sainsot body",
+}
+"""Closed forms by name, with the label that figures give them."""
+
+MODELS = {**CLOSED_FORMS, "fem": "finite elements"}
+"""All models of one pair of teeth likewise."""
+
+STATIONS = 81
+"""Equally spaced points of the path A to E, both ends included."""
+
+
+@record
+class SinglePairs:
+    """Stiffness of one pair of teeth along the path of contact by every model at hand.
+
+    ``error`` is that of the finite elements; None without them, since the closed forms' own is unknown.
+    """
+
+    travel: Array = quantity("m", "travel from A along the path of contact", "path", shown="mm")
+    rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
+    curves: Mapping[str, Array] = quantity("N/m", "stiffness of one pair by model", "path")
+    iso: Iso6336Stiffness
+    error: float | None
+    cost: Cost
+    converged: bool = True
+    message: str = ""
+
+
+def closed_form(model: str, pair: GearPair, path: PathOfContact, force: float) -> Any:
+    """Evaluate a closed form by its name in `CLOSED_FORMS` on a path of contact under a force [N]."""
+    from gears import closed_form as forms
+
+    functions: dict[str, Callable[[], Any]] = {
+        "ishikawa": lambda: forms.ishikawa(pair, path),
+        "weber-banaschek": lambda: forms.weber_banaschek(pair, path, force),
+        "potential-energy": lambda: forms.potential_energy(pair, path, force=force),
+    }
+    return functions[model]()
+
+
+def single_pair_stiffness(
+    pair: GearPair,
+    force: float,
+    rho1: ArrayLike,
+    model: str = "fem",
+    compliance: fem.Compliance | None = None,
+) -> Array:
+    """Secant stiffness of one pair of teeth that carries the whole force, by any model.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    force : float
+        Normal force [N].
+    rho1 : array_like
+        Curvature radii of the pinion's flank at the contact [m]; nan stays nan.
+    model : str
+        ``"fem"``, ``"ishikawa"``, ``"weber-banaschek"`` or ``"potential-energy"``.
+    compliance : fem.Compliance, optional
+        For finite elements; computed unless given.
+
+    Returns
+    -------
+    ndarray, of the shape of `rho1`
+        [N/m]
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> k = single_pair_stiffness(pair, 17.7e3, [pair.points.A, pair.points.C], model="ishikawa")
+    >>> [round(float(value) / 40e6, 1) for value in k]  # N/(mm um)
+    [9.4, 16.6]
+    """
+    faults = Faults()
+    faults.choice("model", model, tuple(MODELS))
+    faults.raise_if_any()
+    places = np.asarray(rho1, dtype=np.float64)
+    known = np.isfinite(places)
+    k = np.full_like(places, np.nan)
+    if model == "fem":
+        from fem import single_pair_stiffness as by_elements
+
+        k[known] = by_elements(pair, force=force, rho1=places[known], compliance=compliance)
+    else:
+        k[known] = np.asarray(closed_form(model, pair, pair.path_at(places[known]), force))
+    return k
+
+
+def single_pairs(
+    pair: GearPair, torque: float, compliance: fem.Compliance | None = None, points: int = STATIONS
+) -> SinglePairs:
+    """Stiffness of one pair along the path by all closed forms, beside finite elements where they are at hand.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    torque : float
+        Of the pinion [N m].
+    compliance : fem.Compliance, optional
+        Finite elements are left out without it.
+    points : int
+        Of the path, A and E included.
+    """
+    from gears import closed_form as forms
+
+    if compliance is not None:
+        with unclocked():
+            import fem  # noqa: F401 - its import is no cost of the result
+    watch = Stopwatch()
+    path, force = pair.path_of_contact(n=points), pair.normal_force(torque)
+    models = [*(["fem"] if compliance is not None else []), *CLOSED_FORMS]
+    return SinglePairs(
+        travel=path.position,
+        rho1=path.rho1,
+        curves={
+            MODELS[model]: single_pair_stiffness(pair, force, path.rho1, model, compliance)
+            for model in models
+        },
+        iso=forms.iso6336(pair, force=force),
+        error=None if compliance is None else compliance.error,
+        cost=Cost(watch.seconds),
+    )

@@ -1,0 +1,334 @@
+"""Figures of each closed form beside those of finite elements, with the numerical error of the latter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Cost, Integers, Stopwatch, quantity, record
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, contact_places
+from flankfilm.coupling.mesh_cycles import checked, loaded_teeth
+from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
+
+if TYPE_CHECKING:
+    import fem
+    from gears import GearPair
+
+__all__ = [
+    "Curves",
+    "Difference",
+    "Verification",
+    "compare_closed_forms",
+    "figure_errors",
+    "figures",
+    "stations",
+    "verification_of",
+]
+
+POSITIONS = 360
+"""Positions of a base pitch; every third of them shows the error of their number."""
+
+POINTS = 81
+"""Equally spaced points of the path A to E, both ends included; the pitch point C is added to them."""
+
+REFERENCES: Mapping[str, tuple[bool, tuple[str, ...]]] = {
+    "finite elements": (True, ()),
+    "held to the path": (False, ()),
+    "without hub wind-up": (False, ("hub_windup",)),
+    "without coupling": (False, ("coupling",)),
+    "without hub wind-up and coupling": (False, ("hub_windup", "coupling")),
+}
+"""Label to: whether tip edges may touch outside the path, and the parts of the compliance left out."""
+
+UNITS: Mapping[str, str] = {
+    "one pair, at C": "N/(mm um)",
+    "one pair, largest": "N/(mm um)",
+    "one pair, mean A to E": "N/(mm um)",
+    "mesh, two pairs, mean": "N/(mm um)",
+    "mesh, mean": "N/(mm um)",
+    "harmonic 1 over mean": "1",
+    "harmonic 2 over mean": "1",
+    "harmonic 3 over mean": "1",
+    "transmission error, peak to peak": "um",
+}
+"""The figures compared and their units; stiffness is secant, per face width."""
+
+
+@record
+class Curves:
+    """Stiffness by one model, of one pair at `stations` and of the mesh; ISO 6336-1 has `means` [N/m] alone.
+
+    ``error`` is the estimated relative numerical error of the single pair, None for closed forms, whose error is what
+    is asked for; ``cost`` is without what several models share; ``left_out`` names the parts of the compliance by
+    finite elements that are left out.
+    """
+
+    headline = ("label",)
+
+    label: str = quantity("", "model")
+    single_stiffness: Array = quantity("N/m", "secant stiffness of one pair under the whole force", "path")
+    secant_stiffness: Array = quantity("N/m", "force over deflection of the mesh", "position")
+    transmission_error: Array = quantity("m", "deflection along the line of action", "position", shown="um")
+    pairs: Integers = quantity("1", "pairs on the path of contact", "position")
+    cost: Cost
+    error: float | None = None
+    means: Mapping[str, float] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One figure of one closed form against one reference.
+
+    Attributes
+    ----------
+    figure, unit, reference, model : str
+    reference_value : float
+        By finite elements, in `unit`.
+    reference_error : float
+        Its estimated numerical error, relative.
+    value : float
+        By the closed form.
+    """
+
+    figure: str
+    unit: str
+    reference: str
+    model: str
+    reference_value: float
+    reference_error: float
+    value: float
+
+    @property
+    def difference(self) -> float:
+        """(value - reference)/reference."""
+        return self.value / self.reference_value - 1.0
+
+
+@record
+class Verification:
+    """Closed forms against finite elements.
+
+    ``references`` are finite elements with all and with fewer parts, ``models`` closed forms, ``differences`` every
+    figure of every model against every reference. ``error`` and ``cost`` are of the compliance that references share.
+    """
+
+    headline = ("torque",)
+
+    pair: GearPair
+    torque: float = quantity("N m", "torque of the pinion")
+    rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
+    position: Array = quantity("1", "travel after a pair is at A, over the base pitch", "position")
+    references: tuple[Curves, ...]
+    models: tuple[Curves, ...]
+    differences: tuple[Difference, ...]
+    error: float
+    cost: Cost
+    converged: bool = True
+    message: str = ""
+
+    @property
+    def like_for_like(self) -> Curves:
+        """Finite elements without what closed forms lack."""
+        return max(self.references, key=lambda reference: len(reference.left_out))
+
+    def difference(self, model: str, reference: str, figure: str = "mesh, mean") -> float:
+        """Relative difference of one figure of a model from a reference, each by its label.
+
+        Raises
+        ------
+        LookupError
+            Where there is no such comparison.
+        """
+        for found in self.differences:
+            if (found.model, found.reference, found.figure) == (model, reference, figure):
+                return found.difference
+        raise LookupError(f"no comparison of {model} with {reference} in {figure}")
+
+
+def compare_closed_forms(
+    pair: GearPair,
+    torque: float,
+    tolerance: float = 0.005,
+    compliance: fem.Compliance | None = None,
+    beyond_path: bool = True,
+) -> Verification:
+    """Compare every closed form of tooth stiffness with finite elements on a pair under a torque.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    torque : float
+        Of the pinion [N m].
+    tolerance : float
+        Relative, of the finite elements.
+    compliance : fem.Compliance, optional
+        Computed unless given.
+    beyond_path : bool
+        Whether tip edges may touch outside the path in the first of the references.
+
+    Raises
+    ------
+    SolverError
+        Where the compliance misses its share of the tolerance.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> found = compare_closed_forms(pair, 600.0)
+    >>> -0.1 < found.difference("potential energy, Sainsot body", "without hub wind-up and coupling") < 0.1
+    True
+    """
+    asked = resolution_of(checked(tolerance, torque=torque), film="none")
+    teeth = loaded_teeth(pair, torque, asked, compliance=compliance)
+    assert teeth.compliance is not None
+    return verification_of(pair, torque, teeth.compliance, beyond_path)
+
+
+def verification_of(
+    pair: GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool = True
+) -> Verification:
+    """Compare from a compliance; arguments as of `compare_closed_forms`."""
+    references = tuple(_reference_curves(pair, torque, compliance, beyond_path))
+    models = tuple(_closed_form_curves(pair, torque))
+    return Verification(
+        pair=pair,
+        torque=torque,
+        rho1=stations(pair),
+        position=contact_places(pair, POSITIONS)[0],
+        references=references,
+        models=models,
+        differences=tuple(_differences(pair, references, models)),
+        error=compliance.error,
+        cost=compliance.cost,
+    )
+
+
+def stations(pair: GearPair) -> Array:
+    """Curvature radii of the pinion's flank from A to E, with C among them, (POINTS + 1,) [m]."""
+    points = pair.points
+    return np.sort(np.append(np.linspace(points.A, points.E, POINTS), points.C))
+
+
+def _closed_form_curves(pair: GearPair, torque: float) -> Iterator[Curves]:
+    """Evaluate every closed form, its pairs independent as closed forms have them."""
+    from gears import closed_form as forms
+
+    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
+    for model in CLOSED_FORMS:
+        watch = Stopwatch()
+        teeth = LoadedTeeth(pair, torque, model, "independent")
+        single = single_pair_stiffness(pair, teeth.force, stations(pair), model)
+        cycle = teeth.cycle(POSITIONS)
+        yield Curves(
+            MODELS[model],
+            single,
+            cycle.secant_stiffness,
+            cycle.transmission_error,
+            pairs,
+            Cost(watch.seconds),
+        )
+    watch = Stopwatch()
+    iso = forms.iso6336(pair, force=pair.normal_force(torque))
+    means = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
+    nothing = np.zeros(0)
+    yield Curves(
+        "ISO 6336-1", nothing, nothing, nothing, nothing.astype(np.int64), Cost(watch.seconds), means=means
+    )
+
+
+def _reference_curves(
+    pair: GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool
+) -> Iterator[Curves]:
+    """Evaluate finite elements with all parts, and with the parts left out that closed forms lack."""
+    import fem
+
+    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
+    for label, (whole, left_out) in REFERENCES.items():
+        if whole and not beyond_path:
+            continue  # the next one is the same
+        watch = Stopwatch()
+        parts = compliance.without(*left_out)
+        cycle = fem.mesh_cycle(pair, torque=torque, positions=POSITIONS, compliance=parts, beyond_path=whole)
+        single = single_pair_stiffness(pair, pair.normal_force(torque), stations(pair), "fem", parts)
+        yield Curves(
+            label,
+            single,
+            cycle.secant_stiffness,
+            cycle.transmission_error,
+            pairs,
+            Cost(watch.seconds),
+            error=compliance.error,
+            left_out=left_out,
+        )
+
+
+def figures(pair: GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
+    """Figures of a model in the units of `UNITS`; nan where it has none.
+
+    Parameters
+    ----------
+    every : int
+        Takes the middle one of as many neighbouring positions, which are midpoints again; odd.
+    """
+    scale = 1e-9 / pair.face_width
+    found = dict.fromkeys(UNITS, float("nan"))
+    found |= {name: scale * value for name, value in curves.means.items()}
+    if not curves.single_stiffness.size:
+        return found
+    rho1, middle = stations(pair), slice(every // 2, None, every)
+    single, secant = curves.single_stiffness, curves.secant_stiffness[middle]
+    two = curves.pairs[middle] == 2
+    spectrum = 2 * np.abs(np.fft.rfft(secant)) / secant.sum()
+    found |= {
+        "one pair, at C": scale * float(np.interp(pair.points.C, rho1, single)),
+        "one pair, largest": scale * float(single.max()),
+        "one pair, mean A to E": scale * float(np.trapezoid(single, rho1) / np.ptp(rho1)),
+        "mesh, two pairs, mean": scale * float(secant[two].mean()) if two.any() else float("nan"),
+        "mesh, mean": scale * float(secant.mean()),
+        "transmission error, peak to peak": 1e6 * float(np.ptp(curves.transmission_error[middle])),
+    }
+    return found | {f"harmonic {j} over mean": float(spectrum[j]) for j in (1, 2, 3)}
+
+
+def figure_errors(pair: GearPair, curves: Curves) -> dict[str, float]:
+    """Estimate the relative numerical error of each figure by finite elements.
+
+    The error e of the compliance holds at each position. If the errors of different positions had opposite
+    signs, a harmonic over the mean could be off by 2 e, and the peak-to-peak transmission error by e times
+    the sum of the largest and the least deflection; they rarely have. The number of positions adds half the
+    change that a third of them would make.
+    """
+    whole, third = figures(pair, curves), figures(pair, curves, every=3)
+    own = curves.error or 0.0
+    deflection = 1e6 * float(curves.transmission_error.max() + curves.transmission_error.min())
+    errors = {}
+    for name, value in whole.items():
+        absolute = own * value
+        if name.startswith("harmonic"):
+            absolute = (2 + value) * own
+        elif name.startswith("transmission"):
+            absolute = own * deflection
+        sampling = 0.0 if name.startswith("one pair") else 0.5 * abs(third[name] - value)
+        errors[name] = (absolute + sampling) / abs(value)
+    return errors
+
+
+def _differences(
+    pair: GearPair, references: tuple[Curves, ...], models: tuple[Curves, ...]
+) -> list[Difference]:
+    found = []
+    for reference in references:
+        values, errors = figures(pair, reference), figure_errors(pair, reference)
+        for model in models:
+            found += [
+                Difference(name, UNITS[name], reference.label, model.label, values[name], errors[name], value)
+                for name, value in figures(pair, model).items()
+                if np.isfinite(value) and np.isfinite(values[name])
+            ]
+    return found
