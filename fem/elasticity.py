@@ -16,7 +16,14 @@ if TYPE_CHECKING:
 
     from gears import Material
 
-__all__ = ["PlaneElasticity", "check_plane", "nodal_stress_matrix", "stiffness_matrix", "stress_at"]
+__all__ = [
+    "PlaneElasticity",
+    "check_plane",
+    "curved_mesh",
+    "nodal_stress_matrix",
+    "stiffness_matrix",
+    "stress_at",
+]
 
 
 def check_plane(found: Faults, plane: str) -> None:
@@ -116,7 +123,7 @@ def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -
         from scipy.sparse import coo_array
         from skfem import Basis, ElementTriP2
 
-    basis = Basis(_curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
+    basis = Basis(curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
     slopes = np.stack([field.grad for (field,) in basis.basis])  # (node, direction, element, quadrature)
     slopes = np.moveaxis(slopes, 2, 0).reshape(len(triangles), 12, -1)
     # all products d_a N_i d_b N_j at once; the law combines them
@@ -133,7 +140,7 @@ def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -
     return coo_array((element.ravel(), (rows, columns)), shape=(size, size)).tocsc()
 
 
-def _curved_mesh(points: Array, triangles: Integers) -> MeshTri2:
+def curved_mesh(points: Array, triangles: Integers) -> MeshTri2:
     """Hand the triangles to scikit-fem with their middles where they are, on the exact curves.
 
     The triangles keep their corners' order (``sort_t=False``), since ours gives the middles' order too.

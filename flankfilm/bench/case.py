@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Answer", "Case", "Level", "PeerWork", "Series", "Value", "level", "true_error"]
+__all__ = ["Answer", "Case", "Level", "PeerWork", "Series", "Value", "level", "true_error", "work"]
 
 Array = NDArray[np.float64]
 
@@ -115,8 +115,8 @@ class Case:
         What `Answer.size` counts.
     series : tuple of Series
         What is measured.
-    finest : Level
-        Run once; true errors are differences from it.
+    finest : Level or None
+        Run once; true errors are differences from it. None where time alone is measured.
     orders : mapping
         Quantity to the order p of theory, error proportional to size^-p; absent where theory gives none.
     peers : tuple of PeerWork
@@ -128,9 +128,14 @@ class Case:
     work: str
     size_name: str
     series: tuple[Series, ...]
-    finest: Level
+    finest: Level | None
     orders: Mapping[str, float] = field(default_factory=dict)
     peers: tuple[PeerWork, ...] = ()
+
+
+def work(name: str, task: Callable[[], Any], size: float = float("nan")) -> Series:
+    """Make a series of one level that is timed and gives no figure."""
+    return Series(name, (Level(name, task, lambda found: Answer(size, {})),))
 
 
 def level(name: str, work: Callable[..., Any], answer: Callable[[Any], Answer], *args: Any) -> Level:

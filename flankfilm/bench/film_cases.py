@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Level, Series, Value, level
+from flankfilm.bench.examples import contacts_along_path, pitch_point
+from flankfilm.bench.work_cases import film_work
 
 if TYPE_CHECKING:
     from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer
@@ -23,14 +26,6 @@ FINEST = {False: (3e-5, 0.01), True: (5e-4, 0.01)}
 stiffness, grids around the spike do."""
 
 
-def pitch_point() -> LineContact:
-    """Contact of the pair 36/40 at its pitch point, one pair, 600 N m and 2000 rpm."""
-    from ehl import LineContact, Lubricant
-
-    oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-    return LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=oil)
-
-
 def answer(film: Film) -> Answer:
     """Thickness and stiffness of a film, with the solver's estimates of both."""
     values = {
@@ -43,7 +38,7 @@ def answer(film: Film) -> Answer:
 def films(quick: bool) -> tuple[Case, ...]:
     """All cases of the film."""
     flooded = (*_by_nodes(quick), _by_tolerance(quick))
-    return flooded if quick else (*flooded, *_starved(), _mixed(), _path())
+    return flooded if quick else (*flooded, *_starved(), _mixed(), _path(), *_relaxed(), film_work())
 
 
 def _by_nodes(quick: bool) -> tuple[Case, ...]:
@@ -140,6 +135,46 @@ def _starved() -> tuple[Case, ...]:
     )
 
 
+def _relaxed() -> Iterator[Case]:
+    """Newton's method beside the relaxed iteration of many papers, both on the same uniform domain."""
+    from ehl import LineContact, solve
+    from flankfilm.bench.relaxation import DOMAIN, fastest_factors, relaxed
+
+    quantity = "central film"
+    for key, words, contact in (
+        ("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
+        ("pitch", "pitch point", pitch_point()),
+    ):
+
+        def newton(nodes: int, contact: LineContact = contact) -> Film:
+            return solve(contact, nodes=nodes, domain=DOMAIN)
+
+        def by_newton(film: Film) -> Answer:
+            return Answer(film.x.size, {quantity: Value(np.array([film.central_thickness]), film.error)})
+
+        def by_sweeps(found: tuple[float, int] | None) -> Answer:
+            if found is None:
+                return Answer(np.nan, {}, "no factors of the ladder converge")
+            return Answer(found[1], {quantity: Value(np.array([found[0]]))})
+
+        sweeps = [
+            level(f"{n} nodes", relaxed, by_sweeps, contact, n, fastest_factors(contact, n))
+            for n in (65, 129)
+        ]
+        yield Case(
+            f"film_relaxed_{key}",
+            f"Film by relaxation, {words}",
+            f"Flooded line contact, {words}, on {DOMAIN[0]:g} to {DOMAIN[1]:g} half-widths: Newton's method with its "
+            "estimate, and a compiled, relaxed Gauss-Seidel iteration with the fastest of seven pairs of factors.",
+            "nodes, or sweeps",
+            (
+                Series("Newton", tuple(level(f"{n} nodes", newton, by_newton, n) for n in (65, 129, 257))),
+                Series("relaxed", tuple(sweeps)),
+            ),
+            level("0.02 %", lambda c=contact: solve(c, tolerance=2e-4, domain=DOMAIN), by_newton),
+        )
+
+
 def _mixed() -> Case:
     from ehl import Roughness, solve, solve_mixed
 
@@ -170,16 +205,7 @@ def _mixed() -> Case:
 def _path() -> Case:
     from ehl import solve_path
 
-    middle = pitch_point()
-    contacts = [
-        replace(
-            middle,
-            load=middle.load * (1.0 if abs(s) < 0.3 else 0.5),
-            radius=middle.radius * (1.0 - 0.25 * s * s),
-            entrainment=middle.entrainment * (1.0 + 0.05 * s),
-        )
-        for s in np.linspace(-1.0, 1.0, 41)
-    ]
+    contacts = contacts_along_path(41)
     quantity = "central and least films"
 
     def along(tolerance: float) -> list[Film]:

@@ -8,28 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flankfilm.bench.case import Answer, Case, Series, Value, level
+from flankfilm.bench.examples import TORQUE, example_pair
+from flankfilm.bench.work_cases import geometry_work
 
 if TYPE_CHECKING:
     from gears import GearPair
     from meshes import SectorMesh
 
-__all__ = ["FORMS", "TORQUE", "closed_forms", "example_pair", "independent_pairs", "meshes"]
+__all__ = ["FORMS", "closed_forms", "independent_pairs", "meshes"]
 
 Array = NDArray[np.float64]
 
-TORQUE = 600.0
 FORMS = {
     "ishikawa": "Ishikawa",
     "potential_energy": "potential energy",
     "weber_banaschek": "Weber-Banaschek",
 }
-
-
-def example_pair() -> GearPair:
-    """Pair 36/40, module 2 mm, face 40 mm, bores of half the root radii: the one of the examples."""
-    from gears import Gear, GearPair
-
-    return GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
 
 
 def independent_pairs(pair: GearPair, form: str, positions: int) -> Array:
@@ -82,6 +76,7 @@ def closed_forms(quick: bool) -> tuple[Case, ...]:
             level(f"{many} positions", curves, answer, tuple(FORMS), many),
             {f"mean, {title}": 1.0 for title in FORMS.values()},
         ),
+        *(() if quick else (geometry_work(),)),
     )
 
 

@@ -90,7 +90,7 @@ class CaseResult:
     orders : dict
         Quantity to theory's order.
     finest : str
-        Name of the finest solution.
+        Name of the finest solution; empty where time alone was measured.
     finest_estimates : dict
         Quantity to its own estimate of the finest solution's error; NaN where unknown.
     rows : tuple of Row
@@ -122,7 +122,7 @@ def timed(work: Callable[[], Any], repeat: int) -> tuple[Any, Timing]:
 
 def steps(case: Case) -> int:
     """Count the levels of a case, the finest included."""
-    return 1 + sum(len(series.levels) for series in case.series)
+    return (case.finest is not None) + sum(len(series.levels) for series in case.series)
 
 
 def measure(
@@ -144,8 +144,10 @@ def measure(
     announce : callable
         Told what is done next, once for each of `steps`.
     """
-    announce(f"{case.title}: {case.finest.name}")
-    finest, failure, _ = _run(case.finest, 0)
+    finest, failure = None, ""
+    if case.finest is not None:
+        announce(f"{case.title}: {case.finest.name}")
+        finest, failure, _ = _run(case.finest, 0)
     for series in case.series:
         _run(series.levels[0], 0)
     rows: list[Row] = []
@@ -153,7 +155,7 @@ def measure(
         for one in series.levels:
             announce(f"{case.title}: {series.name}, {one.name}")
             found, reason, timing = _run(one, repeat)
-            if finest is None:
+            if finest is None and case.finest is not None:
                 reason = reason or f"the finest solution failed: {failure}"
             rows += _rows(case, series.name, one.name, found, finest, timing, reason)
     estimates = {} if finest is None else {q: _number(v.estimate) for q, v in finest.values.items()}
@@ -164,7 +166,7 @@ def measure(
         case.work,
         case.size_name,
         dict(case.orders),
-        case.finest.name,
+        "" if case.finest is None else case.finest.name,
         estimates,
         tuple(rows),
     )
@@ -201,7 +203,8 @@ def _rows(
 ) -> Iterator[Row]:
     clock = (timing.cpu, timing.wall, timing.median, timing.repeats)
     if found is None or finest is None:
-        yield Row(case.key, series, name, "", math.nan, *clock, math.nan, math.nan, reason)
+        size = math.nan if found is None else found.size
+        yield Row(case.key, series, name, "", size, *clock, math.nan, math.nan, reason)
         return
     for quantity, value in found.values.items():
         error = true_error(value, finest.values[quantity])

@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level
+from flankfilm.bench.examples import PERIODS, START, oscillator
+from flankfilm.bench.stepwise_cases import stepwise
+from flankfilm.bench.work_cases import motion_work
 
 if TYPE_CHECKING:
-    from dynamics import Branch, GearOscillator, Orbit
+    from dynamics import Branch, Orbit
     from dynamics.exponents import LyapunovResult
     from dynamics.flow import Tables
     from dynamics.sweeps import SweepResult
@@ -19,22 +22,16 @@ __all__ = ["motions"]
 
 Array = NDArray[np.float64]
 
-START = (0.5, 0.2)
-PERIODS, MANY = 5, 1000
+MANY = 1000
 STATE = "state"
-
-
-def oscillator(frequency: float = 0.6) -> GearOscillator:
-    """Oscillator whose motion from `START` leaves and meets the flanks in every period."""
-    from dynamics import FourierStiffness, GearOscillator
-
-    return GearOscillator(FourierStiffness(1.0, (0.2,), (0.0,)), 0.05, 0.1, 0.2, frequency, half_backlash=0.2)
 
 
 def motions(quick: bool) -> tuple[Case, ...]:
     """All cases of the motion."""
     few = (_flow(quick), _orbit(quick))
-    return few if quick else (*few, _branch(), _sweep(), _exponents())
+    if quick:
+        return few
+    return (*few, _branch(), _sweep(), _exponents(), *stepwise(), motion_work())
 
 
 def _flow(quick: bool) -> Case:
@@ -93,7 +90,7 @@ def _flow(quick: bool) -> Case:
         "degree of the Taylor tables",
         series,
         level("degree 30, a quarter of the cells", follow, answer(30, 4), tables(osc, 4, 30)),
-        peers=(PeerWork("scipy_motion", given, STATE), PeerWork("heyoka_motion", given, STATE)),
+        peers=tuple(PeerWork(f"{peer}_motion", given, STATE) for peer in ("scipy", "heyoka", "dop853")),
     )
 
 

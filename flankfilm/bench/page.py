@@ -27,8 +27,9 @@ LEAD = (
 def write_page(found: Bench, folder: Path) -> list[Path]:
     """Write every figure as SVG, and ``report.html``; return the files."""
     paths = []
-    drawn = {"overview": figures.overview(found.cases), "estimates": figures.estimates(found.cases)}
-    of_case = {case.key: figures.error_against_cost(case, _of(case, found.peers)) for case in found.cases}
+    compared = [case for case in found.cases if case.finest]
+    drawn = {"overview": figures.overview(compared), "estimates": figures.estimates(compared)}
+    of_case = {case.key: figures.error_against_cost(case, _of(case, found.peers)) for case in compared}
     svg = {name: to_svg(figure, name) for name, figure in (drawn | of_case).items()}
     for name, text in svg.items():
         paths.append(folder / f"{name}.svg")
@@ -52,7 +53,8 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
             ),
             (_summary(found),),
         ),
-        *(_case(case, svg[case.key], _of(case, found.peers)) for case in found.cases),
+        *(_case(case, svg[case.key], _of(case, found.peers)) for case in compared),
+        *(_work(case) for case in found.cases if not case.finest),
         _first_calls(found),
         *([_peers(found.peers)] if found.peers else []),
         _machine(found),
@@ -129,6 +131,22 @@ def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:
         (Drawing(svg, caption),),
         (Table(heads, cells),),
     )
+
+
+def _work(case: CaseResult) -> Part:
+    """Work whose time alone is measured."""
+    heads = ("work", case.size_name, "time", "median", "wall", "runs", "remark")
+    cells = tuple(
+        (
+            row.series,
+            f"{row.size:.5g}" if math.isfinite(row.size) else "",
+            *(_whole(clock(seconds)) for seconds in (row.cpu, row.median, row.wall)),
+            str(row.repeats),
+            row.failure,
+        )
+        for row in case.rows
+    )
+    return Part(case.key, case.title, (case.work,), tables=(Table(heads, cells),))
 
 
 def _first_calls(found: Bench) -> Part:

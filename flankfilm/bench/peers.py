@@ -76,7 +76,7 @@ def ask(python: Path, case: Case, repeat: int, longest: float = LONGEST) -> list
     list of PeerRow
         At least one for each peer: one that is missing or fails has its reason there.
     """
-    if not case.peers:
+    if not case.peers or case.finest is None:
         return []
     finest = case.finest.answer(case.finest.work()).values
     rows: list[PeerRow] = []

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level
-from flankfilm.bench.gear_cases import FORMS, TORQUE, example_pair, independent_pairs
+from flankfilm.bench.examples import TORQUE, example_pair
+from flankfilm.bench.gear_cases import FORMS, independent_pairs
+from flankfilm.bench.work_cases import contact_work
 
 if TYPE_CHECKING:
+    from base import Array
     from fem import Compliance, Fillets, MeshCycle, RootStress
     from gears import GearPair
 
@@ -73,7 +77,44 @@ def compliance(quick: bool) -> tuple[Case, ...]:
             {mesh: 2.0, single: 2.0},
             (PeerWork("ross_stiffness", _given(pair), mesh),),
         ),
+        *(() if quick else _other_pairs()),
     )
+
+
+def _other_pairs() -> Iterator[Case]:
+    """Compliance by tolerance where the geometry is harder: at the limit of undercut, and a large wheel."""
+    import fem
+    from gears import Gear, GearPair
+
+    single, spread = "one pair, 39 places", "transmission error, peak to peak"
+    for z1, z2 in ((17, 43), (20, 1000)):
+        pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
+        rho1 = np.linspace(pair.points.A, pair.points.E, 41)[1:-1]
+
+        def answer(bodies: Compliance, pair: GearPair = pair, rho1: Array = rho1) -> Answer:
+            k = fem.single_pair_stiffness(pair, pair.normal_force(0.5 * TORQUE), rho1, bodies)
+            held = fem.mesh_cycle(pair, 0.5 * TORQUE, POSITIONS, bodies, beyond_path=False)
+            values = {
+                single: Value(k, bodies.error),
+                spread: Value(np.array([np.ptp(held.transmission_error)]), bodies.error),
+            }
+            return Answer(bodies.cost.unknowns, values, "" if bodies.converged else bodies.message)
+
+        yield Case(
+            f"compliance_{z1}_{z2}",
+            f"Compliance of both gears, {z1}/{z2}",
+            f"Pair {z1}/{z2}, module 2 mm, face 40 mm, bores of half the root radii: from nothing, to a tolerance.",
+            "unknowns of both sectors",
+            (
+                Series(
+                    "tolerances",
+                    tuple(
+                        level(f"{100 * t:g} %", fem.compliance, answer, pair, t) for t in (1e-3, 1e-4, 2e-5)
+                    ),
+                ),
+            ),
+            level("refined 3 times", lambda p=pair: fem.compliance(p, 1e-5, refinements=3), answer),
+        )
 
 
 def _forms(pair: GearPair, quantity: str) -> tuple[Series, ...]:
@@ -124,7 +165,7 @@ def contact(quick: bool) -> tuple[Case, ...]:
 
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384)
     many = 768 if quick else 3072
-    return tuple(
+    cases = tuple(
         Case(
             f"contact_{key}",
             f"Loaded contact, {words}",
@@ -141,6 +182,7 @@ def contact(quick: bool) -> tuple[Case, ...]:
             ("free", "tip edges free to touch", True),
         )
     )
+    return cases if quick else (*cases, contact_work())
 
 
 def root_stress(quick: bool) -> tuple[Case, ...]:

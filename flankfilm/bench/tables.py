@@ -75,7 +75,7 @@ def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
     for case in cases:
         for series in dict.fromkeys(row.series for row in case.rows):
             rows = [row for row in case.rows if row.series == series]
-            failures = sum(not row.quantity for row in rows)
+            failures = sum(bool(row.failure) for row in rows)
             for quantity in dict.fromkeys(row.quantity for row in rows if row.quantity):
                 one = tuple(row for row in rows if row.quantity == quantity)
                 ratios = list(known_ratios(case, one))

@@ -17,7 +17,8 @@ import pytest
 from base import InputError
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level, true_error
 from flankfilm.bench.catalogue import SOLVERS
-from flankfilm.bench.gear_cases import enclosed_area, example_pair
+from flankfilm.bench.examples import example_pair
+from flankfilm.bench.gear_cases import enclosed_area
 from flankfilm.bench.machine import this_machine
 from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask

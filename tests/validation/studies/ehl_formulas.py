@@ -1,8 +1,8 @@
 """Film formulas of line contacts against the solver, over Moes' numbers M and L.
 
-Run with ``OPENBLAS_NUM_THREADS=1 python benchmarks/ehl_formulas.py [FIGURE.png]``; takes about 2 s without a figure.
-Errors are formula/solver - 1 of a compressible oil (Roelands, z = 0.68, alpha = 22 /GPa, E' = 220 GPa), and of an
-incompressible one for the formulas that were fitted to that.
+Run with ``OPENBLAS_NUM_THREADS=1 python tests/validation/studies/ehl_formulas.py [FIGURE.png]``; takes about 2 s
+without a figure. Errors are formula/solver - 1 of a compressible oil (Roelands, z = 0.68, alpha = 22 /GPa, E' = 220
+GPa), and of an incompressible one for the formulas that were fitted to that.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What films change of the mesh stiffness, foreseen and solved: what ``film.model = "auto"`` relies on.
 
 Random pairs (those of ``closed_form_scatter.py``), oils and speeds. Run with
-``python benchmarks/film_scatter.py [scenes] [seed]``.
+``python tests/validation/studies/film_scatter.py [scenes] [seed]``.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The two gears of ``fem_two_gears`` at the pitch point in CalculiX: the same meshes, penalty contact.
 
-Run with ``python benchmarks/fem_two_gears_calculix.py --folder FOLDER`` where ``ccx`` is installed; one or two minutes
-a row. The pinion's bore is turned by D/r_b1, with the approach D that the two-gear model found, the wheel's bore is
-held; the torque follows from the reactions. Surface-to-surface contact of CalculiX, linear penalty.
+Run with ``python tests/validation/studies/fem_two_gears_calculix.py --folder FOLDER`` where ``ccx`` is installed; one
+or two minutes a row. The pinion's bore is turned by D/r_b1, with the approach D that the two-gear model found, the
+wheel's bore is held; the torque follows from the reactions. Surface-to-surface contact of CalculiX, linear penalty.
 """
 
 from __future__ import annotations

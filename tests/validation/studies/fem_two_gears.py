@@ -1,6 +1,6 @@
 """Two whole gears in frictionless contact, every contact resolved by its elements: what the tip edges really take.
 
-Run with ``python benchmarks/fem_two_gears.py`` (about three minutes; ``--quick`` for the pitch point alone).
+Run with ``python tests/validation/studies/fem_two_gears.py`` (three minutes; ``--quick``: the pitch point alone).
 
 Nothing of ``fem.compliance``, ``fem.tip_contact`` or ``fem.contact`` is used, only the stiffness matrix of curved
 second-order triangles. Both annuli are meshed whole, with edges of a few micrometres at the contacts and at the

@@ -1,8 +1,8 @@
 """How film, neck and pressure spike answer to speed, load and oil: the trends that papers on gears report.
 
-About the pitch point of a spur-gear pair (443 N/mm, 2.58 m/s, R = 6.48 mm, E' = 220 GPa, eta0 = 0.075 Pa s,
-alpha = 19.6 /GPa), one quantity at a time. Run with ``OPENBLAS_NUM_THREADS=1 python benchmarks/ehl_trends.py``; takes
-about 10 s. With the supply held in two ways it also prints what a film yields when it starves.
+About the pitch point of a spur-gear pair (443 N/mm, 2.58 m/s, R = 6.48 mm, E' = 220 GPa, eta0 = 0.075 Pa s, alpha =
+19.6 /GPa), one quantity at a time. Run with ``OPENBLAS_NUM_THREADS=1 python tests/validation/studies/ehl_trends.py``;
+takes about 10 s. With the supply held in two ways it also prints what a film yields when it starves.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import warnings
 from dataclasses import replace
 
 from base import RangeWarning
-from ehl import Film, LineContact, Lubricant, Meniscus, OilLayer, solve
+from ehl import DEFINITIONS, Film, LineContact, Lubricant, Meniscus, OilLayer, solve
 
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
@@ -72,6 +72,10 @@ def main() -> None:
     warnings.simplefilter("ignore", RangeWarning)
     trends()
     supplies()
+    print("\nfilm stiffness at a face of 40 mm by every definition [N/m]")
+    film = solve(PITCH, tolerance=1e-3)
+    for definition in DEFINITIONS:
+        print(f"{definition:18}{FACE * film.stiffness(definition):10.3e}")
 
 
 if __name__ == "__main__":

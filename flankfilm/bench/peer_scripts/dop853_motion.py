@@ -1,18 +1,26 @@
-"""Rivals of the exact flow on the same work: DOP853 compiled with events, scipy's solve_ivp with events, heyoka.
+"""Motion with backlash by DOP853 compiled with events; runs in the peer's environment, with nothing of ours.
 
-The compiled DOP853 is the scheme of Dormand and Prince with Hairer's error estimate and step control, for the one
-oscillator of the benchmark, without overhead: no allocation in its loop, first-same-as-last, and an impact met by
-Newton's method on the length of the step, from the state at its start.
+The scheme of Dormand and Prince with Hairer's error estimate and step control, for the one oscillator of the
+benchmark, without overhead: no allocation in its loop, first-same-as-last, and an impact met by Newton's method on
+the length of the step, from the state at its start.
 """
 
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
 from __future__ import annotations
 
+import json
 import math
+import sys
+import time
 
-import numpy as np
-from numba import njit
-from scipy.integrate import solve_ivp
-from scipy.integrate._ivp import dop853_coefficients as tableau
+try:
+    import numba
+    import numpy as np
+    from numba import njit
+    from scipy.integrate._ivp import dop853_coefficients as tableau
+except ImportError as error:
+    print(json.dumps({"missing": str(error)}))
+    sys.exit()
 
 STAGES = tableau.N_STAGES
 A, B, C = tableau.A[:STAGES, :STAGES].copy(), tableau.B.copy(), tableau.C[:STAGES].copy()
@@ -113,77 +121,25 @@ def compiled_dop853(x, v, periods, rtol, par):
     return x, v
 
 
-def scipy_with_events(x, v, periods, rtol, par):
-    """The same by solve_ivp, stopped at every impact."""
-    kappa, zeta, force, eps, w, d = par
-    now, end, y = 0.0, periods * 2.0 * math.pi / w, [x, v]
-    region = 1 if x > d else -1 if x < -d else 0
-
-    def upper(t, y, region):
-        return y[0] - d
-
-    def lower(t, y, region):
-        return y[0] + d
-
-    upper.terminal = lower.terminal = True
-
-    def rhs(t, y, region):
-        c = math.cos(w * t)
-        f = 0.0 if region == 0 else y[0] - region * d
-        return [y[1], force + eps * w**2 * c - 2 * zeta * y[1] - (1 + kappa * c) * f]
-
-    while now < end:
-        upper.direction = -1 if region == 1 else 1
-        lower.direction = 1 if region == -1 else -1
-        events = [upper] if region == 1 else [lower] if region == -1 else [upper, lower]
-        done = solve_ivp(
-            rhs, (now, end), y, method="DOP853", rtol=rtol, atol=1e-3 * rtol, events=events, args=(region,)
-        )
-        now, y = done.t[-1], done.y[:, -1].copy()
-        if done.status == 1:
-            at_upper = region == 1 or (region == 0 and len(done.t_events[0]) > 0)
-            y[0] = d if at_upper else -d
-            region = 0 if region else (1 if at_upper else -1)
-    return y[0], y[1]
+def main() -> None:
+    """Read the work as JSON, print what was found as JSON."""
+    given = json.load(sys.stdin)
+    osc, (x, v) = given["oscillator"], given["start"]
+    par = np.array([osc[n] for n in ("kappa", "zeta", "force", "error", "frequency", "half_backlash")])
+    runs = []
+    for digits in range(4, 14):
+        rtol = 10.0**-digits
+        began = time.process_time()
+        values = compiled_dop853(x, v, given["periods"], rtol, par)
+        first = time.process_time() - began
+        seconds = []
+        for _ in range(given["repeat"]):
+            began = time.process_time()
+            compiled_dop853(x, v, given["timed_periods"], rtol, par)
+            seconds.append(time.process_time() - began)
+        runs.append({"level": f"rtol {rtol:.0e}", "seconds": min(seconds), "first": first, "values": values})
+    print(json.dumps({"peer": "compiled DOP853", "version": f"numba {numba.__version__}", "runs": runs}))
 
 
-def heyoka_with_events(par):
-    """`(x, v, periods, tol) -> (x, v)` by heyoka's Taylor integrator, or None where it is not installed.
-
-    One compiled integrator for all regions: the region is a parameter, which terminal events at both limits of the
-    backlash change. The callbacks are Python's, some microseconds of each period.
-    """
-    try:
-        import heyoka as hy
-    except ImportError:
-        return None
-    kappa, zeta, force, eps, w, d = par.tolist()
-    x, v = hy.make_vars("x", "v")
-    c = hy.cos(w * hy.time)
-    region = hy.par[0]
-    spring = (1.0 + kappa * c) * region * region * (x - region * d)
-    system = [(x, v), (v, force + eps * w**2 * c - 2.0 * zeta * v - spring)]
-
-    def crossed(side):
-        def note(ta, _):
-            ta.pars[0] = 0.0 if ta.pars[0] != 0.0 else side
-            return True
-
-        return hy.t_event(x - side * d, callback=note)
-
-    built = {}
-
-    def run(x0, v0, periods, tol):
-        if tol not in built:
-            events = [crossed(1.0), crossed(-1.0)]
-            built[tol] = hy.taylor_adaptive(system, [x0, v0], tol=tol, pars=[0.0], t_events=events)
-        ta = built[tol]
-        ta.reset_cooldowns()
-        ta.time, ta.state[:] = 0.0, [x0, v0]
-        ta.pars[0] = 1.0 if x0 > d else -1.0 if x0 < -d else 0.0
-        outcome = ta.propagate_until(periods * 2.0 * math.pi / w)[0]
-        if outcome != hy.taylor_outcome.time_limit:
-            raise RuntimeError(f"heyoka stopped: {outcome}")
-        return ta.state[0], ta.state[1]
-
-    return run
+if __name__ == "__main__":
+    main()

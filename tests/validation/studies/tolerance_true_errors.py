@@ -2,7 +2,7 @@
 
 Scenes with ``model = "auto"`` for stiffness and film and an order of the series to be found, at tolerances from 5 % to
 0.1 %; references by finite elements and solved films at a twentieth of the least tolerance. Run with
-``python benchmarks/tolerance_true_errors.py [part of a scene's name]``.
+``python tests/validation/studies/tolerance_true_errors.py [part of a scene's name]``.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Random pairs of the ranges in `ordinary`, the same for the same seed. For each, the mesh stiffness over the cycle by
 every closed form and by finite elements with the same rule for the pairs in contact. Run with
-``python benchmarks/closed_form_scatter.py [pairs] [seed]``.
+``python tests/validation/studies/closed_form_scatter.py [pairs] [seed]``.
 """
 
 from __future__ import annotations

@@ -1,0 +1,152 @@
+"""Work whose time alone is of interest: what is built on the solvers, once their errors are known."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.bench.case import Case, Series, work
+from flankfilm.bench.examples import TORQUE, contacts_along_path, example_pair, oscillator, pitch_point
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["contact_work", "film_work", "geometry_work", "motion_work"]
+
+
+def _timed(key: str, title: str, text: str, size: str, *series: Series) -> Case:
+    return Case(key, title, text, size, series, None)
+
+
+def geometry_work() -> Case:
+    """Pair made, rolled, and its load shared."""
+    from gears import check_meshing, share_load
+
+    pair = example_pair()
+    bulk, gap = 2.4e-9 * np.eye(3) + 4e-10, np.array([0.0, 5e-6, 2e-5])
+
+    def shared(positions: int) -> Callable[[], object]:
+        stacked = np.broadcast_to(bulk, (positions, 3, 3)), np.broadcast_to(gap, (positions, 3))
+        return lambda: share_load(17736.3, stacked[0], _LogarithmicContact(), stacked[1])
+
+    return _timed(
+        "work_geometry",
+        "Pair and load sharing",
+        "Pair 36/40 made with all its guards and rolled through a mesh cycle; load shared by three pairs whose "
+        "local deflection is logarithmic.",
+        "positions",
+        work("pair made", example_pair),
+        work("pair rolled", lambda: check_meshing(pair)),
+        *(work(f"load shared at {n}", shared(n), n) for n in (1, 40, 400)),
+    )
+
+
+class _LogarithmicContact:
+    """Local law with the slope of the pair 36/40."""
+
+    def approach(self, force: np.ndarray) -> np.ndarray:
+        """Deflection [m]."""
+        safe = np.where(force > 0, force, 1.0)
+        return np.where(force > 0, 2.8e-11 * safe * (np.log(1e9 / safe) + 1.0), 0.0)
+
+    def slope(self, force: np.ndarray) -> np.ndarray:
+        """Derivative of the deflection by the force [m/N]."""
+        safe = np.where(force > 0, force, 1.0)
+        return np.where(force > 0, 2.8e-11 * np.log(1e9 / safe), np.inf)
+
+
+def contact_work() -> Case:
+    """Mesh cycles from nothing and with a compliance at hand, root stress, files for ParaView."""
+    import fem
+    from fem.vtk import write_vtk_series
+
+    pair = example_pair()
+    bodies, fillets = fem.compliance(pair), fem.fillets(pair)
+    cycle = fem.mesh_cycle(pair, TORQUE, 40, bodies)
+    few = fem.mesh_cycle(pair, TORQUE, 20, bodies)
+    torques = np.linspace(10.0, 900.0, 100)
+
+    def write() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            write_vtk_series(Path(folder), pair, few, bodies)
+
+    return _timed(
+        "work_contact",
+        "Mesh cycles and fields",
+        "Pair 36/40 at 600 N m: a whole mesh cycle from nothing at 0.1 %; the others with the compliance at hand.",
+        "positions",
+        work("from nothing", lambda: fem.mesh_cycle(pair, TORQUE), 40),
+        work("held to the path", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies, False), 40),
+        work("with tip edges", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies), 40),
+        work("rounded tips", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies, tip_rounding=5e-5), 40),
+        work("100 torques", lambda: fem.mesh_cycle(pair, torques, 40, bodies), 4000),
+        work("360 pitches", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies, pitches=360), 14_400),
+        work("root stress", lambda: fem.root_stress(pair, cycle, fillets), 40),
+        work("files for ParaView", write, 20),
+    )
+
+
+def film_work() -> Case:
+    """A film by the film that it starts from, and films along a path."""
+    from ehl import solve, solve_path
+
+    contact = pitch_point()
+    film = solve(contact)
+    contacts = contacts_along_path(101)
+
+    def at(factor: float) -> Callable[[], object]:
+        other = replace(contact, load=factor * contact.load)
+        return lambda: solve(other, start=film)
+
+    return _timed(
+        "work_film",
+        "Films by their start",
+        "Pitch point of the pair 36/40 at 0.5 %: from nothing, from its own film, and from that of another load; "
+        "101 contacts along the path with two jumps of the load, each from its neighbour.",
+        "contacts",
+        work("from nothing", lambda: solve(contact), 1),
+        work("same contact", at(1.0), 1),
+        work("load +0.01 %", at(1.0001), 1),
+        work("load +2 %", at(1.02), 1),
+        work("load halved", at(0.5), 1),
+        work("along the path", lambda: solve_path(contacts), 101),
+    )
+
+
+def motion_work() -> Case:
+    """Sweeps, branches, loci, diagrams and basins."""
+    import dynamics
+    from dynamics.flow import tables
+
+    osc = oscillator()
+    values = np.linspace(0.1, 2.1, 2000)
+    start = dynamics.find_orbit(osc.with_parameter("frequency", 0.5), (0.35, 0.0))
+    branch = dynamics.continue_branch(start, "frequency", (0.5, 1.2))
+    plane = ("frequency", "stiffness.amplitudes[0]"), ((0.3, 1.5), (0.0, 0.6))
+    locus = dynamics.continue_locus(osc, branch.points[0], *plane)
+
+    def swept() -> None:
+        for direction in ("up", "down"):
+            dynamics.sweep(osc, values=values, direction=direction)
+
+    return _timed(
+        "work_motion",
+        "Sweeps, branches, diagrams, basins",
+        "The oscillator of the exact flow, kernels compiled: what is built on its period map.",
+        "values, points or starts",
+        work("tables of the flow", lambda: tables(osc)),
+        work("sweep up and down", swept, 4000),
+        work("branch", lambda: dynamics.continue_branch(start, "frequency", (0.5, 1.2)), len(branch.values)),
+        work(
+            "locus of a fold",
+            lambda: dynamics.continue_locus(osc, branch.points[0], *plane),
+            len(locus.values),
+        ),
+        work("orbits of periods 1 to 4", lambda: dynamics.find_orbits(osc, (1, 2, 3, 4))),
+        work("diagram", lambda: dynamics.diagram(osc, "frequency", (0.3, 2.1))),
+        work("basins", lambda: dynamics.basins(osc, x=(-1, 1, 200), v=(-1, 1, 200)), 40_000),
+    )
