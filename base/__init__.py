@@ -1,6 +1,7 @@
 """Below all packages, on numpy alone: faults and limits, cost, what every result has, whole files, units."""
 
 from base.arrays import Array, Booleans, Integers
+from base.compiled import hide_compilation
 from base.cost import Cost, Stopwatch, unclocked
 from base.faults import (
     Fault,
@@ -33,6 +34,7 @@ __all__ = [
     "SolverError",
     "Stopwatch",
     "described",
+    "hide_compilation",
     "quantities",
     "quantity",
     "record",

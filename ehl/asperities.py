@@ -84,6 +84,13 @@ class Roughness:
     ----------
     J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. Lond. A 295 (1966) 300-319. J. A. Greenwood and
     J. H. Tripp, The contact of two nominally flat rough surfaces, Proc. Inst. Mech. Engrs 185 (1970-71) 625-633.
+
+    Examples
+    --------
+    >>> ground = Roughness(deviation=0.3e-6, density=1e11, tip_radius=1e-5)
+    >>> pressure, slope = ground.pressure(0.6e-6, reduced_modulus=2.2e11)
+    >>> bool(pressure > 0.0), bool(slope < 0.0)
+    (True, True)
     """
 
     deviation: float

@@ -68,6 +68,15 @@ class LineContact:
         With every fault at once. A load or an entrainment of zero is refused: without load there is no
         contact to solve (the film stiffness is zero), and without entrainment a steady film does not exist
         (the contact is dry: the film separation is zero).
+
+    Examples
+    --------
+    >>> oil = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
+    >>> contact = LineContact(
+    ...     load=1e5, entrainment=1.0, radius=0.015, reduced_modulus=2.2e11, lubricant=oil
+    ... )
+    >>> round(contact.moes_M, 2), round(contact.moes_L, 2), round(1e-9 * contact.peak_pressure, 3)
+    (5.03, 12.21, 0.483)
     """
 
     load: float

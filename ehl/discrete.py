@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from ehl.contact import LineContact
 from ehl.grid import face_weights, hat_weights
 from ehl.lubricant import Lubricant
@@ -21,16 +22,15 @@ __all__ = [
     "LOAD",
     "Grid",
     "Groups",
+    "Residual",
     "centre_gap",
     "film_gap",
     "fluxes",
     "inlet_pressure",
     "load_inside",
     "make_grid",
-    "residual",
 ]
 
-Array = NDArray[np.float64]
 
 LOAD = 0.5 * math.pi  # integral of P dX
 _GAUSS = np.polynomial.legendre.leggauss(8)
@@ -167,12 +167,19 @@ def fluxes(grid: Grid, groups: Groups, P: Array, H: Array, faces: Array) -> tupl
     return found
 
 
-def residual(grid: Grid, groups: Groups, P: Array, H0: float) -> tuple[Array, float]:
-    """Net flux into each inner node's cell, and the load that is missing.
+class Residual(NamedTuple):
+    """What given pressures and a rigid separation leave unbalanced, and the gap that they make."""
 
-    The first node's pressure is taken from the inlet, whatever ``P`` says.
-    """
-    P = P.copy()
-    P[0] = inlet_pressure(grid, groups)
-    flux, _ = fluxes(grid, groups, P, film_gap(grid, groups, P, H0), grid.quick)
-    return np.diff(flux), load_inside(grid, groups) - float(grid.weights @ P)
+    flux: Array  # through each cell (n-1,); its differences are the net fluxes
+    slopes: Array  # of the flux (n-1, 6)
+    short: float  # load that is missing
+    centre: float  # gap at x = 0 [m]
+
+    @classmethod
+    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float) -> Residual:
+        """Compute all; the first node's pressure is taken from the inlet, whatever ``P`` says."""
+        P = P.copy()
+        P[0] = inlet_pressure(grid, groups)
+        flux, slopes = fluxes(grid, groups, P, film_gap(grid, groups, P, H0), grid.quick)
+        short = load_inside(grid, groups) - float(grid.weights @ P)
+        return cls(flux, slopes, short, centre_gap(grid, groups, P, H0) * groups.gap)

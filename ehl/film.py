@@ -3,95 +3,120 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Faults
+from base import Array, Cost, Faults, described, quantity, record
 from ehl.contact import LineContact
-from ehl.regressions import dowson_higginson_minimum, dowson_toyoda_central
+from ehl.regressions import formula_stiffness
 
 if TYPE_CHECKING:
     from ehl.levels import State
     from ehl.supply import Supply
 
-__all__ = ["DEFINITIONS", "Cost", "Film", "FilmErrors", "Spike", "hertz_approach"]
+__all__ = ["DEFINITIONS", "Film", "FilmErrors", "Spike", "hertz_approach"]
 
 DEFINITIONS = ("approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum")
 
 
-@dataclass(frozen=True)
-class Cost:
-    """What a solution took."""
-
-    seconds: float  # wall time; the first call of a process includes loading the compiled kernels
-    unknowns: int  # nodal pressures and the rigid separation, on the finest grid
-    iterations: int  # Newton steps on all grids
-    grids: tuple[int, ...]  # nodes of every grid solved, in order
-    attempts: int  # starts tried; more than 1 when the first did not converge
-
-
-@dataclass(frozen=True)
+@record
 class FilmErrors:
     """Estimated relative errors, from the grid of half as many cells and from the length of the inlet."""
 
-    film: float  # of central and minimum film
-    separation: float
-    approach_stiffness: float
-    tangent_stiffness: float
-    inlet: float  # share of the film lost to the finite inlet; 0 where the caller fixed the domain
+    film: float = quantity("1", "error of central and minimum film")
+    separation: float = quantity("1", "error of the film separation", default=math.nan)
+    approach_stiffness: float = quantity("1", "error of the stiffness by separation", default=math.nan)
+    tangent_stiffness: float = quantity("1", "error of the stiffness by central film", default=math.nan)
+    inlet: float = quantity(
+        "1", "share of the film lost to the finite inlet, 0 where the domain was given", default=math.nan
+    )
 
 
-@dataclass(frozen=True)
+@record
 class Spike:
     """The second pressure maximum, before the outlet."""
 
-    position: float  # x of the tip [m]
-    pressure: float  # p of the tip [Pa]
-    width: float  # from the tip to where the pressure has fallen by a tenth, downstream [m]
-    error: float  # change of the tip's pressure between two grids laid around it, relative; NaN if none were
+    position: float = quantity("m", "place of the tip", shown="um")
+    pressure: float = quantity("Pa", "pressure of the tip", shown="GPa", error="error")
+    width: float = quantity(
+        "m", "distance downstream from the tip to where the pressure has fallen by a tenth", shown="um"
+    )
+    error: float = quantity(
+        "1", "change of the tip's pressure between two grids laid around it, NaN if none were"
+    )
 
 
-@dataclass(frozen=True)
+@record
 class Film:
-    """A steady line-contact film.
+    """A steady line-contact film; everything is per metre of face width.
 
-    Figures are NaN when ``converged`` is False; ``message`` then says what to do.
+    Figures are NaN when ``converged`` is False; ``message`` then says what to do. ``supply`` is what was held at the
+    inlet, None where it is flooded; ``spike`` is None where the pressure has no narrow second maximum; ``state`` is
+    what a next solution starts from. ``cost.counts["restarts"]`` counts the starts that did not converge.
     """
 
+    headline = ("central_thickness", "minimum_thickness", "separation")
+
     contact: LineContact
-    x: Array  # nodes (n,) [m], 0 on the line of centres, oil enters at the left
-    pressure: Array  # p (n,) [Pa]
-    thickness: Array  # h (n,) [m]
-    central_thickness: float  # h at x = 0 [m]
-    minimum_thickness: float  # least h inside the film [m]
-    minimum_position: float  # x of the least h [m]
-    inlet: float  # x where the domain begins [m]
-    outlet: float  # x where the film ends [m]
-    separation: float  # approach of the dry contact minus approach of the film [m]
-    separation_slope: float  # d separation/d load at fixed speed [m per N/m]
-    central_slope: float  # d h_cen/d load at fixed speed [m per N/m]
-    flow: float  # mass flow over rho0 u [m]: the film that leaves the contact at ambient pressure
-    flux_error: float  # largest deviation of the mass flow inside the film, relative
-    load_error: float  # of the integral of the pressure, relative
-    error: float  # estimated relative error of central and minimum thickness, the larger
+    x: Array = quantity("m", "place, 0 on the line of centres, oil enters at the left", "node", shown="um")
+    pressure: Array = quantity("Pa", "pressure", "node", shown="GPa")
+    thickness: Array = quantity("m", "film thickness", "node", shown="um")
+    inlet: float = quantity("m", "place where the domain begins", shown="um")
     errors: FilmErrors
     cost: Cost
     converged: bool
     message: str
-    supply: Supply | None = None  # what was held: None is a flooded inlet
-    spike: Spike | None = None  # None where the pressure has no narrow second maximum
-    state: State | None = field(repr=False, compare=False, default=None)  # what a next solution starts from
+    central_thickness: float = quantity(
+        "m", "film thickness at x = 0", shown="um", error="error", default=math.nan
+    )
+    minimum_thickness: float = quantity(
+        "m", "least film thickness", shown="um", error="error", default=math.nan
+    )
+    minimum_position: float = quantity("m", "place of the least thickness", shown="um", default=math.nan)
+    outlet: float = quantity("m", "place where the film ends", shown="um", default=math.nan)
+    separation: float = quantity(
+        "m",
+        "film separation: approach of the dry contact less that with the film",
+        shown="um",
+        default=math.nan,
+    )
+    separation_slope: float = quantity(
+        "m2/N", "derivative of the separation by the load at fixed speed", default=math.nan
+    )
+    central_slope: float = quantity(
+        "m2/N", "derivative of the central thickness by the load at fixed speed", default=math.nan
+    )
+    flow: float = quantity(
+        "m",
+        "mass flow over rho0 u: the film that leaves the contact at ambient pressure",
+        shown="um",
+        default=math.nan,
+    )
+    flux_error: float = quantity(
+        "1", "largest deviation of the mass flow inside the film, relative", default=math.nan
+    )
+    load_error: float = quantity("1", "error of the integral of the pressure, relative", default=math.nan)
+    supply: Supply | None = None
+    spike: Spike | None = None
+    state: State | None = None
 
     @property
+    @described("1")
+    def error(self) -> float:
+        """Estimated relative error of central and minimum thickness, the larger."""
+        return self.errors.film
+
+    @property
+    @described("1", error="error")
     def central_moes(self) -> float:
-        """Central film in Moes units, h_cen/(R sqrt(U2)) [-]."""
+        """Central film in Moes units, h_cen/(R sqrt(U2))."""
         return self.central_thickness / self.contact.moes_film
 
     @property
+    @described("1", error="error")
     def minimum_moes(self) -> float:
-        """Minimum film in Moes units, h_min/(R sqrt(U2)) [-]."""
+        """Minimum film in Moes units, h_min/(R sqrt(U2))."""
         return self.minimum_thickness / self.contact.moes_film
 
     @property
@@ -100,16 +125,18 @@ class Film:
         return self.supply is not None and self.errors.inlet == 0.0
 
     @property
+    @described("1", "node")
     def fill(self) -> Array:
-        """Share of the gap that oil fills, 1 - theta, at the nodes [-]: 1 where p > 0, less in cavitation."""
+        """Share of the gap that oil fills, 1 - theta: 1 where p > 0, less in cavitation."""
         density = self.contact.lubricant.density_ratio(self.pressure)[0]
         full = self.pressure > 0.0
         full[0] = True
         return np.where(full, 1.0, np.minimum(1.0, self.flow / (density * self.thickness)))
 
     @property
+    @described("m", shown="um")
     def approach(self) -> float:
-        """Approach of the two bodies with the film between them [m], on the datum of :func:`hertz_approach`.
+        """Approach of the two bodies with the film between them, on the datum of :func:`hertz_approach`.
 
         It is the dry approach less ``separation``; the difference of two approaches of contacts with different
         loads means something on one common datum only, which this property takes as R.
@@ -140,7 +167,6 @@ class Film:
         InputError
             For any other name.
         """
-        w = self.contact.load
         found = Faults()
         found.choice("definition", definition, DEFINITIONS)
         found.raise_if_any()
@@ -153,9 +179,7 @@ class Film:
             return -1.0 / self.central_slope
         if definition == "nodal-sum":
             return float(np.trapezoid(self.pressure / self.thickness, self.x))
-        if definition == "dowson-central":
-            return 10.0 * w / dowson_toyoda_central(self.contact)
-        return w / (0.13 * dowson_higginson_minimum(self.contact))
+        return formula_stiffness(self.contact, definition)
 
 
 def hertz_approach(contact: LineContact, datum: float | None = None) -> float:
@@ -167,6 +191,11 @@ def hertz_approach(contact: LineContact, datum: float | None = None) -> float:
     References
     ----------
     K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), section 4.2(c) and 5.6.
+
+    Examples
+    --------
+    >>> f"{1e6 * hertz_approach(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '8.821 um'
     """
     b = contact.half_width
     length = contact.radius if datum is None else datum

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from base import Array
 
 __all__ = [
     "clusters",
@@ -17,7 +18,6 @@ __all__ = [
     "uniform_nodes",
 ]
 
-Array = NDArray[np.float64]
 
 _NECK_SHARE = 1.5  # nodes at the outlet for one at the inlet: the neck converges last
 _SPIKE_SHARE = 0.6  # nodes at a spike for one at the inlet: more of them starve the inlet on coarse grids

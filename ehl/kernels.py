@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from base import Array, Integers, hide_compilation
+
+hide_compilation()
 
 # Beyond this many half-cells the closed form of a cell's integral cancels and its series has converged.
 _FAR = 10.0
@@ -138,7 +138,7 @@ def reynolds(
 
 
 @njit(cache=True, error_model="numpy")
-def newton_matrix(slopes: Array, influence: Array, weights: Array, free: Indices) -> Array:
+def newton_matrix(slopes: Array, influence: Array, weights: Array, free: Integers) -> Array:
     """Newton matrix of the free nodes and of the rigid separation, each row scaled to 1.
 
     Parameters

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from ehl.contact import LineContact
 from ehl.discrete import Grid, Groups, centre_gap, film_gap
 from ehl.grid import clusters
@@ -18,7 +18,6 @@ from ehl.regressions import moes_central
 
 __all__ = ["Figures", "Level", "State", "Tip", "cold", "dry_approach", "figures", "spike_of", "warm"]
 
-Array = NDArray[np.float64]
 
 _SHARP = 0.2  # a maximum narrower than this share of the outlet zone is a spike
 _DROP = 0.9  # the width is taken where the pressure has fallen to this share of the tip
@@ -143,9 +142,14 @@ def _cold_start(contact: LineContact, grid: Grid, H_c: float) -> tuple[Array, fl
     P = np.sqrt(np.maximum(0.0, 1.0 - grid.nodes**2))
     P[0] = P[-1] = 0.0
     P *= 0.5 * math.pi / float(grid.weights @ P)
-    H0 = H_c / grid.ratio**2 - centre_gap(grid, groups, P, 0.0)
+    return P, _open(grid, groups, P, H_c / grid.ratio**2)
+
+
+def _open(grid: Grid, groups: Groups, P: Array, centre: float) -> float:
+    """Rigid separation that leaves a gap at the centre, more of it where the gap would close elsewhere."""
+    H0 = centre - centre_gap(grid, groups, P, 0.0)
     lowest = float(film_gap(grid, groups, P, H0).min())
-    return P, H0 - 1.2 * min(lowest, 0.0)
+    return H0 - 1.2 * min(lowest, 0.0)
 
 
 def _transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[Array, float]:
@@ -165,10 +169,7 @@ def _transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple
     growth = moes_central(contact) / moes_central(old.contact)
     if plan.fixed and old.plan.fixed and plan.domain != old.plan.domain:
         growth *= (plan.H_c / old.plan.H_c) / (growth * groups_old.gap / groups.gap)
-    centre *= groups_old.gap / groups.gap * growth
-    H0 = centre - centre_gap(grid, groups, P, 0.0)
-    lowest = float(film_gap(grid, groups, P, H0).min())
-    return P, H0 - 1.2 * min(lowest, 0.0)
+    return P, _open(grid, groups, P, centre * (groups_old.gap / groups.gap * growth))
 
 
 def cold(contact: LineContact, plan: Plan, grid: Grid, H_c: float) -> Level:

@@ -74,6 +74,12 @@ class Lubricant:
     -----
     RangeWarning
         If z lies outside 0.2 to 1, where mineral and synthetic oils are not found.
+
+    Examples
+    --------
+    >>> oil = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
+    >>> round(oil.z, 3)
+    0.646
     """
 
     viscosity: float

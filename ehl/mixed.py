@@ -9,9 +9,9 @@ pressure at it, and s is where that pressure is what the share asks for at the m
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from base import Faults
+from base import Cost, Fault, InputError, described, quantity, record, shorten
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film
@@ -25,51 +25,78 @@ _LEAST_FILM_SHARE = 1e-6
 _ODDS_STEP = 0.02
 
 
-@dataclass(frozen=True)
+@record
 class MixedFilm:
     """A film between rough surfaces. Figures are NaN when ``converged`` is False.
+
+    ``film`` is that of the load and modulus that are left to it; its half-width is that of ``contact``.
+    ``cost.counts["films"]`` counts the films solved.
 
     The stiffnesses are those of springs in parallel, at fixed speed and fixed width of the contact. A contact that
     asperities carry widens with the load, which makes it stiffer again by up to two: ``separation_slope`` and
     ``central_slope`` are the derivatives with all of that, -1/slope the whole stiffness.
     """
 
+    headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")
+
     contact: LineContact
     roughness: Roughness
-    film: Film  # of the load and modulus that are left to the film; its half-width is that of `contact`
-    asperity_share: float  # s, share of the load that the asperities carry [-]
-    asperity_stiffness: float  # -dw_a/dh of the asperities at the contact's width [N/m per m of face]
-    separation_slope: float  # d separation/d load of film and asperities together at fixed speed [m per N/m]
-    central_slope: float  # d h_cen/d load likewise [m per N/m]
-    error: float  # estimated relative error of the film
-    rounds: int  # films solved
+    film: Film
+    cost: Cost
     converged: bool
     message: str
+    asperity_share: float = quantity(
+        "1", "share of the load that the asperities carry", shown="%", default=math.nan
+    )
+    asperity_stiffness: float = quantity(
+        "N/m2", "stiffness of the asperities at the contact's width", default=math.nan
+    )
+    separation_slope: float = quantity(
+        "m2/N",
+        "derivative of the separation by the load at fixed speed, asperities included",
+        default=math.nan,
+    )
+    central_slope: float = quantity(
+        "m2/N",
+        "derivative of the central thickness by the load at fixed speed, asperities included",
+        default=math.nan,
+    )
 
     @property
+    @described("1")
+    def error(self) -> float:
+        """Estimated relative error of the film."""
+        return self.film.error if self.converged else math.nan
+
+    @property
+    @described("m", shown="um", error="error")
     def central_thickness(self) -> float:
-        """Distance of the mean planes at x = 0 [m]."""
+        """Distance of the mean planes at x = 0."""
         return self.film.central_thickness
 
     @property
+    @described("m", shown="um", error="error")
     def minimum_thickness(self) -> float:
-        """Least distance of the mean planes [m]."""
+        """Least distance of the mean planes."""
         return self.film.minimum_thickness
 
     @property
+    @described("m", shown="um")
+    def separation(self) -> float:
+        """Approach of the dry contact less that with film and asperities."""
+        return self.film.separation
+
+    @property
+    @described("1", error="error")
     def film_ratio(self) -> float:
-        """Lambda = h_min/sigma [-]."""
+        """Lambda, least distance of the mean planes over the standard deviation of heights."""
         return self.film.minimum_thickness / self.roughness.deviation
 
     @property
+    @described("N/m")
     def asperity_load(self) -> float:
-        """Load on the asperities [N/m]."""
+        """Load on the asperities per length of face."""
         return self.asperity_share * self.contact.load
-
-    @property
-    def separation(self) -> float:
-        """Approach of the dry contact less that of film and asperities together [m]."""
-        return self.film.separation
 
     def film_stiffness(self, definition: str = "approach") -> float:
         """Stiffness of the film at its own share of the load [N/m per m of face]."""
@@ -147,23 +174,27 @@ def solve_mixed(
     ----------
     K. L. Johnson, J. A. Greenwood and S. Y. Poon, A simple theory of asperity contact in elastohydrodynamic
     lubrication, Wear 19 (1972) 91-108.
+
+    Examples
+    --------
+    >>> ground = Roughness(deviation=0.1e-6, density=1e11, tip_radius=1e-5)
+    >>> mixed = solve_mixed(LineContact.from_moes(M=20.0, L=10.0), ground)
+    >>> f"film ratio {mixed.film_ratio:.2f}, asperities carry {100 * mixed.asperity_share:.1f} %"
+    'film ratio 2.43, asperities carry 1.0 %'
     """
     if not isinstance(roughness, Roughness):
-        found = Faults()
-        found.add("roughness", roughness, "must be a Roughness", "build one with ehl.Roughness")
-        found.raise_if_any()
+        raise InputError(
+            [Fault("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")]
+        )
     search = _Search(contact, roughness, tolerance, supply, start)
-    smooth = search.film_at(0.0)
-    if not smooth.converged:
-        return search.failed(smooth, smooth.message)
-    pressure, _ = roughness.pressure(smooth.central_thickness, contact.reduced_modulus)
-    if float(pressure) < _LEAST_SHARE * contact.peak_pressure:
-        return search.found(smooth, 0.0)
-    return search.shared(min(float(pressure) / contact.peak_pressure, 0.5))
+    try:
+        return search.solved()
+    except _NoFilmError as reason:
+        return search.failed(str(reason))
 
 
 class _NoFilmError(Exception):
-    """A trial film failed."""
+    """A trial film failed, or none is left to the load."""
 
 
 class _Search:
@@ -182,120 +213,94 @@ class _Search:
         self.tolerance = tolerance
         self.supply = supply
         self.start = start
-        self.rounds = 0
+        self.cost = Cost(0.0)
         self.last: Film
 
-    def film_at(self, share: float) -> Film:
-        """Film that carries what a share of the asperities leaves."""
-        left = 1.0 - share
+    def film_at(self, odds: float) -> Film:
+        """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
+        left = 1.0 - _share(odds)
         eased = replace(
             self.contact, load=left * self.contact.load, reduced_modulus=left * self.contact.reduced_modulus
         )
-        self.rounds += 1
-        film = solve(eased, self.tolerance, start=self.start, supply=self.supply)
-        if film.converged:
-            self.start = film
-        self.last = film
+        self.last = film = solve(eased, self.tolerance, start=self.start, supply=self.supply)
+        self.cost += film.cost + Cost(0.0, counts={"films": 1})
+        if not film.converged:
+            raise _NoFilmError(film.message)
+        self.start = film
         return film
+
+    def carried(self, film: Film) -> tuple[float, float]:
+        """Asperities' pressure at a film's central thickness [Pa] and its derivative by that [Pa/m]."""
+        pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
+        return float(pressure), float(slope)
+
+    def asked(self, odds: float, heavier: float = 1.0) -> float:
+        """Pressure that the asperities' share asks of them [Pa], at a multiple of the load."""
+        contact = replace(self.contact, load=heavier * self.contact.load)
+        return central_asperity_pressure(contact, self.roughness, _share(odds))
 
     def excess(self, odds: float) -> float:
         """Ln of the asperities' pressure over what their share asks for."""
-        share = 1.0 / (1.0 + math.exp(-odds))
-        film = self.film_at(share)
-        if not film.converged:
-            raise _NoFilmError(film.message)
-        carried, _ = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
-        asked = central_asperity_pressure(self.contact, self.roughness, share)
-        return math.log(max(float(carried), 1e-300) / asked)
+        carried = self.carried(self.film_at(odds))[0]
+        return math.log(max(carried, 1e-300) / self.asked(odds))
 
-    def shared(self, guess: float) -> MixedFilm:
-        """Find the share: steps from the guess until the root is passed, then Brent's method."""
+    def solved(self) -> MixedFilm:
+        """Share the load, with the asperities' stiffness at the contact's width and both derivatives."""
+        smooth = self.film_at(-math.inf)
+        alone = self.carried(smooth)[0] / self.contact.peak_pressure
+        if alone < _LEAST_SHARE:
+            return self.result(smooth, 0.0, 0.0, smooth.separation_slope, smooth.central_slope)
+        share = min(alone, 0.5)
+        odds = self.balance(math.log(share / (1.0 - share)))
+        film, share = self.film_at(odds), _share(odds)
+        pressure, slope = self.carried(film)
+        stiffness = -share * self.contact.load * slope / pressure
+        return self.result(film, share, stiffness, *self.slopes(film, odds, slope / pressure))
+
+    def balance(self, odds: float) -> float:
+        """Odds at which the asperities carry what is asked: steps until the root is passed, then Brent's method."""
         from scipy.optimize import brentq
 
-        try:
-            odds = math.log(guess / (1.0 - guess))
-            at = self.excess(odds)
-            step, far, at_far = at, odds, at
-            while at * at_far > 0.0:
-                if far > -math.log(_LEAST_FILM_SHARE):
-                    reason = "the asperities carry all but a millionth of the load: take the contact as dry"
-                    return self.failed(self.last, reason)
-                odds, at = far, at_far
-                far += math.copysign(max(abs(step), 0.1), step)
-                at_far, step = self.excess(far), 2.0 * step
-            odds = float(brentq(self.excess, odds, far, xtol=1e-9, rtol=1e-12)) if at != 0.0 else odds
-        except _NoFilmError as reason:
-            return self.failed(self.last, str(reason))
-        share = 1.0 / (1.0 + math.exp(-odds))
-        return self.found(self.film_at(share), share)
+        at = self.excess(odds)
+        step, far, at_far = at, odds, at
+        while at * at_far > 0.0:
+            if far > -math.log(_LEAST_FILM_SHARE):
+                raise _NoFilmError(
+                    "the asperities carry all but a millionth of the load: take the contact as dry"
+                )
+            odds, at = far, at_far
+            far += math.copysign(max(abs(step), 0.1), step)
+            at_far, step = self.excess(far), 2.0 * step
+        return float(brentq(self.excess, odds, far, xtol=1e-9, rtol=1e-12)) if at != 0.0 else odds
 
-    def found(self, film: Film, share: float) -> MixedFilm:
-        """Return the shared load, with the asperities' stiffness at the contact's width and both derivatives."""
-        if not film.converged:
-            return self.failed(film, film.message)
-        stiffness, slopes = 0.0, (film.separation_slope, film.central_slope)
-        if share > 0.0:
-            pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
-            steep = float(slope) / float(pressure)
-            stiffness = -share * self.contact.load * steep
-            try:
-                slopes = self.slopes(film, share, steep)
-            except _NoFilmError as reason:
-                return self.failed(self.last, str(reason))
-        return MixedFilm(
-            self.contact,
-            self.roughness,
-            film,
-            share,
-            stiffness,
-            *slopes,
-            film.error,
-            self.rounds,
-            converged=True,
-            message="converged",
-        )
-
-    def slopes(self, film: Film, share: float, steep: float) -> tuple[float, float]:
+    def slopes(self, film: Film, odds: float, steep: float) -> tuple[float, float]:
         """Derivatives of separation and central film by the load, the share moving along.
 
         ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw; the film's own derivatives by w are known, those by s are
         differences of two films at neighbouring odds.
         """
-        odds = math.log(share / (1.0 - share))
-        sides = [self.film_at(1.0 / (1.0 + math.exp(-odds - step))) for step in (-_ODDS_STEP, _ODDS_STEP)]
-        for side in sides:
-            if not side.converged:
-                raise _NoFilmError(side.message)
-        separation_s, central_s = (
-            (getattr(sides[1], name) - getattr(sides[0], name)) / (2.0 * _ODDS_STEP)
-            for name in ("separation", "central_thickness")
-        )
-        separation_w, central_w = (1.0 - share) * film.separation_slope, (1.0 - share) * film.central_slope
-
-        def asked(load: float, at: float) -> float:
-            contact = replace(self.contact, load=load)
-            return math.log(central_asperity_pressure(contact, self.roughness, 1.0 / (1.0 + math.exp(-at))))
-
-        load, step = self.contact.load, 1e-6
-        by_load = (asked(load * (1 + step), odds) - asked(load * (1 - step), odds)) / (2 * step * load)
-        by_odds = (asked(load, odds + step) - asked(load, odds - step)) / (2 * step)
+        low, high = (self.film_at(odds + step) for step in (-_ODDS_STEP, _ODDS_STEP))
+        separation_s = (high.separation - low.separation) / (2.0 * _ODDS_STEP)
+        central_s = (high.central_thickness - low.central_thickness) / (2.0 * _ODDS_STEP)
+        left = 1.0 - _share(odds)
+        separation_w, central_w = left * film.separation_slope, left * film.central_slope
+        step = 1e-6
+        by_load = math.log(self.asked(odds, 1 + step)) - math.log(self.asked(odds, 1 - step))
+        by_load /= 2 * step * self.contact.load
+        by_odds = (math.log(self.asked(odds + step)) - math.log(self.asked(odds - step))) / (2 * step)
         follow = (by_load - steep * central_w) / (steep * central_s - by_odds)
         return separation_w + separation_s * follow, central_w + central_s * follow
 
-    def failed(self, film: Film, reason: str) -> MixedFilm:
+    def result(self, film: Film, *figures: float) -> MixedFilm:
+        """Return what was found: share and stiffness of the asperities, slopes of separation and central film."""
+        return MixedFilm(self.contact, self.roughness, film, self.cost, True, "converged", *figures)
+
+    def failed(self, reason: str) -> MixedFilm:
         """Return no figures."""
-        nan = math.nan
-        blank = film if not film.converged else replace(film, converged=False, central_thickness=nan)
-        return MixedFilm(
-            self.contact,
-            self.roughness,
-            blank,
-            nan,
-            nan,
-            nan,
-            nan,
-            nan,
-            self.rounds,
-            converged=False,
-            message=reason,
-        )
+        blank = replace(self.last, converged=False, central_thickness=math.nan)
+        return MixedFilm(self.contact, self.roughness, blank, self.cost, False, reason)
+
+
+def _share(odds: float) -> float:
+    """Share s of the asperities at odds ln[s/(1-s)]; 0 at odds of minus infinity."""
+    return 1.0 / (1.0 + math.exp(-odds))

@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv, dgetrs
 
+from base import Array, Integers
 from ehl.discrete import Grid, Groups, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.grid import face_weights
 
 __all__ = ["Factors", "Iteration", "newton"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
@@ -29,7 +28,7 @@ class Factors:
     lu: Array
     pivots: NDArray[np.int32]
     scale: Array  # factor of each flux row
-    free: Indices  # nodes inside the film
+    free: Integers  # nodes inside the film
 
     def solve(self, net_flux: Array, load: float, n: int) -> tuple[Array, float]:
         """Change of P (n,) and H0 that makes given changes of the residual (n-2,) and of the load row."""
@@ -56,7 +55,7 @@ class Iteration:
     factors: Factors | None  # None where the last step could not be computed
 
 
-def _flux_error(flux: Array, free: Indices) -> tuple[float, float]:
+def _flux_error(flux: Array, free: Integers) -> tuple[float, float]:
     """Mean flux through the faces of the film and its largest relative deviation."""
     inside = flux[free[0] - 1 : free[-1] + 1]
     mean = float(np.mean(inside[inside.size // 2 :]))

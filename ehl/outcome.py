@@ -56,7 +56,6 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         flow=fine.flow,
         flux_error=found.flux_error,
         load_error=found.load_error,
-        error=error,
         errors=errors,
         cost=run.cost(),
         converged=True,
@@ -84,27 +83,15 @@ def _spike(coarse: Level, fine: Level) -> Spike | None:
 
 def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> Film:
     """Return a film without figures."""
-    nan = math.nan
-    blank = np.full(fine.grid.nodes.size, nan)
-    length = run.contact.half_width * fine.grid.ratio
+    blank = np.full(fine.grid.nodes.size, math.nan)
+    x = fine.grid.nodes * run.contact.half_width * fine.grid.ratio
     return Film(
         contact=run.contact,
-        x=fine.grid.nodes * length,
+        x=x,
         pressure=blank,
         thickness=blank,
-        central_thickness=nan,
-        minimum_thickness=nan,
-        minimum_position=nan,
-        inlet=float(fine.grid.nodes[0] * length),
-        outlet=nan,
-        separation=nan,
-        separation_slope=nan,
-        central_slope=nan,
-        flow=nan,
-        flux_error=nan,
-        load_error=nan,
-        error=error,
-        errors=FilmErrors(error, nan, nan, nan, nan),
+        inlet=float(x[0]),
+        errors=FilmErrors(error),
         cost=run.cost(),
         converged=False,
         message=f"{reason}: {_remedy(run, fine.plan)}",

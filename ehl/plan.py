@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from base import Array
 from ehl.contact import LineContact
 from ehl.discrete import Grid, make_grid
 from ehl.grid import clusters, default_domain, film_parameter, graded_nodes, uniform_nodes
@@ -16,7 +14,6 @@ from ehl.supply import Meniscus, OilLayer, Supply, inlet_of_layer, starved_film
 
 __all__ = ["Plan", "expected_film"]
 
-Array = NDArray[np.float64]
 
 _REUSE = 1.5  # a start's grid serves until H_c differs by this factor
 _NEAREST_INLET = 1e-6  # b ahead of the dry contact

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
 
-from base import Fault, InputError, RangeWarning
+from base import Cost, Fault, Faults, InputError, RangeWarning, described, quantity, record
 from ehl.contact import LineContact
 
 __all__ = [
@@ -14,11 +13,21 @@ __all__ = [
     "dowson",
     "dowson_higginson_minimum",
     "dowson_toyoda_central",
+    "formula_stiffness",
     "moes_central",
     "nijenbanning_line_central",
     "pan_hamrock_central",
     "pan_hamrock_minimum",
 ]
+
+_DEFINITIONS = ("dowson-central", "dowson-minimum")
+
+
+def _powers(contact: LineContact, factor: float, speed: float, material: float, load: float) -> float:
+    """Film ``factor R U^speed G^material W^load`` [m], U = eta0 u/(E'R) on the mean velocity."""
+    U, G, W = 0.5 * contact.U2, contact.G, contact.W
+    film: float = factor * U**speed * G**material * W**load * contact.radius
+    return film
 
 
 def dowson_higginson_minimum(contact: LineContact) -> float:
@@ -30,10 +39,13 @@ def dowson_higginson_minimum(contact: LineContact) -> float:
     References
     ----------
     D. Dowson, Elastohydrodynamics, Proc. Inst. Mech. Engrs 182 (1967-68), Part 3A, 151-167.
+
+    Examples
+    --------
+    >>> f"{1e6 * dowson_higginson_minimum(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.245 um'
     """
-    U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    film: float = 2.65 * U**0.70 * G**0.54 * W**-0.13 * contact.radius
-    return film
+    return _powers(contact, 2.65, speed=0.70, material=0.54, load=-0.13)
 
 
 def dowson_toyoda_central(contact: LineContact) -> float:
@@ -45,10 +57,13 @@ def dowson_toyoda_central(contact: LineContact) -> float:
     ----------
     D. Dowson and S. Toyoda, A central film thickness formula for elastohydrodynamic line contacts, Proc. 5th
     Leeds-Lyon Symposium on Tribology (1979), 60-65.
+
+    Examples
+    --------
+    >>> f"{1e6 * dowson_toyoda_central(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.327 um'
     """
-    U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    film: float = 3.06 * U**0.69 * G**0.56 * W**-0.10 * contact.radius
-    return film
+    return _powers(contact, 3.06, speed=0.69, material=0.56, load=-0.10)
 
 
 def pan_hamrock_minimum(contact: LineContact) -> float:
@@ -62,17 +77,24 @@ def pan_hamrock_minimum(contact: LineContact) -> float:
     P. Pan and B. J. Hamrock, Simple formulas for performance parameters used in elastohydrodynamically lubricated
     line contacts, ASME Journal of Tribology 111 (1989) 246-251. The constants are quoted from memory; our
     solutions at G = 5000 lie within 10 % (minimum) and 13 % (central) of them (docs/validation/ehl.md).
+
+    Examples
+    --------
+    >>> f"{1e6 * pan_hamrock_minimum(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.230 um'
     """
-    U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    film: float = 1.714 * W**-0.128 * U**0.694 * G**0.568 * contact.radius
-    return film
+    return _powers(contact, 1.714, speed=0.694, material=0.568, load=-0.128)
 
 
 def pan_hamrock_central(contact: LineContact) -> float:
-    """Central film ``h_c = 2.922 R W^-0.166 U^0.692 G^0.470`` [m]; see :func:`pan_hamrock_minimum`."""
-    U, G, W = 0.5 * contact.U2, contact.G, contact.W
-    film: float = 2.922 * W**-0.166 * U**0.692 * G**0.470 * contact.radius
-    return film
+    """Central film ``h_c = 2.922 R W^-0.166 U^0.692 G^0.470`` [m]; see :func:`pan_hamrock_minimum`.
+
+    Examples
+    --------
+    >>> f"{1e6 * pan_hamrock_central(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.256 um'
+    """
+    return _powers(contact, 2.922, speed=0.692, material=0.470, load=-0.166)
 
 
 def nijenbanning_line_central(contact: LineContact, slenderness: float = 0.01) -> float:
@@ -99,6 +121,11 @@ def nijenbanning_line_central(contact: LineContact, slenderness: float = 0.01) -
     ----------
     G. Nijenbanning, C. H. Venner and H. Moes, Film thickness in elastohydrodynamically lubricated elliptic
     contacts, Wear 176 (1994) 217-229.
+
+    Examples
+    --------
+    >>> f"{1e6 * nijenbanning_line_central(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.327 um'
     """
     D, k = slenderness, math.sqrt(slenderness)
     for _ in range(60):
@@ -135,13 +162,25 @@ def moes_central(contact: LineContact) -> float:
     ----------
     H. Moes, Optimum similarity analysis with applications to elastohydrodynamic lubrication, Wear 159 (1992)
     57-66.
+
+    Examples
+    --------
+    >>> f"{1e6 * moes_central(LineContact.from_moes(M=20.0, L=10.0)):.3f} um"
+    '0.327 um'
     """
     M, L = contact.moes_M, contact.moes_L
     film = _between(3.0 / M, 2.621 * M**-0.2, 1.287 * L ** (2 / 3), 1.311 * M**-0.125 * L**0.75)
     return film * contact.moes_film
 
 
-@dataclass(frozen=True)
+def formula_stiffness(contact: LineContact, definition: str) -> float:
+    """Film stiffness [N/m per m of face] by Dowson's formulas: 10 w/h_c, or w/(0.13 h_m) for the minimum."""
+    if definition == "dowson-central":
+        return 10.0 * contact.load / dowson_toyoda_central(contact)
+    return contact.load / (0.13 * dowson_higginson_minimum(contact))
+
+
+@record
 class FormulaFilm:
     """The film of one contact by Dowson's formulas, as a cheap stand-in for a solution.
 
@@ -149,13 +188,17 @@ class FormulaFilm:
     """
 
     contact: LineContact
-    central_thickness: float  # h_c [m], Dowson and Toyoda
-    minimum_thickness: float  # h_m [m], Dowson and Higginson
+    central_thickness: float = quantity("m", "central film by Dowson and Toyoda", shown="um")
+    minimum_thickness: float = quantity("m", "minimum film by Dowson and Higginson", shown="um")
     error: float = math.nan
+    cost: Cost = Cost(0.0)
+    converged: bool = True
+    message: str = "by formula"
 
     @property
+    @described("m", shown="um")
     def separation(self) -> float:
-        """Film separation [m], taken as h_c; -1/(d separation/dw) is ``stiffness()``."""
+        """Film separation, taken as the central film; -1/(d separation/dw) is ``stiffness()``."""
         return self.central_thickness
 
     def stiffness(self, definition: str = "dowson-central") -> float:
@@ -163,13 +206,10 @@ class FormulaFilm:
 
         ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise InputError.
         """
-        if definition == "dowson-central":
-            return 10.0 * self.contact.load / self.central_thickness
-        if definition == "dowson-minimum":
-            return self.contact.load / (0.13 * self.minimum_thickness)
-        allowed = "must be 'dowson-central' or 'dowson-minimum'"
-        remedy = "solve the contact for the others"
-        raise InputError([Fault("definition", repr(definition), allowed, remedy)])
+        found = Faults()
+        found.choice("definition", definition, _DEFINITIONS, "solve the contact for the others")
+        found.raise_if_any()
+        return formula_stiffness(self.contact, definition)
 
 
 def dowson(contact: LineContact) -> FormulaFilm:
@@ -184,6 +224,12 @@ def dowson(contact: LineContact) -> FormulaFilm:
     -----
     RangeWarning
         Outside the elastic, piezoviscous regime, taken here as alpha p_H < 1, where the formulas do not hold.
+
+    Examples
+    --------
+    >>> film = dowson(LineContact.from_moes(M=20.0, L=10.0))
+    >>> f"{1e6 * film.central_thickness:.3f} um, {film.stiffness():.2e} N/m per m"
+    '0.327 um, 8.62e+12 N/m per m'
     """
     if contact.G == 0.0:
         allowed = "must be more than 0 for Dowson's film formulas"

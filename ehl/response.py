@@ -10,26 +10,16 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
 from ehl.contact import LineContact
-from ehl.discrete import (
-    Grid,
-    Groups,
-    centre_gap,
-    film_gap,
-    fluxes,
-    inlet_pressure,
-    load_inside,
-    make_grid,
-)
+from ehl.discrete import Grid, Groups, Residual, make_grid
 from ehl.levels import Level, dry_approach
 from ehl.plan import Plan, expected_film
 from ehl.supply import OilLayer, Supply
 
 __all__ = ["Slopes", "slopes"]
 
-Array = NDArray[np.float64]
 
 _STEP = 3e-7  # of ln w and of ln(distance of the meniscus), in differences of the residual
 
@@ -68,7 +58,7 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
-    before = _Still.of(level.grid, level.groups, level.found.P, level.found.H0)
+    before = Residual.of(level.grid, level.groups, level.found.P, level.found.H0)
     heavier = replace(contact, load=contact.load * math.exp(_STEP))
     growth = expected_film(heavier) / expected_film(contact)
     moving = _along(level, before, heavier, growth, supply)
@@ -80,7 +70,7 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
 
 
 def _along(
-    level: Level, before: _Still, heavier: LineContact, growth: float, supply: Supply | None
+    level: Level, before: Residual, heavier: LineContact, growth: float, supply: Supply | None
 ) -> _Response:
     """Differentiate by ln w on nodes that follow a film growing by a factor, with the supply as it is.
 
@@ -97,7 +87,7 @@ def _along(
     return by_load.less(by_distance, by_load.flow / by_distance.flow)
 
 
-def _respond(level: Level, before: _Still, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:
+def _respond(level: Level, before: Residual, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:
     """Differentiate towards another contact on the nodes of another plan."""
     grid, ratio = level.grid, level.grid.ratio
     nodes = plan.nodes(grid.nodes.size, grid.nodes * ratio)
@@ -106,13 +96,13 @@ def _respond(level: Level, before: _Still, contact: LineContact, plan: Plan, *, 
 
 
 def _differentiate(
-    level: Level, before: _Still, contact: LineContact, moved: Grid, *, flow: bool = False
+    level: Level, before: Residual, contact: LineContact, moved: Grid, *, flow: bool = False
 ) -> _Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     found, grid, groups = level.found, level.grid, level.groups
     assert found.factors is not None, "only a converged level is differentiated"
     after = Groups.on(contact, moved)
-    changed = _Still.of(moved, after, found.P, found.H0)
+    changed = Residual.of(moved, after, found.P, found.H0)
     dP, dH0 = found.factors.solve(
         (np.diff(before.flux) - np.diff(changed.flux)) / _STEP,
         (changed.short - before.short) / _STEP,
@@ -131,25 +121,7 @@ def _differentiate(
     )
 
 
-@dataclass(frozen=True)
-class _Still:
-    """What a grid and a contact make of given pressures and separation."""
-
-    flux: Array
-    slopes: Array
-    short: float  # load that is missing
-    centre: float  # gap at x = 0 [m]
-
-    @classmethod
-    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float) -> _Still:
-        P = P.copy()
-        P[0] = inlet_pressure(grid, groups)
-        flux, slopes = fluxes(grid, groups, P, film_gap(grid, groups, P, H0), grid.quick)
-        short = load_inside(grid, groups) - float(grid.weights @ P)
-        return cls(flux, slopes, short, centre_gap(grid, groups, P, H0) * groups.gap)
-
-
-def _flow_slope(level: Level, before: _Still, explicit: Array, dP: Array, dH0: float) -> float:
+def _flow_slope(level: Level, before: Residual, explicit: Array, dP: Array, dH0: float) -> float:
     """Differentiate the flow [m], taken as the mean over the second half of the film."""
     dH = dH0 - level.groups.compliance * (level.grid.potential @ dP)
     by = level.groups.gap * before.slopes

@@ -6,11 +6,14 @@ method stays exact whatever the law. A new law is a new class with these two met
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from base import Array
 
 __all__ = [
     "ROELANDS_LN_VISCOSITY",
@@ -25,7 +28,6 @@ __all__ = [
     "roelands_index",
 ]
 
-Array = NDArray[np.float64]
 
 ROELANDS_PRESSURE = 1.0 / 5.1e-9  # p0 [Pa]
 ROELANDS_LN_VISCOSITY = -9.67  # ln of the viscosity at the pole of Roelands' law [ln(Pa s)]
@@ -84,6 +86,8 @@ class Roelands:
     oils, thesis, Delft (1966).
     """
 
+    reliable_below = 1e9  # [Pa]
+
     alpha: float
     z: float
 
@@ -91,11 +95,6 @@ class Roelands:
     def slope(self) -> float:
         """Alpha [1/Pa]."""
         return self.alpha
-
-    @property
-    def reliable_below(self) -> float:
-        """About 1 GPa."""
-        return 1e9
 
     def log_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return ln(eta/eta0) and its derivative."""
@@ -119,17 +118,14 @@ class Barus:
     (1893) 87-96.
     """
 
+    reliable_below = 5e8  # [Pa]
+
     alpha: float
 
     @property
     def slope(self) -> float:
         """Alpha [1/Pa]."""
         return self.alpha
-
-    @property
-    def reliable_below(self) -> float:
-        """About 0.5 GPa."""
-        return 5e8
 
     def log_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return ln(eta/eta0) and its derivative."""
@@ -141,15 +137,8 @@ class Barus:
 class ConstantViscosity:
     """The viscosity does not change with pressure."""
 
-    @property
-    def slope(self) -> float:
-        """Zero."""
-        return 0.0
-
-    @property
-    def reliable_below(self) -> float:
-        """No limit: a constant viscosity is a choice, not a fit."""
-        return float("inf")
+    slope = 0.0
+    reliable_below = math.inf  # no limit: a constant viscosity is a choice, not a fit
 
     def log_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return zeros."""

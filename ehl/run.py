@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
+from base import Cost, Stopwatch, unclocked
 from ehl.contact import LineContact
-from ehl.film import Cost
 from ehl.grid import clusters
 from ehl.levels import Level, cold, spike_of, warm
 from ehl.plan import Plan
@@ -43,15 +42,16 @@ class Run:
         self.whole_spike = whole_spike
         self.most_cold = _MOST_COLD_NODES_DRY if plan.H_c < DRY else _MOST_COLD_NODES
         self.narrowest = _SPIKE_LEAST if whole_spike else _SPIKE_FOR_FILM * clusters(plan.H_c)[1]
-        self.began = time.perf_counter()
-        self.iterations = 0
-        self.grids: list[int] = []
-        self.attempts = 1
+        with unclocked():
+            import ehl.kernels  # noqa: F401  numba
+
+        self.watch = Stopwatch()
+        self.iterations = self.most_nodes = self.restarts = 0
 
     def count(self, level: Level) -> Level:
         """Add a level to the cost."""
         self.iterations += level.found.iterations
-        self.grids.append(level.grid.nodes.size)
+        self.most_nodes = max(self.most_nodes, level.grid.nodes.size)
         return level
 
     def cold(self, n: int) -> Level:
@@ -64,7 +64,7 @@ class Run:
             level = self.count(cold(self.contact, self.plan, grid, thickness * self.plan.H_c))
             if level.found.converged:
                 return level
-            self.attempts += 1
+            self.restarts += 1
         return self.descend(level)
 
     def pair(self, half: int, n: int) -> tuple[Level, Level]:
@@ -92,7 +92,7 @@ class Run:
                     step = math.sqrt(step)
             if level.found.converged and load == self.contact.load:
                 return replace(level, contact=self.contact)
-            self.attempts += 1
+            self.restarts += 1
         return failed
 
     def warm(self, old: Level, grid_of: Level | None, n: int) -> Level:
@@ -101,7 +101,7 @@ class Run:
         level = self.count(warm(old, self.contact, self.plan, grid))
         if level.found.converged:
             return self.fed(level)
-        self.attempts += 1
+        self.restarts += 1
         if self.plan.spike is not None:
             self.plan = replace(self.plan, spike=None)
             return self.warm(old, None, n)
@@ -135,7 +135,7 @@ class Run:
             plan = level.plan.with_inlet(-1.0 - math.exp(target))
             trial = self.count(warm(level, self.contact, plan, plan.grid(level.grid.nodes.size)))
             if not trial.found.converged:
-                self.attempts += 1
+                self.restarts += 1
                 high = target if target > where else high
                 low = target if target < where else low
                 slope = 2.0 * slope
@@ -175,9 +175,8 @@ class Run:
     def cost(self) -> Cost:
         """Return what was spent."""
         return Cost(
-            seconds=time.perf_counter() - self.began,
-            unknowns=max(self.grids) - 1,
+            self.watch.seconds,
+            unknowns=self.most_nodes - 1,
             iterations=self.iterations,
-            grids=tuple(self.grids),
-            attempts=self.attempts,
+            counts={"restarts": self.restarts},
         )

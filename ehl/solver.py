@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +18,7 @@ from ehl.plan import Plan
 from ehl.run import Run
 from ehl.supply import OilLayer, Supply
 
-__all__ = ["solve"]
+__all__ = ["solve", "solve_path"]
 
 _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
@@ -90,10 +92,52 @@ def solve(
     Notes
     -----
     Method, error estimate and limits: docs/theory/ehl.md.
+
+    Examples
+    --------
+    >>> film = solve(LineContact.from_moes(M=20.0, L=10.0), tolerance=0.005)
+    >>> film.converged, film.error < 0.005
+    (True, True)
+    >>> f"{film.central_moes:.2f} {film.minimum_moes:.2f}"
+    '4.35 3.78'
     """
     options = Options(tolerance, nodes, domain, grid, supply, spike).checked(contact)
     warn_of_range(contact)
     return solve_checked(contact, options, start)
+
+
+def solve_path(
+    contacts: Iterable[LineContact], tolerance: float = 0.005, start: Film | None = None, **options: Any
+) -> tuple[Film, ...]:
+    """Solve a sequence of contacts, each started from the one before it: quasi-steady along a path.
+
+    Parameters
+    ----------
+    contacts : iterable of LineContact
+        In the order of the path; the load may jump.
+    tolerance : float
+        As for :func:`solve`.
+    start : Film, optional
+        For the first contact.
+    **options
+        Further arguments of :func:`solve`.
+
+    Returns
+    -------
+    tuple of Film
+        One for each contact. A contact that fails does not stop the path; its film says so.
+
+    Examples
+    --------
+    >>> films = solve_path([LineContact.from_moes(M, 10.0) for M in (10.0, 12.0, 14.0)])
+    >>> [f"{film.central_moes:.2f}" for film in films]
+    ['4.82', '4.69', '4.59']
+    """
+    films: list[Film] = []
+    for contact in contacts:
+        films.append(solve(contact, tolerance, start=start, **options))
+        start = films[-1] if films[-1].converged else start
+    return tuple(films)
 
 
 def solve_checked(contact: LineContact, options: Options, start: Film | None) -> Film:
@@ -115,7 +159,8 @@ def _starved(
     enough = full.flow * (1.0 - full.error)
     if isinstance(supply, OilLayer) and supply.thickness >= enough:
         if options.spike is not None:
-            full = solve_checked(contact, replace(options, supply=None), full)
+            sharp = solve_checked(contact, replace(options, supply=None), full)
+            full = replace(sharp, cost=full.cost + sharp.cost)
         message = "converged; the layer is thicker than what the inlet takes: flooded"
         return replace(full, supply=supply, message=message) if full.converged else full
     plan = Plan.fed(contact, options.grid, supply, full.flow)
@@ -123,7 +168,8 @@ def _starved(
     if old is not None and isinstance(supply, OilLayer):
         assert old.state is not None
         plan = plan.with_inlet(old.state.plan.domain[0])
-    return _solve(Run(contact, plan, supply, whole_spike=options.spike is not None), options, old)
+    film = _solve(Run(contact, plan, supply, whole_spike=options.spike is not None), options, old)
+    return replace(film, cost=full.cost + film.cost)
 
 
 def _if_open(start: Film | None) -> Film | None:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
-from base import Faults, Limit
+from base import Faults, Limit, quantity, record
 from ehl.film import DEFINITIONS, Film
 
 __all__ = ["StiffnessRow", "stiffness_table"]
@@ -21,15 +20,21 @@ _KINDS = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class StiffnessRow:
-    """One definition."""
+    """One definition of a film's stiffness."""
 
-    definition: str
-    meaning: str
-    stiffness: float  # at the whole face [N/m]; NaN where the definition does not hold
-    error: float  # estimated relative error; NaN where it is unknown
-    loss: float  # 1 - k/k_bodies of the series with the bodies, NaN if none were given
+    headline = ("definition", "stiffness", "loss")
+
+    definition: str = quantity("", "name of the definition")
+    meaning: str = quantity("", "what it is")
+    stiffness: float = quantity(
+        "N/m", "film stiffness at the whole face, NaN where the definition does not hold"
+    )
+    error: float = quantity("1", "estimated relative error, NaN where it is unknown")
+    loss: float = quantity(
+        "1", "1 - k/k_bodies of the series with the bodies, NaN if none were given", shown="%"
+    )
 
 
 def stiffness_table(
@@ -56,6 +61,18 @@ def stiffness_table(
     ------
     InputError
         For a face width or a stiffness that is no positive number.
+
+    Examples
+    --------
+    >>> from ehl import LineContact, solve
+    >>> film = solve(LineContact.from_moes(M=20.0, L=10.0))
+    >>> for row in stiffness_table(film, face_width=0.04):
+    ...     print(f"{row.definition:15}{row.stiffness:.2e} N/m")
+    approach       2.32e+11 N/m
+    tangent        2.72e+11 N/m
+    nodal-sum      3.95e+10 N/m
+    dowson-central 3.45e+11 N/m
+    dowson-minimum 3.53e+11 N/m
     """
     found = Faults()
     found.number("face_width", face_width, _FACE_WIDTH)

@@ -33,6 +33,11 @@ class Meniscus:
     ----------
     position : float
         x of the meniscus [m], negative: ahead of the line of centres.
+
+    Examples
+    --------
+    >>> Meniscus(position=-0.3e-3)
+    Meniscus(position=-0.0003)
     """
 
     position: float
@@ -53,6 +58,11 @@ class OilLayer:
     thickness : float
         h_oil, thickness of the layers on both surfaces together at ambient pressure [m], carried with the
         entrainment velocity. A layer thicker than what the flooded inlet takes leaves the contact flooded.
+
+    Examples
+    --------
+    >>> OilLayer(thickness=0.2e-6)
+    OilLayer(thickness=2e-07)
     """
 
     thickness: float

@@ -9,7 +9,10 @@ import inspect
 import numpy as np
 import pytest
 
-PACKAGES: tuple[str, ...] = ("base",)
+PACKAGES: tuple[str, ...] = (
+    "base",
+    "ehl",
+)
 """Packages whose public functions all have an example."""
 
 CASES = [

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-import threading
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -13,10 +11,9 @@ from typing import Any, TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from numba.core import event
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 
-from base import unclocked
+from base import hide_compilation
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -36,28 +33,7 @@ _INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrap
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
 
 
-class _Unclocked(event.Listener):
-    """Hides from the stopwatches what numba does under its compiler's lock: compiling, and loading compiled code."""
-
-    def __init__(self) -> None:
-        self._of_thread = threading.local()
-
-    def on_start(self, _event: event.Event) -> None:
-        hidden = unclocked()
-        hidden.__enter__()
-        self._held().append(hidden)
-
-    def on_end(self, _event: event.Event) -> None:
-        self._held().pop().__exit__(None, None, None)
-
-    def _held(self) -> list[AbstractContextManager[None]]:
-        if not hasattr(self._of_thread, "held"):
-            self._of_thread.held = []
-        held: list[AbstractContextManager[None]] = self._of_thread.held
-        return held
-
-
-event.register("numba:compiler_lock", _Unclocked())
+hide_compilation()
 
 
 @cache
