@@ -54,13 +54,14 @@ def _prepare() -> None:
 
 def _read(scene: Path, tolerance: str | None) -> Scene:
     from flankfilm.reproduce import scene_in
+    from flankfilm.scene import parse_tolerance
 
     wanted, differences = scene_in(scene)
     for told in differences:
         print(f"flankfilm: {scene}: {told}", file=sys.stderr)
     if tolerance is None:
         return wanted
-    return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance)})
+    return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance, "--tolerance")})
 
 
 @app.command
@@ -318,30 +319,6 @@ for _function, _name, _help in (
 app.command(
     "flankfilm.figures.commands:animate", name="animate", help="Draw the mesh cycle in RESULTS, deformed."
 )
-
-
-def parse_tolerance(text: str) -> float:
-    """Read a tolerance such as ``0.5%`` or ``0.005``.
-
-    Raises
-    ------
-    InputError
-        Where it is no number or out of range.
-    """
-    from flankfilm.scene import Scene
-
-    number, percent, rest = text.strip().partition("%")
-    try:
-        value = float(number) * (0.01 if percent else 1.0)
-    except ValueError:
-        value = float("nan")
-    low, high = (
-        getattr(m, n) for m, n in zip(Scene.model_fields["tolerance"].metadata, ("ge", "le"), strict=True)
-    )
-    if rest or not low <= value <= high:
-        allowed = f"must be from {low:g} to {high:g}, or the same in per cent"
-        raise InputError([Fault("--tolerance", text, allowed, "Such as --tolerance 0.5%")])
-    return value
 
 
 def guarded(command: Callable[[], int]) -> int:

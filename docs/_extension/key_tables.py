@@ -43,8 +43,8 @@ def _allowed(schema: Schema, definitions: Schema) -> str:
         return f"{fixed or 'list'} of: {inner}"
     kind = _WORDS.get(schema.get("type", ""), "table")
     if "minimum" in schema and "maximum" in schema:
-        return f"{kind}, {schema['minimum']:g} to {schema['maximum']:g}"
-    bounds = [f"{sign}{schema[name]:g}" for name, sign in _BOUNDS if name in schema]
+        return f"{kind}, {schema['minimum']:.6g} to {schema['maximum']:.6g}"
+    bounds = [f"{sign}{schema[name]:.6g}" for name, sign in _BOUNDS if name in schema]
     return ", ".join([kind, *bounds])
 
 
@@ -54,6 +54,13 @@ def _shown(value: Any) -> str:
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
 
 
+def _meaning(field: Schema, key: str) -> str:
+    """Meaning of a key, without which the documentation is not built."""
+    if "description" not in field:
+        raise ValueError(f"the key {key} has no meaning: give its field a description")
+    return str(field["description"])
+
+
 def rows(schema: Schema, definitions: Schema, prefix: str = "") -> Iterator[tuple[str, str, str, str]]:
     """Key, what is allowed, default and meaning of every key, sections opened up."""
     needed = schema.get("required", ())
@@ -61,15 +68,16 @@ def rows(schema: Schema, definitions: Schema, prefix: str = "") -> Iterator[tupl
     for name, field in schema["properties"].items():
         same = opened.setdefault(str(field.get("$ref") or field.get("anyOf") or name), name)
         if same != name and any("properties" in o for o in _options(field, definitions)):
-            yield f"`{prefix}{name}`", f"as `{prefix}{same}`", "required" if name in needed else "", ""
+            default = "required" if name in needed else ""
+            yield f"`{prefix}{name}`", f"as `{prefix}{same}`", default, _meaning(field, prefix + name)
             continue
         members = [o for o in _options(field, definitions) if o.get("type") != "null"]
         sections = [o for o in members if "properties" in o]
         simple = [o for o in members if "properties" not in o]
         if simple or not sections:
             default = "required" if name in needed else _shown(field.get("default"))
-            told = " or ".join(_allowed(o, definitions) for o in members)
-            yield f"`{prefix}{name}`", told, default, field.get("description", "")
+            allowed = " or ".join(_allowed(o, definitions) for o in members)
+            yield f"`{prefix}{name}`", allowed, default, _meaning(field, prefix + name)
         for section in sections:
             yield from rows(section, definitions, f"{prefix}{name}.")
 

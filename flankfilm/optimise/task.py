@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError, model_validator
 from base import Fault, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, validated
-from flankfilm.scene.schema import Scene
+from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import Follow, Range, Value, base_scene, following, put
@@ -29,8 +29,8 @@ COARSEST = 0.05
 class Limit(Section):
     """Bounds of an output."""
 
-    at_least: float | None = None
-    at_most: float | None = None
+    at_least: float | None = Field(default=None, description="lower bound; none if left out")
+    at_most: float | None = Field(default=None, description="upper bound; none if left out")
 
     @model_validator(mode="after")
     def _a_bound(self) -> Limit:
@@ -42,17 +42,25 @@ class Limit(Section):
 class OptimisationFile(Section):
     """A whole optimisation file."""
 
-    title: str = Field(default="", max_length=200)
-    scene: str | dict[str, Any]
-    minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = ()
-    maximise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = ()
-    evaluations: int = Field(default=300, ge=8, le=1_000_000)
-    population: int = Field(default=24, ge=8, le=1000)
-    seed: int = Field(default=1, ge=0)
-    vary: dict[str, Range] = Field(min_length=1)
-    follow: dict[str, Follow] = Field(default_factory=dict)
-    set: dict[str, Value] = Field(default_factory=dict)
-    limits: dict[str, Limit] = Field(default_factory=dict)
+    title: str = Field(default="", max_length=200, description="title of the optimisation")
+    scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
+    minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
+        default=(), description="outputs wanted least; with several in all, their trade-off is sought"
+    )
+    maximise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
+        default=(), description="outputs wanted greatest"
+    )
+    evaluations: int = Field(default=300, ge=8, le=1_000_000, description="scenes computed at most")
+    population: int = Field(default=24, ge=8, le=1000, description="scenes of each generation of the search")
+    seed: int = Field(default=1, ge=0, description="of the search; the same seed gives the same search")
+    vary: dict[str, Range] = Field(min_length=1, description="keys of the scene that may change, with ranges")
+    follow: dict[str, Follow] = Field(
+        default_factory=dict, description="keys of the scene that follow a varied one"
+    )
+    set: dict[str, Value] = Field(
+        default_factory=dict, description="keys of the scene that have another value throughout"
+    )
+    limits: dict[str, Limit] = Field(default_factory=dict, description="bounds of outputs")
 
     @model_validator(mode="after")
     def _something_to_want(self) -> OptimisationFile:
@@ -146,7 +154,7 @@ def read_task(path: Path) -> Task:
     if faults:
         raise InputError(faults)
     scene = base_scene(asked.scene, asked.set, names, path.parent)
-    fine = scene.get("tolerance", Scene.model_fields["tolerance"].default)
+    fine = parse_tolerance(scene.get("tolerance", Scene.model_fields["tolerance"].default), "tolerance")
     task = Task(
         title=asked.title,
         scene=scene,

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import UnionType
 from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
-from base import Fault, shorten
+from base import Fault, InputError, shorten
+from flankfilm.scene.key import Key, key_of
 
 _ALLOWED = {
     "greater_than": "must be greater than {gt:g}",
@@ -31,6 +33,8 @@ _ALLOWED = {
     "too_long": "must have at most {max_length} entries",
     "value_error": "{error}",
 }
+_OF_NUMBERS = tuple(_ALLOWED)[:7]
+_RANGES = tuple(_ALLOWED)[:4]
 
 
 MOST_FAULTS = 90
@@ -43,7 +47,7 @@ LONGEST_PATH = 200
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
-    for fault in (explain(item, model) for item in items):
+    for fault in (fault for item in items for fault in explain(item, model)):
         if len(joined) >= MOST_FAULTS:
             joined["more"] = Fault("the rest", "", "has more faults", "Fix these first")
             break
@@ -56,8 +60,8 @@ def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> l
     return list(joined.values())
 
 
-def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Fault:
-    """One fault for one finding of the validator.
+def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Fault]:
+    """Faults for one finding of the validator; more than one where the rule of a section found more.
 
     Parameters
     ----------
@@ -67,12 +71,23 @@ def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Fault:
         The model of the whole file, to suggest keys from.
     """
     location = tuple(item["loc"])
-    where = ".".join(str(part) for part in location if not _names_a_type(part))[:LONGEST_PATH] or "the scene"
-    if item["type"] == "extra_forbidden":
-        return _unknown_key(where, location, model)
-    allowed = _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
-    value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
-    return Fault(where, value, allowed, _remedy(item))
+    path = [str(part) for part in location if not _names_a_type(part)]
+    where = ".".join(path)[:LONGEST_PATH] or "the scene"
+    refused = item.get("ctx", {}).get("error")
+    if isinstance(refused, InputError):
+        for fault in refused.faults:
+            yield replace(
+                fault, where=".".join([*path, *filter(None, [fault.where])])[:LONGEST_PATH] or where
+            )
+    elif item["type"] == "extra_forbidden":
+        yield _unknown_key(where, location, model)
+    else:
+        field = _field_at(location, model)
+        about = Key() if field is None else key_of(field)
+        allowed = about.allowed if item["type"] in _OF_NUMBERS else ""
+        allowed = allowed or _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
+        value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
+        yield Fault(where, value, allowed, _remedy(item, about))
 
 
 def _names_a_type(part: object) -> bool:
@@ -82,7 +97,7 @@ def _names_a_type(part: object) -> bool:
 
 def _unknown_key(where: str, location: tuple[Any, ...], model: type[BaseModel]) -> Fault:
     key = str(location[-1])
-    keys = _keys_at(location[:-1], model)
+    keys = list(_model_at(location[:-1], model).model_fields)
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
         k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
     ]
@@ -96,28 +111,33 @@ def _unit(key: str) -> str:
     return key.partition("_")[2]
 
 
-def _keys_at(location: tuple[Any, ...], model: type[BaseModel]) -> list[str]:
+def _model_at(location: Sequence[Any], model: type[BaseModel]) -> type[BaseModel]:
+    """Model of the table at a place in the file."""
     here = model
     for part in location:
         field = here.model_fields.get(str(part))
-        if field is not None:
-            nested = _model_in(field.annotation)
-            if nested is not None:
-                here = nested
-    return list(here.model_fields)
+        here = here if field is None else model_in(field.annotation) or here
+    return here
 
 
-def _model_in(annotation: Any) -> type[BaseModel] | None:
+def _field_at(location: Sequence[Any], model: type[BaseModel]) -> FieldInfo | None:
+    """Field of the key at a place in the file; None for an entry of a list."""
+    names = [part for part in location if not _names_a_type(part)]
+    return _model_at(names[:-1], model).model_fields.get(str(names[-1])) if names else None
+
+
+def model_in(annotation: Any) -> type[BaseModel] | None:
+    """Model of a table that may stand at a key."""
     if get_origin(annotation) in (Union, UnionType):
-        return next((m for m in map(_model_in, get_args(annotation)) if m is not None), None)
+        return next((m for m in map(model_in, get_args(annotation)) if m is not None), None)
     return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
 
 
-def _remedy(item: Mapping[str, Any]) -> str:
+def _remedy(item: Mapping[str, Any], about: Key) -> str:
     kind, value = item["type"], item["input"]
     if kind in ("float_type", "int_type") and isinstance(value, str):
         return "Write it without quotes; the unit is part of the key"
-    if kind in ("greater_than_equal", "less_than_equal") and item["loc"] and "_" in str(item["loc"][-1]):
+    if kind in _RANGES and about.unit != "1":
         return f"Check the unit: the key {item['loc'][-1]} names it"
     if kind == "literal_error" and isinstance(value, str):
         words = [w.strip("' ") for w in str(item["ctx"]["expected"]).replace(" or ", ", ").split(",")]

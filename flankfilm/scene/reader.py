@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +24,6 @@ MOST_SQUARED_DOTS = 50_000_000
 
 LONGEST_LIST = 10_000
 """Entries of a list in a scene: the pitches of a gear with the most teeth."""
-
-
-def template() -> str:
-    """Text of a commented scene that runs as it is."""
-    return resources.files("flankfilm.scene").joinpath("template.toml").read_text(encoding="utf-8")
 
 
 def read_scene(path: Path) -> Scene:

@@ -2,10 +2,51 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from pydantic import BaseModel, ConfigDict
+
+from base import Fault, InputError
+from flankfilm.scene.key import key_of
+
+__all__ = ["Section", "refused"]
 
 
 class Section(BaseModel):
     """Common rules: unknown keys refused, no silent conversion, no NaN or infinity, frozen."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    def si(self, *names: str) -> dict[str, Any]:
+        """Keyword arguments for the ground: its names, in SI; what was not given is left to the ground's default.
+
+        Parameters
+        ----------
+        *names : str
+            Keys to give, all if there are none; keys that the ground does not know and sections are left out.
+        """
+        found = {}
+        for name in names or type(self).model_fields:
+            attribute, value = key_of(type(self).model_fields[name]).attribute(name), self.value(name)
+            if attribute is not None and value is not None and not isinstance(value, Section):
+                found[attribute] = value
+        return found
+
+    def value(self, name: str) -> Any:
+        """Value of a key in SI; None where it was not given."""
+        given = getattr(self, name)
+        convert = not (given is None or isinstance(given, Section))
+        return key_of(type(self).model_fields[name]).si(given) if convert else given
+
+
+def refused(allowed: str, remedy: str = "", *, key: str = "", value: str = "") -> InputError:
+    """Fault of keys that do not go together, to be raised by a section's validator.
+
+    Parameters
+    ----------
+    allowed, remedy, value : str
+        See `base.Fault`.
+    key : str
+        The key at fault; empty for the section.
+    """
+    return InputError([Fault(key, value, allowed, remedy)])

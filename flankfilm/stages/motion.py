@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from dynamics import FourierFit, FourierStiffness, GearOscillator, Scaling
-    from flankfilm.scene.schema import DynamicsSection
+    from flankfilm.scene.dynamics import DynamicsSection
     from flankfilm.stages.decisions import Decision
     from flankfilm.stages.engine import Engine
 

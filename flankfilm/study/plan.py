@@ -45,8 +45,8 @@ Value = bool | int | float | str
 class Range(Section):
     """Values from one end to the other."""
 
-    from_: Bounded = Field(alias="from")
-    to: Bounded
+    from_: Bounded = Field(alias="from", description="one end of the range")
+    to: Bounded = Field(description="the other end, the larger number")
     steps: int | None = Field(default=None, ge=2, le=MOST_ROWS, description="of a grid or a list")
     log: bool = Field(default=False, description="equal ratios instead of equal steps")
     whole: bool = Field(default=False, description="round to whole numbers, such as teeth")
@@ -74,26 +74,37 @@ class Range(Section):
 class Follow(Section):
     """A key that follows a varied one: times * value + plus."""
 
-    of: str
-    times: Bounded = 1.0
-    plus: Bounded = 0.0
+    of: str = Field(description="the varied key that is followed")
+    times: Bounded = Field(default=1.0, description="factor of its value")
+    plus: Bounded = Field(default=0.0, description="added to that")
 
 
 class StudyFile(Section):
     """A whole study file."""
 
-    title: str = Field(default="", max_length=200)
+    title: str = Field(default="", max_length=200, description="title of the study")
     scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
-    outputs: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=200)]
-    design: Literal["grid", "list", "latin-hypercube", "sobol"] = "grid"
-    samples: int | None = Field(default=None, ge=1, le=MOST_ROWS)
-    seed: int = Field(default=1, ge=0)
+    outputs: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=200)] = Field(
+        description="computed for every row; the names are listed below"
+    )
+    design: Literal["grid", "list", "latin-hypercube", "sobol"] = Field(
+        default="grid",
+        description="all combinations, values side by side, or sampled points of the ranges",
+    )
+    samples: int | None = Field(
+        default=None, ge=1, le=MOST_ROWS, description="number of rows of a sampled design"
+    )
+    seed: int = Field(default=1, ge=0, description="of a sampled design; the same seed gives the same rows")
     vary: Annotated[
         dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]],
         Field(max_length=MOST_KEYS),
-    ]
-    follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(default_factory=dict)
-    set: dict[str, Value] = Field(default_factory=dict)
+    ] = Field(description="keys of the scene that vary, each with a range or a list of values")
+    follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(
+        default_factory=dict, description="keys of the scene that follow a varied one"
+    )
+    set: dict[str, Value] = Field(
+        default_factory=dict, description="keys of the scene that have another value in every row"
+    )
 
     @model_validator(mode="after")
     def _one_design(self) -> StudyFile:

@@ -13,10 +13,8 @@ from flankfilm.scene import parse_scene, template
 from flankfilm.stages.catalogue import STAGES
 from flankfilm.stages.engine import Engine
 
-NUMBERS = """viscosity_Pa_s = 0.075             # at the inlet's temperature and ambient pressure
-pressure_viscosity_per_GPa = 19.6
-density_kg_per_m3 = 910
-"""
+_OIL = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3 = 910")
+NUMBERS = "".join(line for line in template().splitlines(keepends=True) if line.startswith(_OIL))
 GRADE = "iso_vg = 100\ntemperature_C = 60\n"
 SUPPLY = 'supply = "flooded"'
 ROUGH = "[roughness]\nsigma_um = 0.3\ndensity_per_mm2 = 25000\ntip_radius_um = 10\n"

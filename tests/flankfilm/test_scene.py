@@ -8,10 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from base import Fault, InputError
+from base.units import suffix
+from flankfilm.build import gear_pair
+from flankfilm.optimise.task import Limit, OptimisationFile
 from flankfilm.scene import Scene, parse_scene, read_scene, template
-from flankfilm.scene.explain import _model_in
+from flankfilm.scene.explain import model_in
+from flankfilm.scene.key import key_of
+from flankfilm.study.plan import Follow, Range, StudyFile
 
 
 def faults(text: str) -> dict[str, str]:
@@ -39,7 +45,7 @@ def test_the_template_is_a_valid_scene_with_every_section():
 def keys(model: type[BaseModel]) -> set[str]:
     found = set(model.model_fields)
     for field in model.model_fields.values():
-        nested = _model_in(field.annotation)
+        nested = model_in(field.annotation)
         if nested is not None:
             found |= keys(nested)
     return found
@@ -173,3 +179,85 @@ def test_any_value_at_any_key_is_accepted_or_explained(changes: list[tuple[str, 
 def test_any_text_is_refused_with_a_reason(text: str):
     with pytest.raises(InputError):
         parse_scene(text)
+
+
+def fields(model: type[BaseModel], path: str = "") -> dict[str, FieldInfo]:
+    """Every field below a model, by its path."""
+    found = {}
+    for name, field in model.model_fields.items():
+        found[path + name] = field
+        nested = model_in(field.annotation)
+        if nested is not None:
+            found |= fields(nested, f"{path}{name}.")
+    return found
+
+
+@pytest.mark.parametrize("model", [Scene, StudyFile, Range, Follow, OptimisationFile, Limit])
+def test_every_key_has_a_meaning(model: type[BaseModel]):
+    assert {path for path, field in fields(model).items() if not field.description} == set()
+
+
+def test_every_key_of_a_section_ends_in_its_unit():
+    """Pure numbers have none; a bare word such as iso_vg says what it is."""
+    astray = {
+        path
+        for path, field in fields(Scene).items()
+        if (end := suffix(key_of(field).unit)) and end != "degC" and not path.endswith(f"_{end}")
+    }
+    assert astray == set()
+
+
+@pytest.mark.parametrize("text", ['"0.5%"', '"0.005"', "0.005"])
+def test_a_tolerance_is_read_as_on_the_command_line(text: str):
+    assert parse_scene(changed("tolerance = 0.005", f"tolerance = {text}")).tolerance == 0.005
+
+
+@pytest.mark.parametrize("text", ['"half"', '"50%"', '"0.5%%"', '"-1%"', "true"])
+def test_a_senseless_tolerance_is_refused(text: str):
+    assert "0.4" in faults(changed("tolerance = 0.005", f"tolerance = {text}"))["tolerance"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (
+            "bore_mm = 33.5",
+            "bore_mm = 600",
+            "pair.pinion.bore_mm = 600: must be at most 66 mm (a diameter). ",
+        ),
+        (
+            "backlash_um = 50",
+            "centre_distance_mm = 70",
+            "pair.centre_distance_mm = 70: must be more than the sum of the base radii, 71.4166 mm. ",
+        ),
+        (
+            "profile_shift = 0.0",
+            "thickness_allowance_um = 5000",
+            "pair.pinion.thickness_allowance_um = 5000: must be less than 1426 um. ",
+        ),
+        (
+            "profile_shift = 0.0",
+            "tip_relief = { amount_um = 20, length_mm = 200 }",
+            "pair.pinion.tip_relief.length_mm = 200: must be at most the flank's 10.8437 mm. ",
+        ),
+        (
+            "profile_shift = 0.0",
+            "profile_shift = 1.5",
+            "pair.wheel.tip_radius = 42 mm: must be at most 41.5817 mm ",
+        ),
+    ],
+)
+def test_faults_of_the_geometry_speak_of_the_scenes_keys_and_units(old: str, new: str, told: str):
+    with pytest.raises(InputError) as caught:
+        gear_pair(parse_scene(changed(old, new)))
+    assert any(str(fault).startswith(told) for fault in caught.value.faults), str(caught.value)
+
+
+def test_bounds_are_those_of_the_ground():
+    """The same at both ends, in the unit of the key."""
+    assert (
+        "at least 0.01 and at most 100 mm"
+        in faults(changed("module_mm = 2.0", "module_mm = 0"))["pair.module_mm"]
+    )
+    found = faults(changed("poisson_ratio = 0.3", "poisson_ratio = 0.5"))["material.poisson_ratio"]
+    assert "at least 0 and at most 0.4999" in found

@@ -1,0 +1,175 @@
+"""Keys of the pair's torsional vibration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from base import Limit
+from dynamics.limits import OSCILLATOR
+from flankfilm.scene.key import key
+from flankfilm.scene.section import Section, refused
+
+Positive = Annotated[float, Field(gt=0)]
+TwoNumbers = Annotated[tuple[float, float], Field(strict=False)]
+Several = Annotated[tuple[Positive, ...], Field(strict=False)]
+
+FASTEST = 1e7
+"""Upper end of a range of speeds [rpm], or of frequencies."""
+
+# bounds that catch a number with a unit among the dimensionless ones
+_NUMBER = Limit(0.0, 1e6)
+_INERTIA = Limit(0.0, 1e9, "kg m2")
+_TURN = Limit(-2.0 * math.pi, 2.0 * math.pi, "rad")
+
+
+class ExtraInertia(Section):
+    """Moments of inertia that turn with the gears."""
+
+    pinion: float = key("of what turns with the pinion, in kg m2", 0.0, limit=_INERTIA, example=0.0)
+    wheel: float = key("of what turns with the wheel, in kg m2", 0.0, limit=_INERTIA, example=0.0)
+
+
+class SpeedRange(Section):
+    """Range of pinion speed, or of the dimensionless mesh frequency."""
+
+    speed_rpm: TwoNumbers | None = key(
+        "from and to, speed of the pinion", None, unit="rpm", example=(500, 30000), commented=True
+    )
+    frequency: TwoNumbers | None = key(
+        "from and to, mesh frequency over the natural one, instead of the speed",
+        None,
+        example=(0.1, 2.1),
+        commented=True,
+    )
+
+    @model_validator(mode="after")
+    def _one_range(self) -> SpeedRange:
+        given = [r for r in (self.speed_rpm, self.frequency) if r is not None]
+        if len(given) != 1:
+            raise refused("must have either speed_rpm = [from, to] or frequency = [from, to]")
+        low, high = given[0]
+        if not 0 < low < high <= FASTEST:
+            raise refused(f"must rise from above 0, to at most {FASTEST:g}", value=f"[{low:g}, {high:g}]")
+        return self
+
+
+class SweepSection(SpeedRange):
+    """Sweep up and down."""
+
+    points: int = key("speeds or frequencies of the sweep", 400, limit=Limit(2, 100_000, whole=True))
+
+
+class DiagramSection(SpeedRange):
+    """Bifurcation diagram: every branch of periodic motions, stable or not."""
+
+    max_period: int = key("longest period of a motion, in mesh periods", 8, limit=Limit(1, 64, whole=True))
+    searches: int = key(
+        "places in the range from which branches are looked for", 9, limit=Limit(1, 1000, whole=True)
+    )
+
+
+class DynamicsSection(Section):
+    """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
+
+    fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = key(
+        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows',
+        1,
+        example=1,
+    )
+    stiffness: Literal["secant", "tangent"] = key(
+        "force over deflection, or the slope for small vibration", "secant", example="secant"
+    )
+    damping_ratio: float = key(
+        "damping of the mesh over the critical one",
+        0.05,
+        limit=replace(OSCILLATOR["damping_ratio"], high=5.0),
+        example=0.05,
+    )
+    error_amplitude_um: float | None = key(
+        "unloaded transmission error, without the deflection; 0 if left out",
+        None,
+        unit="um",
+        limit=Limit(0.0, 0.01, "m"),
+        example=10,
+    )
+    error_phase_deg: float = key(
+        "phase of this error when a pair is at A", 0.0, unit="deg", limit=_TURN, example=0
+    )
+    extra_inertia_kg_m2: ExtraInertia = key(
+        "moments of inertia that turn with the gears", ExtraInertia(), example={"pinion": 0.0, "wheel": 0.0}
+    )
+    length_scale_um: float | None = key(
+        "length of the dimensionless form; if left out such that the mean force is 0.1",
+        None,
+        unit="um",
+        of="length",
+        limit=Limit(0.0, 1.0, "m", low_open=True),
+        example=200,
+        commented=True,
+    )
+    mean_force: float | None = key(
+        "dimensionless, with the next two instead of the physical keys",
+        None,
+        limit=_NUMBER,
+        example=0.1,
+        commented=True,
+    )
+    error_amplitude: float | None = key(
+        "dimensionless amplitude of the transmission error", None, limit=_NUMBER, example=0.2, commented=True
+    )
+    half_backlash: float | None = key(
+        "dimensionless half of the backlash", None, limit=_NUMBER, example=0.2, commented=True
+    )
+    one_sided: bool = key("whether there is no second flank, as with much backlash", False, example=False)
+    sweep: SweepSection | None = key(
+        "range of the wanted sweep up and down", None, example={"speed_rpm": (500, 30000), "points": 400}
+    )
+    diagram: DiagramSection | None = key(
+        "range of the wanted diagram of every branch, stable or not",
+        None,
+        example={"speed_rpm": (500, 30000), "max_period": 4, "searches": 9},
+    )
+    portraits_rpm: Several = key(
+        "speeds of phase portraits; chosen from the sweep if left out",
+        (),
+        unit="rpm",
+        example=(9000,),
+        commented=True,
+        max_length=12,
+    )
+    portraits_frequency: Several = key(
+        "mesh frequencies of phase portraits, of the dimensionless form",
+        (),
+        example=(0.6,),
+        commented=True,
+        max_length=12,
+    )
+
+    @property
+    def dimensionless(self) -> bool:
+        """Whether force, error and backlash are given in the oscillator's own units."""
+        return self.mean_force is not None
+
+    @model_validator(mode="after")
+    def _one_set_of_units(self) -> DynamicsSection:
+        own = {n: getattr(self, n) for n in ("mean_force", "error_amplitude", "half_backlash")}
+        missing = [n for n, v in own.items() if v is None]
+        if len(missing) == len(own):
+            return self
+        if missing:
+            raise refused(f"must have {', '.join(missing)} too in the dimensionless form")
+        physical = [n for n in ("error_amplitude_um", "length_scale_um") if getattr(self, n) is not None]
+        if physical:
+            raise refused(f"must not have {', '.join(physical)} beside the dimensionless {', '.join(own)}")
+        for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram)):
+            if ranged is not None and ranged.speed_rpm is not None:
+                raise refused(
+                    f"must have {name} = {{ frequency = [from, to] }} in the dimensionless form, not speed_rpm"
+                )
+        if self.portraits_rpm:
+            raise refused("must have portraits_frequency in the dimensionless form, not portraits_rpm")
+        return self

@@ -1,0 +1,252 @@
+"""Keys of oil, roughness and film."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from base import Limit
+from ehl.asperities import LIMITS as ROUGHNESS
+from ehl.grades import LIMITS as GRADE
+from ehl.lubricant import LIMITS as OIL
+from ehl.supply import LIMITS as SUPPLY
+from flankfilm.scene.key import key
+from flankfilm.scene.section import Section, refused
+
+BY_NUMBERS = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3", "roelands_z")
+BY_GRADE = ("iso_vg", "temperature_C", "viscosity_index", "base", "density_15_kg_per_m3")
+SUPPLIES = {"meniscus": ("meniscus_mm", "meniscus_half_widths"), "oil-layer": ("oil_layer_um",)}
+"""Keys of which one gives the value of a supply."""
+
+ZERO_CELSIUS = 273.15
+# the solver takes any viscosity, for contacts that are given by Moes' numbers; an oil's is within these
+_VISCOSITY = Limit(1e-5, 1e3, "Pa s")
+
+
+class LubricantSection(Section):
+    """Oil at the temperature of the contact's inlet: by its numbers, or by its ISO grade and temperature."""
+
+    viscosity_Pa_s: float | None = key(
+        "viscosity at the inlet's temperature and ambient pressure",
+        None,
+        unit="Pa s",
+        limit=_VISCOSITY,
+        example=0.075,
+    )
+    pressure_viscosity_per_GPa: float | None = key(
+        "pressure-viscosity coefficient at ambient pressure",
+        None,
+        unit="1/GPa",
+        limit=OIL["pressure_viscosity"],
+        example=19.6,
+    )
+    density_kg_per_m3: float | None = key(
+        "density at ambient pressure; 870 if left out",
+        None,
+        unit="kg/m3",
+        limit=OIL["density"],
+        example=910,
+    )
+    roelands_z: float | None = key(
+        "Roelands' index; follows from the two numbers above if left out",
+        None,
+        limit=OIL["roelands_z"],
+        example=0.54,
+        commented=True,
+    )
+    viscosity_law: Literal["roelands", "barus", "constant"] = key(
+        "growth of the viscosity with pressure",
+        "roelands",
+        of=None,
+    )
+    compressible: bool = key("whether the density grows with pressure (Dowson and Higginson)", True)
+    iso_vg: float | None = key(
+        "grade instead of the numbers above: viscosity at 40 degC in mm2/s",
+        None,
+        of="vg",
+        limit=GRADE["vg"],
+        example=100,
+        commented=True,
+    )
+    temperature_C: float | None = key(
+        "temperature of a graded oil at the contact's inlet",
+        None,
+        unit="degC",
+        scale=1.0,
+        of="temperature",
+        offset=ZERO_CELSIUS,
+        limit=GRADE["temperature"],
+        example=60,
+        commented=True,
+    )
+    viscosity_index: float | None = key(
+        "of a graded oil, mineral about 95, synthetic 140 to 250; 95 if left out",
+        None,
+        limit=GRADE["viscosity_index"],
+        example=95,
+        commented=True,
+    )
+    base: Literal["mineral", "pao", "ester", "pag"] | None = key(
+        "kind of a graded oil, for density and pressure-viscosity; mineral if left out",
+        None,
+        example="mineral",
+        commented=True,
+    )
+    density_15_kg_per_m3: float | None = key(
+        "density of a graded oil at 15 degC; typical of the base if left out",
+        None,
+        unit="kg/m3",
+        limit=GRADE["density_15"],
+        example=880,
+        commented=True,
+    )
+
+    @property
+    def graded(self) -> bool:
+        """Whether the oil is given by grade and temperature."""
+        return self.iso_vg is not None
+
+    @property
+    def constant_viscosity(self) -> bool:
+        """Whether pressure leaves the viscosity as it is."""
+        return self.viscosity_law == "constant" or self.pressure_viscosity_per_GPa == 0.0
+
+    @model_validator(mode="after")
+    def _by_numbers_or_by_grade(self) -> LubricantSection:
+        numbers, grade = (
+            [n for n in names if getattr(self, n) is not None] for names in (BY_NUMBERS, BY_GRADE)
+        )
+        if numbers and grade:
+            raise refused(
+                f"must be given by numbers ({', '.join(numbers)}) or by its grade ({', '.join(grade)}), "
+                "not both ways at once"
+            )
+        if grade and (self.iso_vg is None or self.temperature_C is None):
+            raise refused("must have iso_vg and temperature_C for an oil by its grade")
+        known = self.pressure_viscosity_per_GPa is not None or self.viscosity_law == "constant"
+        if not grade and (self.viscosity_Pa_s is None or not known):
+            raise refused(
+                "must have viscosity_Pa_s and pressure_viscosity_per_GPa, or iso_vg and temperature_C"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _a_law_with_its_numbers(self) -> LubricantSection:
+        law = f'viscosity_law = "{self.viscosity_law}"'
+        if self.viscosity_law != "roelands" and self.roelands_z is not None:
+            raise refused(f"must not have roelands_z with {law}; leave it out")
+        if self.viscosity_law == "constant" and self.pressure_viscosity_per_GPa:
+            raise refused(f"must have pressure_viscosity_per_GPa = 0, or none, with {law}; leave it out")
+        return self
+
+
+class RoughnessSection(Section):
+    """Roughness of both flanks together: makes the film mixed."""
+
+    sigma_um: float = key(
+        "standard deviation of heights, both flanks together",
+        unit="um",
+        of="deviation",
+        limit=ROUGHNESS["deviation"],
+        example=0.3,
+    )
+    density_per_mm2: float = key(
+        "asperities per area", unit="1/mm2", limit=ROUGHNESS["density"], example=25000
+    )
+    tip_radius_um: float = key(
+        "radius of the asperities' tips", unit="um", limit=ROUGHNESS["tip_radius"], example=10
+    )
+    law: Literal["greenwood-tripp", "greenwood-williamson"] = key(
+        "two rough flanks, or one", "greenwood-tripp"
+    )
+    mean_plane_offset: float = key(
+        "from the mean plane of heights to that of the asperities, times sigma",
+        1.15,
+        of="offset",
+        limit=ROUGHNESS["offset"],
+    )
+
+
+class FilmSection(Section):
+    """The oil film."""
+
+    model: Literal["ehl", "dowson", "none", "auto"] = key(
+        "solved, by Dowson's formulas, none, or auto: the cheapest within the tolerance, none included",
+        "auto",
+        example="ehl",
+    )
+    stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] | None = key(
+        "definition of the film's stiffness; if left out approach, or dowson-central with formulas",
+        None,
+        example="approach",
+    )
+    supply: Literal["flooded", "meniscus", "oil-layer"] = key(
+        "of oil at the inlet, held as the load changes", "flooded", example="flooded"
+    )
+    meniscus_mm: float | None = key(
+        "where the gap fills, ahead of the contact's middle, for a supply by meniscus",
+        None,
+        unit="mm",
+        of=None,
+        limit=Limit(0.0, 1.0, "m", low_open=True),
+        example=0.3,
+        commented=True,
+    )
+    meniscus_half_widths: float | None = key(
+        "the same in half-widths of each contact at its load",
+        None,
+        of=None,
+        limit=Limit(1.00001, 1e6),
+        example=1.5,
+        commented=True,
+    )
+    oil_layer_um: float | None = key(
+        "thickness on both flanks together, for a supply by oil layer",
+        None,
+        unit="um",
+        of="thickness",
+        limit=SUPPLY["thickness"],
+        example=0.4,
+        commented=True,
+    )
+    grid: Literal["graded", "article"] = key(
+        "of the solver; article: 130 equal nodes on [-4, 1.2] half-widths", "graded"
+    )
+
+    @property
+    def starved(self) -> bool:
+        """Whether a supply is held."""
+        return self.supply != "flooded"
+
+    @model_validator(mode="after")
+    def _what_formulas_give(self) -> FilmSection:
+        by_formula = (self.stiffness or "").startswith("dowson")
+        if self.model == "dowson" and self.stiffness is not None and not by_formula:
+            raise refused(
+                'must have stiffness = "dowson-central" or "dowson-minimum" with model = "dowson", '
+                f'not "{self.stiffness}"'
+            )
+        if self.starved and (by_formula or self.model == "dowson"):
+            raise refused(
+                f'must have model = "ehl" and its stiffness with supply = "{self.supply}": '
+                "Dowson's formulas are of flooded contacts"
+            )
+        if self.grid == "article" and (self.starved or self.model == "dowson"):
+            raise refused('must have grid = "graded": "article" is of flooded films solved by model = "ehl"')
+        return self
+
+    @model_validator(mode="after")
+    def _a_supply_with_its_value(self) -> FilmSection:
+        given = [name for names in SUPPLIES.values() for name in names if getattr(self, name) is not None]
+        wanted = SUPPLIES.get(self.supply, ())
+        astray = [name for name in given if name not in wanted]
+        if astray:
+            raise refused(f'supply = "{self.supply}" has no {" or ".join(astray)}; leave it out')
+        if wanted and len(given) != 1:
+            raise refused(f'supply = "{self.supply}" needs {" or ".join(wanted)}, one of them')
+        return self
+
+    def definition(self, model: str) -> str:
+        """Definition of the film stiffness for a film computed by `model`."""
+        return self.stiffness or ("dowson-central" if model == "dowson" else "approach")

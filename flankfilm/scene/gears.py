@@ -1,0 +1,294 @@
+"""Keys of the pair and of its materials."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from base import Limit
+from flankfilm.scene.key import key
+from flankfilm.scene.section import Section, refused
+from gears.gear import LIMITS as GEAR
+from gears.gear import RELIEF_LIMITS as RELIEF
+from gears.material import LIMITS as MATERIAL
+from gears.pair import BACKLASH
+from gears.pair import LIMITS as PAIR
+from gears.rack import LIMITS as RACK
+
+Numbers = Annotated[tuple[float, ...], Field(strict=False)]
+_STIFFNESS = Limit(0.0, 1e15, "N/m", low_open=True)
+
+
+class RackSection(Section):
+    """Basic rack in modules, for racks outside ISO 53."""
+
+    h_aP: float = key("addendum, times the module", limit=RACK["h_aP"], example=1.0)
+    h_fP: float = key("dedendum, times the module", limit=RACK["h_fP"], example=1.25)
+    rho_fP: float = key("radius of the fillet, times the module", limit=RACK["rho_fP"], example=0.38)
+    alpha_deg: float = key("pressure angle", 20.0, unit="deg", limit=RACK["alpha"])
+
+
+class ReliefSection(Section):
+    """Tip relief: material removed normal to the flank."""
+
+    amount_um: float = key("material removed at the tip", unit="um", limit=RELIEF["amount"], example=20)
+    length_mm: float = key(
+        "length along the path of contact, from the tip",
+        unit="mm",
+        limit=RELIEF["length"],
+        example=2.0,
+    )
+    form: Literal["linear", "parabolic"] = key("how the relief grows towards the tip", "linear")
+
+
+class ProfileSection(Section):
+    """Deviation of all flanks of a gear from the involute, a smooth curve through points."""
+
+    roll_deg: Numbers = key(
+        "roll angles of the points, rising",
+        unit="deg",
+        of="roll_angle",
+        example=(10.0, 20.0, 28.0),
+        min_length=2,
+        max_length=10_000,
+    )
+    material_um: Numbers = key(
+        "deviation at each point, normal to the flank; positive: too much material",
+        unit="um",
+        example=(0.0, 0.0, -10.0),
+        min_length=2,
+        max_length=10_000,
+    )
+
+    @model_validator(mode="after")
+    def _pairs_that_rise(self) -> ProfileSection:
+        angles, values = len(self.roll_deg), len(self.material_um)
+        if angles != values:
+            raise refused(f"must have as many roll_deg as material_um, not {angles} and {values}")
+        if any(b <= a for a, b in itertools.pairwise(self.roll_deg)):
+            raise refused("must rise from point to point", key="roll_deg")
+        return self
+
+
+class DeviationsSection(Section):
+    """Deviations of one gear's flanks: a profile for all, and the pitches of its teeth (ISO 1328)."""
+
+    profile: ProfileSection | None = key("deviation of every flank; none if left out", None)
+    single_pitch_um: Numbers | None = key(
+        "single pitch deviations, one for each tooth in the order of meshing",
+        None,
+        unit="um",
+        of="single",
+        example=(2.0, -3.0, 1.0),
+        commented=True,
+    )
+    cumulative_pitch_um: Numbers | None = key(
+        "cumulative pitch deviations instead of the single ones",
+        None,
+        unit="um",
+        of="cumulative",
+        example=(2.0, -1.0, 0.0),
+        commented=True,
+    )
+
+    @model_validator(mode="after")
+    def _one_kind_of_pitch(self) -> DeviationsSection:
+        if self.single_pitch_um is not None and self.cumulative_pitch_um is not None:
+            raise refused("must have single_pitch_um or cumulative_pitch_um, not both", "Leave one out")
+        return self
+
+
+class HubSection(Section):
+    """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
+
+    radial_stiffness_N_per_m: float | None = key(
+        "stiffness of bearings and shaft along the line of action; rigid if left out",
+        None,
+        unit="N/m",
+        limit=_STIFFNESS,
+        example=5e8,
+        commented=True,
+    )
+    torsional_stiffness_Nm_per_rad: float | None = key(
+        "stiffness of the shaft against turning; rigid if left out",
+        None,
+        unit="N m/rad",
+        limit=Limit(0.0, 1e15, "N m/rad", low_open=True),
+        example=1e6,
+        commented=True,
+    )
+    hub_mm: float | None = key(
+        "diameter of the rigid hub, larger than the bore; the bore's if left out",
+        None,
+        unit="mm",
+        of="hub_radius",
+        scale=0.5e-3,
+        limit=GEAR["bore_radius"],
+        note="a diameter",
+        example=40.0,
+        commented=True,
+    )
+
+
+class GearSection(Section):
+    """One gear."""
+
+    teeth: int = key("number of teeth", limit=GEAR["teeth"], example=36)
+    profile_shift: float = key(
+        "profile shift, times the module", 0.0, limit=GEAR["profile_shift"], commented=True
+    )
+    bore_mm: float | None = key(
+        "diameter of the bore; half the root diameter if left out",
+        None,
+        unit="mm",
+        of="bore_radius",
+        scale=0.5e-3,
+        limit=GEAR["bore_radius"],
+        note="a diameter",
+        example=33.5,
+        commented=True,
+    )
+    tip_alteration: float = key("moves the tip outwards, times the module", 0.0, limit=GEAR["tip_alteration"])
+    thickness_allowance_um: float = key(
+        "thins each tooth, arc at the reference circle",
+        0.0,
+        unit="um",
+        limit=GEAR["thickness_allowance"],
+    )
+    tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
+    tip_chamfer_mm: float = key(
+        "height of a chamfer of 45 degrees at the tip's edges",
+        0.0,
+        unit="mm",
+        limit=GEAR["tip_chamfer"],
+    )
+    tip_rounding_um: float = key(
+        "radius of the tip's edges, where they touch; the finite elements' own if left out",
+        0.0,
+        unit="um",
+        of=None,
+        limit=Limit(0.0, 0.05, "m"),
+    )
+    deviations: DeviationsSection | None = key(
+        "deviations of the flanks as made; none if left out",
+        None,
+        example={"profile": {"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)}},
+        commented=True,
+    )
+    hub: HubSection | None = key(
+        "rigid hub on a shaft and bearings that yield; a rigid shaft in the bore if left out",
+        None,
+        example={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
+        commented=True,
+    )
+
+    @model_validator(mode="after")
+    def _a_pitch_for_each_tooth(self) -> GearSection:
+        for name in ("single_pitch_um", "cumulative_pitch_um"):
+            values = getattr(self.deviations, name, None)
+            if values is not None and len(values) != self.teeth:
+                count = f"{len(values)} values"
+                raise refused(
+                    f"must have one value for each of {self.teeth} teeth",
+                    key=f"deviations.{name}",
+                    value=count,
+                )
+        return self
+
+
+class PairSection(Section):
+    """Geometry of the pair."""
+
+    module_mm: float = key("module of both gears", unit="mm", limit=PAIR["module"], example=2.0)
+    face_width_mm: float = key(
+        "width of the teeth in contact", unit="mm", limit=PAIR["face_width"], example=40.0
+    )
+    rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = key(
+        "basic rack of both gears, or a table of its own dimensions", "ISO 53 A", of=None, example="ISO 53 A"
+    )
+    pinion: GearSection = key(
+        "the driving gear", example={"teeth": 36, "profile_shift": 0.0, "bore_mm": 33.5}
+    )
+    wheel: GearSection = key(
+        "the driven gear, with the same keys", example={"teeth": 40, "profile_shift": 0.0, "bore_mm": 37.5}
+    )
+    backlash_um: float | None = key(
+        "normal backlash, along the line of action; none if left out",
+        None,
+        unit="um",
+        of=None,
+        limit=BACKLASH,
+        example=50,
+    )
+    centre_distance_mm: float | None = key(
+        "distance of the axes instead of the backlash, which then follows",
+        None,
+        unit="mm",
+        limit=PAIR["centre_distance"],
+        example=76.0,
+        commented=True,
+    )
+
+
+class ElasticSection(Section):
+    """Elastic constants and density of one material."""
+
+    youngs_modulus_GPa: float = key(
+        "Young's modulus", unit="GPa", limit=MATERIAL["youngs_modulus"], example=206
+    )
+    poisson_ratio: float = key("Poisson's ratio", limit=MATERIAL["poisson_ratio"], example=0.3)
+    density_kg_per_m3: float = key(
+        "density, for the moments of inertia",
+        7850.0,
+        unit="kg/m3",
+        limit=MATERIAL["density"],
+        example=7850,
+    )
+
+
+class MaterialSection(Section):
+    """One material for both gears, or one each in `pinion` and `wheel`."""
+
+    youngs_modulus_GPa: float | None = key(
+        "Young's modulus of both gears",
+        None,
+        unit="GPa",
+        limit=MATERIAL["youngs_modulus"],
+        example=206,
+    )
+    poisson_ratio: float | None = key(
+        "Poisson's ratio of both gears", None, limit=MATERIAL["poisson_ratio"], example=0.3
+    )
+    density_kg_per_m3: float | None = key(
+        "density of both gears; 7850 if left out",
+        None,
+        unit="kg/m3",
+        limit=MATERIAL["density"],
+        example=7850,
+    )
+    pinion: ElasticSection | None = key("material of the pinion alone, instead of the keys above", None)
+    wheel: ElasticSection | None = key("material of the wheel alone, beside that of the pinion", None)
+
+    @model_validator(mode="after")
+    def _one_material_or_two(self) -> MaterialSection:
+        common = self.youngs_modulus_GPa is not None and self.poisson_ratio is not None
+        if not common and (self.pinion is None or self.wheel is None):
+            raise refused(
+                "must have youngs_modulus_GPa and poisson_ratio for both gears, "
+                "or both [material.pinion] and [material.wheel]"
+            )
+        if self.si() and (self.pinion is not None or self.wheel is not None):
+            raise refused(
+                "must be one material for both gears or one each, not both at once", "Leave one out"
+            )
+        return self
+
+    @property
+    def each(self) -> tuple[ElasticSection, ElasticSection]:
+        """Materials of pinion and wheel."""
+        if self.pinion is not None and self.wheel is not None:
+            return self.pinion, self.wheel
+        common = ElasticSection.model_validate(self.model_dump(exclude_none=True))
+        return common, common
