@@ -14,7 +14,7 @@ from base.faults import (
 )
 from base.files import replacing, sweep_temporaries
 from base.limits import Faults, Limit
-from base.results import Figure, Quantity, Result, described, quantities, quantity, record, show_with
+from base.results import Figure, Quantity, Result, described, quantities, quantity, record, show_with, view
 
 __all__ = [
     "Array",
@@ -43,6 +43,7 @@ __all__ = [
     "show_with",
     "sweep_temporaries",
     "unclocked",
+    "view",
 ]
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "quantity",
     "record",
     "show_with",
+    "view",
 ]
 
 T = TypeVar("T")
@@ -183,7 +184,7 @@ def record(cls: type[T]) -> type[T]:
     if "__repr__" not in cls.__dict__:
         made.__repr__ = headline  # type: ignore[method-assign]
     if "_repr_html_" not in cls.__dict__:
-        made._repr_html_ = _view  # type: ignore[attr-defined]
+        made._repr_html_ = view  # type: ignore[attr-defined]
     made.__doc__ = _documented(made)
     return made
 
@@ -278,8 +279,16 @@ def show_with(views: Mapping[str, str]) -> None:
     _VIEWS.update(views)
 
 
-def _view(result: object) -> str | None:
-    """HTML of a record by the view registered for its class; None where there is none, and its line is shown."""
+def view(result: object) -> str | None:
+    """HTML of a record by the view registered for its class; None where there is none, and its line is shown.
+
+    A dataclass that is no `record` shows itself so with ``_repr_html_ = view``.
+
+    Examples
+    --------
+    >>> view(3.0) is None
+    True
+    """
     for cls in type(result).__mro__:
         if (place := _VIEWS.get(f"{cls.__module__}:{cls.__qualname__}")) is not None:
             module, _, name = place.partition(":")

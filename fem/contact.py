@@ -164,7 +164,7 @@ def _result(
     where, pairs = contact.where, len(contact.where.offset)
     force = torque / given.pair.base_radii[0]
     turned = contact.share.forces[number]  # kappa F
-    deflection = contact.share.approach[number].ravel()
+    deflection = contact.share.transmission_error[number].ravel()
     touch = where.gap.min(axis=-1).ravel()
     closing = contact.closing[number].ravel()
     refusal = _refusal(contact, turned, closing + touch)
@@ -185,7 +185,7 @@ def _result(
         load_share=(turned * contact.levers).reshape(-1, pairs) / force + bad,
         gaps=where.gap.reshape(-1, pairs),
         transmission_error=deflection + touch + bad,
-        stiffness=contact.share.tangent[number].ravel() + bad,
+        stiffness=contact.share.stiffness[number].ravel() + bad,
         secant_stiffness=force / deflection + bad,
         plane=bodies.plane,
         beyond_path=given.beyond_path,

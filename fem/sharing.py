@@ -65,7 +65,7 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
             oil,
             levers if given.friction else None,
         )
-        closing = share.approach - bodies.turning * force[:, None, None]
+        closing = share.transmission_error - bodies.turning * force[:, None, None]
         if np.max(closing + touch) <= where.reach_gap:
             break
     return Solution(where, share, kappa, levers, largest, closing)

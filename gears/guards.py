@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Fault
+from base import Faults
 from gears.gear import Gear
 from gears.involute import tangent_from_involute
 from gears.profile import ToothProfile, generate
@@ -30,185 +29,171 @@ ROUNDING = 1e-12
 """Lengths of this many modules are rounding: a backlash of -1e-16 m is none, not a jam."""
 
 
-@dataclass(frozen=True)
-class Findings:
-    """Faults and warnings of a pair, in the order in which they were found."""
+class Findings(Faults):
+    """Collects faults and warnings of a pair, in the order in which they are found."""
 
-    faults: tuple[Fault, ...] = ()
-    warnings: tuple[str, ...] = ()
-
-    def __add__(self, other: Findings) -> Findings:
-        """Both lists joined."""
-        return Findings(self.faults + other.faults, self.warnings + other.warnings)
+    def __init__(self) -> None:
+        super().__init__()
+        self.warnings: list[str] = []
 
 
-def gear_findings(name: str, gear: Gear, module: float, rack: BasicRack) -> Findings:
-    """Faults and warnings of one generated gear.
+def check_gear(found: Findings, name: str, gear: Gear, module: float, rack: BasicRack) -> None:
+    """Note faults and warnings of one generated gear.
+
+    They are: root against axis and bore, a tooth cut through by its fillets, a pointed tip, chamfer and relief
+    longer than the flank; thin tips and rims as warnings.
 
     Parameters
     ----------
+    found : Findings
+        Where to.
     name : str
         ``pinion`` or ``wheel``.
     gear, module, rack : Gear, float, BasicRack
         Specification, free of value faults.
-
-    Returns
-    -------
-    Findings
-        Root against axis and bore, tooth cut through by its fillets, pointed tip, chamfer and relief longer
-        than the flank; thin tips and rims as warnings.
     """
+    shift = f"{name}.profile_shift", f"{gear.profile_shift:g}"
     root = module * (0.5 * gear.teeth - rack.h_fP + gear.profile_shift)
     if root <= 0.0:
         least = f"must be more than {rack.h_fP - 0.5 * gear.teeth:.4g}"
-        fault = Fault(
-            f"{name}.profile_shift", f"{gear.profile_shift:g}", least, "the rack cuts through the axis"
-        )
-        return Findings((fault,))
+        found.add(*shift, least, "the rack cuts through the axis")
+        return
     depth = module * (rack.h_aP + rack.h_fP + gear.tip_alteration)
     if gear.tip_chamfer >= depth > 0.0:
         allowed = f"must be less than the tooth depth, {depth:.4g} m"
-        return Findings((Fault(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less"),))
+        found.add(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less")
+        return
     tooth = generate(gear, module, rack)
-    if tooth is None or not _has_flank(tooth):
-        found = Fault(
-            f"{name}.profile_shift",
-            f"{gear.profile_shift:g}",
-            "must leave an involute between fillet and tip",
+    if tooth is not None and tooth.flank_end_radius > tooth.form_radius * (1.0 + ROUNDING):
+        _check_tooth(found, name, gear, tooth)
+        _check_rim(found, name, root, tooth.bore_radius, module, tooth.tip_radius - root)
+    else:
+        remedy = (
             "the fillet cuts away the whole flank: raise profile_shift, teeth or tip_alteration, or shorten "
-            "the tip chamfer",
         )
-        return Findings((found,)) + _blank_findings(name, gear, root, module, None)
-    return _tooth_findings(name, gear, tooth) + _blank_findings(name, gear, root, module, tooth)
+        remedy += "the tip chamfer"
+        found.add(*shift, "must leave an involute between fillet and tip", remedy)
+        _check_rim(found, name, root, 0.5 * root if gear.bore_radius is None else gear.bore_radius, module)
 
 
-def _has_flank(tooth: ToothProfile) -> bool:
-    return tooth.flank_end_radius > tooth.form_radius * (1.0 + ROUNDING)
-
-
-def _tooth_findings(name: str, gear: Gear, tooth: ToothProfile) -> Findings:
+def _check_tooth(found: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:
     """Neck, tip and relief of a tooth that has a flank."""
-    faults: list[Fault] = []
     neck = float(np.min(tooth.fillet(np.linspace(0.0, 1.0, 65))[:, 0]))
     if neck <= 0.0:
         thinned = gear.thickness_allowance > 0.0
         cause = "thickness_allowance" if thinned else "profile_shift"
-        value = f"{gear.thickness_allowance if thinned else gear.profile_shift:g}"
-        remedy = "the fillets of the two sides meet in the tooth: " + (
-            "thin the tooth less" if thinned else "raise profile_shift or teeth"
-        )
-        faults.append(Fault(f"{name}.{cause}", value, "must leave the tooth a neck", remedy))
+        remedy = "the fillets of the two sides meet in the tooth: "
+        remedy += "thin the tooth less" if thinned else "raise profile_shift or teeth"
+        found.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", "must leave the tooth a neck", remedy)
     if tooth.tip_half_angle <= 0.0:
-        faults.append(_pointed(name, gear, tooth))
+        _add_pointed(found, name, gear, tooth)
     relief, flank = tooth.tip_relief, tooth.flank_rho[1] - tooth.flank_rho[0]
     if relief is not None and relief.length > flank:
         allowed = f"must be at most the flank's {flank:.6g} m"
-        faults.append(Fault(f"{name}.tip_relief.length", f"{relief.length:g}", allowed, "shorten the relief"))
+        found.add(f"{name}.tip_relief.length", f"{relief.length:g}", allowed, "shorten the relief")
     if relief is not None and relief.amount > 0.5 * tooth.module:
         allowed = "must be at most half a module"
-        faults.append(Fault(f"{name}.tip_relief.amount", f"{relief.amount:g}", allowed, "relieve less"))
+        found.add(f"{name}.tip_relief.amount", f"{relief.amount:g}", allowed, "relieve less")
     land = 2.0 * tooth.tip_radius * tooth.tip_half_angle / tooth.module
-    thin = (f"{name}: the top land is {land:.3f} modules thick, thinner than {THIN_TIP:g}",)
-    return Findings(tuple(faults), thin if 0.0 < land < THIN_TIP else ())
+    if 0.0 < land < THIN_TIP:
+        found.warnings.append(f"{name}: the top land is {land:.3f} modules thick, thinner than {THIN_TIP:g}")
 
 
-def _pointed(name: str, gear: Gear, tooth: ToothProfile) -> Fault:
-    """Fault of a pointed tooth, with the highest tip that the flanks allow."""
+def _add_pointed(found: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:
+    """Note a pointed tooth, by what thins it, with the highest tip that the flanks allow."""
     spare = gear.thickness_allowance + 2.0 * tooth.reference_radius * tooth.tip_half_angle
-    if gear.thickness_allowance > 0.0 and spare > 0.0:
-        value, allowed = f"{gear.thickness_allowance:g}", f"must be less than {spare:.4g} m"
-        return Fault(f"{name}.thickness_allowance", value, allowed, "the tip is pointed: thin the tooth less")
     point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(max(tooth.base_half_angle, 1e-9)))
     excess = (tooth.tip_radius - point) / tooth.module
-    highest = gear.tip_alteration - excess
-    value = f"{gear.tip_alteration:g}"
-    allowed = f"must be less than {highest:.4g} modules, where the flanks meet"
-    if gear.tip_chamfer > 0.0 and excess < 0.0:
-        value, where = f"{gear.tip_chamfer:g}", f"{name}.tip_chamfer"
-        return Fault(where, value, "must leave a top land", "the tip is pointed: chamfer less")
-    remedy = "the tip is pointed: reduce profile_shift or tip_alteration"
-    return Fault(f"{name}.tip_alteration", value, allowed, remedy)
+    if gear.thickness_allowance > 0.0 and spare > 0.0:
+        cause, allowed = "thickness_allowance", f"must be less than {spare:.4g} m"
+        remedy = "thin the tooth less"
+    elif gear.tip_chamfer > 0.0 and excess < 0.0:
+        cause, allowed, remedy = "tip_chamfer", "must leave a top land", "chamfer less"
+    else:
+        highest = gear.tip_alteration - excess
+        cause, allowed = "tip_alteration", f"must be less than {highest:.4g} modules, where the flanks meet"
+        remedy = "reduce profile_shift or tip_alteration"
+    found.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", allowed, f"the tip is pointed: {remedy}")
 
 
-def _blank_findings(
-    name: str, gear: Gear, root: float, module: float, tooth: ToothProfile | None
-) -> Findings:
-    """Bore and rim."""
-    bore = 0.5 * root if gear.bore_radius is None else gear.bore_radius
+def _check_rim(
+    found: Findings, name: str, root: float, bore: float, module: float, depth: float = 0.0
+) -> None:
+    """Bore and rim; `depth` of the tooth [m], 0 where there is none."""
     largest = root - THINNEST_RIM * module
     if bore > largest:
         why = "is not inside the root circle" if bore >= root else "leaves a rim too thin for a gear"
         remedy = f"the bore {why} (root radius {root:.6g} m): reduce it"
-        return Findings(
-            (Fault(f"{name}.bore_radius", f"{bore:g}", f"must be at most {largest:.6g} m", remedy),)
+        found.add(f"{name}.bore_radius", f"{bore:g}", f"must be at most {largest:.6g} m", remedy)
+    elif root - bore < THIN_RIM * depth:
+        share = (root - bore) / depth
+        found.warnings.append(
+            f"{name}: the rim is {share:.2f} of the tooth depth thick, thinner than {THIN_RIM:g}"
         )
-    if tooth is None or root - bore >= THIN_RIM * (tooth.tip_radius - root):
-        return Findings()
-    share = (root - bore) / (tooth.tip_radius - root)
-    return Findings(
-        (), (f"{name}: the rim is {share:.2f} of the tooth depth thick, thinner than {THIN_RIM:g}",)
-    )
 
 
-def mesh_findings(pair: GearPair) -> Findings:
-    """Faults of two sound gears that cannot run together: axes, jam, contact ratio, interference, tips."""
+def check_mesh(found: Findings, pair: GearPair) -> None:
+    """Note why two sound gears cannot run together: axes, jam, contact ratio, interference, tips."""
     bases = sum(pair.base_radii)
     if pair.centre_distance is not None and pair.centre_distance <= bases:
         allowed = f"must be more than the sum of the base radii, {bases:.6g} m"
-        where, value = "centre_distance", f"{pair.centre_distance:g}"
-        return Findings((Fault(where, value, allowed, "there is no line of action: move the axes apart"),))
+        remedy = "there is no line of action: move the axes apart"
+        found.add("centre_distance", f"{pair.centre_distance:g}", allowed, remedy)
+        return
     if pair.centre_distance is None and pair._working_involute <= 0.0:
         value = f"{pair.pinion.profile_shift + pair.wheel.profile_shift:g}"
         remedy = "no working pressure angle exists: raise a profile shift, or give centre_distance"
-        return Findings(
-            (Fault("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy),)
-        )
-    faults: list[Fault] = []
+        found.add("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy)
+        return
     rounding = ROUNDING * pair.module
     if pair.backlash < -rounding:
-        faults.append(_jam(pair))
+        _add_jam(found, pair)
     if not pair.contact_ratio >= 1.0:
         remedy = "the next pair comes too late: reduce the working pressure angle, or lengthen the teeth"
-        faults.append(Fault("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy))
+        found.add("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy)
     first, second = pair.teeth_profiles
+    # each gear with its mate, and its curvature radius where contact comes nearest to its root
+    meshing = (
+        ("pinion", "wheel", first, second, pair.points.A),
+        ("wheel", "pinion", second, first, pair.line_of_action - pair.points.E),
+    )
     if pair.contact_ratio > 0.0:
-        wheel_lowest = pair.line_of_action - pair.points.E
-        for name, other, tooth, mate, lowest in (
-            ("pinion", "wheel", first, second, pair.points.A),
-            ("wheel", "pinion", second, first, wheel_lowest),
-        ):
+        for name, other, tooth, mate, lowest in meshing:
             if lowest < tooth.flank_rho[0] - rounding:
-                faults.append(_interference(pair, name, other, tooth, mate))
-    for name, other, mate, tooth in (("pinion", "wheel", first, second), ("wheel", "pinion", second, first)):
-        clearance = pair.working_centre_distance - tooth.tip_radius - mate.root_radius
+                _add_interference(found, pair.line_of_action, name, other, tooth, mate)
+    for name, other, tooth, mate, _ in meshing:
+        clearance = pair.working_centre_distance - mate.tip_radius - tooth.root_radius
         if clearance <= 0.0:
-            allowed = f"must be less than {pair.working_centre_distance - mate.root_radius:.6g} m"
+            allowed = f"must be less than {pair.working_centre_distance - tooth.root_radius:.6g} m"
             remedy = f"the tip of the {other} meets the root circle of the {name}: give the {other} "
             remedy += f"a negative tip_alteration of {clearance / pair.module:.3g} or less"
-            faults.append(Fault(f"{other}.tip_radius", f"{tooth.tip_radius:.6g}", allowed, remedy))
-    return Findings(tuple(faults))
+            found.add(f"{other}.tip_radius", f"{mate.tip_radius:.6g}", allowed, remedy)
 
 
-def _jam(pair: GearPair) -> Fault:
-    """Teeth thicker than their gaps at the given centre distance."""
+def _add_jam(found: Findings, pair: GearPair) -> None:
+    """Note teeth thicker than their gaps at the given centre distance."""
     free = sum(pair.base_radii) * math.hypot(1.0, tangent_from_involute(max(pair._working_involute, 1e-300)))
     allowance = -pair.backlash / math.cos(pair.rack.alpha)
     remedy = f"the teeth jam: move the axes apart, shift the profiles less or add {allowance:.3g} m of "
     remedy += "thickness_allowance in all"
     allowed = f"must be at least {free:.6g} m for nominal teeth"
-    return Fault("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
+    found.add("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
 
 
-def _interference(pair: GearPair, name: str, other: str, tooth: ToothProfile, mate: ToothProfile) -> Fault:
-    """Fault of a mate whose flank end would touch below the form circle of `tooth`."""
-    longest = pair.line_of_action - tooth.flank_rho[0]
-    where, value = f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}"
+def _add_interference(
+    found: Findings, line_of_action: float, name: str, other: str, tooth: ToothProfile, mate: ToothProfile
+) -> None:
+    """Note a mate whose flank end would touch below the form circle of `tooth`."""
+    longest = line_of_action - tooth.flank_rho[0]
     remedy = f"the tip of the {other} would work on the fillet of the {name}, below its form circle: "
     if longest <= 0.0:
-        return Fault(where, value, "must be smaller", remedy + f"raise {name}.profile_shift")
-    largest = math.hypot(mate.base_radius, longest)
-    lower = (mate.flank_end_radius - largest) / mate.module
-    remedy += f"lower {other}.tip_alteration by {lower:.4g}, chamfer the {other}"
-    if tooth.undercut:
-        remedy += f" or raise {name}.profile_shift, which lessens the undercut"
-    return Fault(where, value, f"must be at most {largest:.6g} m where the flank ends", remedy)
+        allowed = "must be smaller"
+        remedy += f"raise {name}.profile_shift"
+    else:
+        largest = math.hypot(mate.base_radius, longest)
+        allowed = f"must be at most {largest:.6g} m where the flank ends"
+        lower = (mate.flank_end_radius - largest) / mate.module
+        remedy += f"lower {other}.tip_alteration by {lower:.4g}, chamfer the {other}"
+        if tooth.undercut:
+            remedy += f" or raise {name}.profile_shift, which lessens the undercut"
+    found.add(f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}", allowed, remedy)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from base import Array, Fault
+from base import Array, Booleans, Fault, Faults, quantity, record
 from gears.errors import LoadSharingError
 
 _ITERATIONS = 200
@@ -28,26 +27,18 @@ class DeflectionLaw(Protocol):
         """Its derivative to the force, (..., pairs) [m/N]; infinite at zero force is allowed."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class LoadShare:
-    """Forces of the tooth pairs at one mesh position, or at several.
+    """Forces of the tooth pairs at one mesh position, or at several."""
 
-    Parameters
-    ----------
-    forces : (..., pairs) array
-        Normal forces F_i [N], zero where a pair does not touch.
-    approach : float or (...) array
-        Common approach D of the gears along the line of action [m].
-    tangent : float or (...) array
-        dF/dD [N/m] for the pairs in contact.
-    iterations : int
-        Newton steps.
-    """
+    forces: Array = quantity("N", "normal forces F_i, zero where a pair does not touch", "... pair")
+    transmission_error: Array = quantity(
+        "m", "common approach D of the gears along the line of action", "...", shown="um"
+    )
+    stiffness: Array = quantity("N/m", "tangent dF/dD for the pairs in contact", "...")
+    iterations: int = quantity("1", "Newton steps")
 
-    forces: Array
-    approach: Array
-    tangent: Array
-    iterations: int
+    headline = ("transmission_error", "stiffness", "iterations")
 
 
 def share_load(
@@ -90,7 +81,7 @@ def share_load(
     Returns
     -------
     LoadShare
-        Forces, approach and tangent stiffness, for zero force the stiffness at first touch.
+        Forces, transmission error and tangent stiffness, for zero force the stiffness at first touch.
 
     Raises
     ------
@@ -134,13 +125,9 @@ def share_load(
         active = (active & ~released) | taken
         if settled.all() and not (negative.any() or taken.any()):
             return LoadShare(loads, approach, tangent, iteration)
-    fault = Fault(
-        "share_load",
-        f"no solution after {_ITERATIONS} steps",
-        "must have deflections that grow with the force",
-        "check that bulk is positive semidefinite, hertz has a positive and film a negative slope",
-    )
-    raise LoadSharingError([fault])
+    remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
+    allowed = "must have deflections that grow with the force"
+    raise LoadSharingError([Fault("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)])
 
 
 def _coupled(bulk: Array, loads: Array) -> Array:
@@ -162,7 +149,7 @@ def _linearise(
 
 
 def _newton_step(
-    jacobian: Array, residual: Array, loads: Array, active: NDArray[np.bool_], force: Array, levers: Array
+    jacobian: Array, residual: Array, loads: Array, active: Booleans, force: Array, levers: Array
 ) -> tuple[Array, Array, Array]:
     """Step of the active forces, step of the approach and tangent stiffness.
 
@@ -215,43 +202,28 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
 
 def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
-    faults = []
+    found = Faults()
     if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
         allowed = "must be finite, all above 0 N or all 0 N"
-        faults.append(Fault("force", str(force), allowed, "give the forces' sizes"))
+        found.add("force", str(force), allowed, "give the forces' sizes")
     pairs = gaps.shape[-1:]
     if not (
         gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
     ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
         shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
-        faults.append(
-            Fault(
-                "bulk, gaps",
-                shapes,
-                "must be (..., pairs, pairs) and (..., pairs)",
-                "give one row for each pair",
-            )
-        )
+        allowed = "must be (..., pairs, pairs) and (..., pairs)"
+        found.add("bulk, gaps", shapes, allowed, "give one row for each pair")
     if not np.all(gaps >= 0.0):
-        faults.append(
-            Fault(
-                "gaps",
-                "negative or not a number",
-                "must be at least 0 m, or inf",
-                "measure from the pair that touches",
-            )
-        )
+        remedy = "measure from the pair that touches"
+        found.add("gaps", "negative or not a number", "must be at least 0 m, or inf", remedy)
     elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
-        faults.append(
-            Fault("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
-        )
+        found.add("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
     if not np.all((levers > 0.0) & np.isfinite(levers)):
         remedy = "reduce the friction, which tilts a force past the axis"
-        faults.append(Fault("levers", "not above 0", "must be finite and more than 0", remedy))
+        found.add("levers", "not above 0", "must be finite and more than 0", remedy)
     if not np.all(np.isfinite(bulk)):
-        faults.append(Fault("bulk", "not finite", "must be finite", "check the compliance matrix"))
-    if faults:
-        raise LoadSharingError(faults)
+        found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
+    found.raise_if_any(LoadSharingError)
 
 
 def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None = None) -> LoadShare:
@@ -271,7 +243,7 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     Returns
     -------
     LoadShare
-        `tangent` holds the secant sum of the stiffness, which is all that this model knows.
+        `stiffness` holds the sum of the secant ones, which is all that this model knows.
 
     Raises
     ------
@@ -280,19 +252,18 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     """
     teeth = np.asarray(stiffness, dtype=float)
     films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
+    found = Faults()
     sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
     if not (sound and np.isfinite(force) and force >= 0.0):
         allowed = "must be finite and at least 0 (a film may be inf)"
-        fault = Fault("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
-        raise LoadSharingError([fault])
+        found.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
     carries = (teeth > 0.0) & (films > 0.0)
+    if not np.all(carries.any(axis=-1)):
+        allowed = "must have a pair that carries at each position"
+        found.add("stiffness", "zero for every pair", allowed, "add pairs")
+    found.raise_if_any(LoadSharingError)
     compliance = 1.0 / np.where(carries, teeth, 1.0) + 1.0 / np.where(carries, films, 1.0)
     series = np.where(carries, 1.0 / compliance, 0.0)
     total = series.sum(axis=-1)
-    if not np.all(total > 0.0):
-        fault = Fault(
-            "stiffness", "zero for every pair", "must have a pair that carries at each position", "add pairs"
-        )
-        raise LoadSharingError([fault])
     forces = force * series / total[..., None]
     return LoadShare(forces, np.asarray(force / total), np.asarray(total), 0)

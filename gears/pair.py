@@ -10,10 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from base import Array, Fault, Faults, Figure, Limit, described
+from base import Array, Fault, Figure, Limit, described, view
 from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
-from gears.guards import Findings, gear_findings, mesh_findings
+from gears.guards import Findings, check_gear, check_mesh
 from gears.involute import involute_function, tangent_from_involute
 from gears.material import STEEL, Material, reduced_modulus
 from gears.path import PathOfContact, PathPoints
@@ -81,38 +81,45 @@ class GearPair:
 
     def __post_init__(self) -> None:
         """Refuse values and geometries that no pair has, all faults at once."""
-        values = self._value_faults()
-        found = Findings(values)
-        if not any(fault.where == "module" or fault.where.startswith("rack") for fault in values):
+        found = Findings()
+        self._check_values(found)
+        wrong = [fault.where for fault in found.found]
+        if not any(where == "module" or where.startswith("rack") for where in wrong):
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
-                if not any(fault.where.startswith(name) for fault in values):
-                    found += gear_findings(name, gear, self.module, self.rack)
-        if not found.faults:
-            found += mesh_findings(self)
-        if found.faults:
-            raise GeometryError(found.faults)
+                if not any(where.startswith(name) for where in wrong):
+                    check_gear(found, name, gear, self.module, self.rack)
+        if not found.found:
+            check_mesh(found, self)
+        found.raise_if_any(GeometryError)
         for message in found.warnings:
             warnings.warn(message, GeometryWarning, stacklevel=3)
 
-    def _value_faults(self) -> tuple[Fault, ...]:
-        """Faults of single values of the pair and its parts: wrong kind, not finite, out of bounds."""
-        found = Faults()
+    def _check_values(self, found: Findings) -> None:
+        """Note faults of single values of the pair and its parts: wrong kind, not finite, out of bounds."""
         found.fields(self, LIMITS)
         for name, kind in (("pinion", Gear), ("wheel", Gear), ("rack", BasicRack)):
             if isinstance(part := getattr(self, name), kind):
                 found.extend(part.faults(name))
             else:
                 found.add(name, part, f"must be a {kind.__name__}", f"pass gears.{kind.__name__}(...)")
-        if isinstance(self.material, Material):
-            found.extend(self.material.faults())
-        elif isinstance(self.material, tuple) and [type(m) for m in self.material] == [Material, Material]:
-            for name, material in zip(("pinion", "wheel"), self.material, strict=True):
-                found.extend(material.faults(f"material.{name}"))
-        else:
-            found.add(
-                "material", self.material, "must be a Material or two of them", "pass gears.Material(...)"
-            )
-        return tuple(found.found)
+        several = isinstance(self.material, tuple)
+        if len(self.materials) != 2 or not all(isinstance(material, Material) for material in self.materials):
+            remedy = "pass gears.Material(...)"
+            found.add("material", self.material, "must be a Material or two of them", remedy)
+            return
+        for name, material in zip(("pinion", "wheel") if several else ("",), self.materials, strict=several):
+            found.extend(material.faults(f"material.{name}".strip(".")))
+
+    def __repr__(self) -> str:
+        """One line: teeth, sizes and what follows from them."""
+        return (
+            f"GearPair({self.pinion.teeth}:{self.wheel.teeth} teeth, module {1e3 * self.module:.6g} mm, "
+            f"face width {1e3 * self.face_width:.6g} mm, "
+            f"centre distance {1e3 * self.working_centre_distance:.7g} mm, "
+            f"contact ratio {self.contact_ratio:.4g})"
+        )
+
+    _repr_html_ = view
 
     @cached_property
     def materials(self) -> tuple[Material, Material]:
@@ -349,9 +356,3 @@ class GearPair:
     def placement(self, rho1: float) -> Placement:
         """Rotations that bring one tooth of each gear into contact at `rho1` [m]; see `gears.Placement`."""
         return place(self, rho1)
-
-    def _repr_html_(self) -> str:
-        """Key data and a drawing, for notebooks."""
-        from gears.notebook import pair_html
-
-        return pair_html(self)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array
+from base import Array, described, quantity, record
 
 
 @dataclass(frozen=True)
@@ -30,33 +30,42 @@ class PathPoints:
     E: float
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class PathOfContact:
-    """Points on the line of action.
+    """Points on the line of action; rho1 + rho2 = a sin alpha_w.
 
-    Parameters
-    ----------
-    rho1, rho2 : (n,) array
-        Curvature radii of the pinion's and the wheel's flank [m]; rho1 + rho2 = a sin alpha_w.
-    start : float
-        rho1 at A [m].
-    base_radii : (float, float)
-        r_b1, r_b2 [m].
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> path = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3).path_of_contact(n=3)
+    >>> path
+    PathOfContact(3 points, rho1 7.92 to 18.04 mm)
+    >>> 1e3 * path.radius
+    array([5.5059188 , 6.49834904, 5.51816096])
+    >>> path.sliding(speed=200.0)
+    array([-1.90131, ...])
     """
 
-    rho1: Array
-    rho2: Array
-    start: float
-    base_radii: tuple[float, float]
+    rho1: Array = quantity("m", "curvature radius of the pinion's flank", "point", shown="mm")
+    rho2: Array = quantity("m", "curvature radius of the wheel's flank", "point", shown="mm")
+    start: float = quantity("m", "rho1 at A", shown="mm")
+    base_radii: tuple[float, float] = quantity("m", "base radii r_b1 and r_b2", "gear", shown="mm")
+
+    def __repr__(self) -> str:
+        """One line: how many points, and where."""
+        ends = f"{1e3 * self.rho1.min():.4g} to {1e3 * self.rho1.max():.4g}"
+        return f"PathOfContact({self.rho1.size} points, rho1 {ends} mm)"
 
     @property
+    @described("m", "point", shown="mm")
     def position(self) -> Array:
-        """Distance from A along the line of action, (n,) [m]."""
+        """Distance from A along the line of action."""
         return np.asarray(self.rho1 - self.start)
 
     @property
+    @described("m", "point", shown="mm")
     def radius(self) -> Array:
-        """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2), (n,) [m]."""
+        """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2)."""
         return np.asarray(self.rho1 * self.rho2 / (self.rho1 + self.rho2))
 
     @property

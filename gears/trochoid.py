@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array
+from gears.bisection import bisect
 from gears.involute import involute_function
 
 # Below this roll angle of undercut the limit form of the intersection is more exact than a root search.
@@ -49,9 +50,7 @@ class Trochoid:
 
     def point(self, beta: Array) -> Array:
         """Points of the fillet, (n, 2) [m]."""
-        distance = self.depth / np.cos(beta) + self.arc_radius
-        across = -distance * np.sin(beta)
-        up = self.reference_radius - distance * np.cos(beta)
+        across, up = self._contact(beta)
         turn = self._turn(beta)
         return np.stack(
             (across * np.cos(turn) + up * np.sin(turn), up * np.cos(turn) - across * np.sin(turn)), axis=-1
@@ -78,26 +77,20 @@ class Trochoid:
 
     def polar_angle(self, beta: Array) -> Array:
         """Polar angle from the tooth's centre line, (n,) [rad]."""
-        distance = self.depth / np.cos(beta) + self.arc_radius
-        across = -distance * np.sin(beta)
-        up = self.reference_radius - distance * np.cos(beta)
+        across, up = self._contact(beta)
         return np.asarray(np.arctan2(across, up) + self._turn(beta))
 
     def beta_at(self, radius: Array, highest: float) -> Array:
-        """Parameter at which the curve has the given radii, by bisection between 0 and `highest`.
-
-        Bisection because it cannot fail on a monotonic function; it ends when the interval is one spacing of
-        floating-point numbers wide.
-        """
+        """Parameter at which the curve has the given radii, between 0 and `highest`."""
         target = np.asarray(radius, dtype=float) ** 2
-        low = np.zeros_like(target)
-        high = np.full_like(target, highest)
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            below = self.squared_radius(middle) < target
-            low = np.where(below, middle, low)
-            high = np.where(below, high, middle)
-        return np.asarray(0.5 * (low + high))
+        highs = np.full_like(target, highest)
+        return bisect(lambda beta: self.squared_radius(beta) < target, np.zeros_like(target), highs)
+
+    def _contact(self, beta: Array) -> tuple[Array, Array]:
+        """Where rack and gear touch, across and up from the gear's axis to the pitch point [m]."""
+        distance = self.depth / np.cos(beta) + self.arc_radius
+        across = -distance * np.sin(beta)
+        return np.asarray(across), np.asarray(self.reference_radius - distance * np.cos(beta))
 
     def _turn(self, beta: Array) -> Array:
         return np.asarray(self.foot_angle + self.depth * np.tan(beta) / self.reference_radius)
@@ -153,13 +146,7 @@ def form_point(
     crossings = np.flatnonzero(~sign[:-1] & sign[1:])
     if crossings.size == 0:
         return None
-    low, high = float(beta[crossings[-1]]), float(beta[crossings[-1] + 1])
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if float(excess(np.asarray(middle))) > 0.0:
-            high = middle
-        else:
-            low = middle
-    beta_cut = 0.5 * (low + high)
-    squared = float(trochoid.squared_radius(np.asarray(beta_cut))) - base_radius**2
-    return beta_cut, math.sqrt(max(squared, 0.0)), True
+    last = crossings[-1]
+    beta_cut = bisect(lambda beta: ~(excess(beta) > 0.0), beta[last], beta[last + 1])
+    squared = float(trochoid.squared_radius(beta_cut)) - base_radius**2
+    return float(beta_cut), math.sqrt(max(squared, 0.0)), True

@@ -182,14 +182,14 @@ class LoadedTeeth:
         k = np.where(touching, k, 0.0)
         if self.pairs == "independent":
             share = independent_pairs(force, k, None if film is None else film.stiffness(rho1))
-            secant = stiffness = np.asarray(share.tangent)
+            secant = stiffness = np.asarray(share.stiffness)
         else:
             compliance = 1.0 / np.where(touching, k, 1.0)
             bulk = compliance[..., None] * np.eye(k.shape[1])
             gaps = np.where(touching, _relief(self.pair, rho1), np.inf)
             placed = None if film is None else PlacedFilm(film, rho1)
             share = share_load(force, bulk, _NoHertz(), gaps, placed)
-            secant, stiffness = force / np.asarray(share.approach), np.asarray(share.tangent)
+            secant, stiffness = force / np.asarray(share.transmission_error), np.asarray(share.stiffness)
         return MeshCycle(
             label=f"{MODELS[self.model]}, {self.pairs} pairs",
             position=position,
@@ -198,7 +198,7 @@ class LoadedTeeth:
             load_share=share.forces / force,
             secant_stiffness=secant,
             stiffness=stiffness,
-            transmission_error=np.asarray(share.approach),
+            transmission_error=np.asarray(share.transmission_error),
             error=self.compliance.error if self.model == "fem" and self.compliance is not None else None,
             cost=Cost(watch.seconds),
         )

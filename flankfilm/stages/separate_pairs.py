@@ -93,13 +93,13 @@ def separate_pairs_cycle(
     if pairs == "independent":
         series = None if film is None else film.stiffness(rho1)
         share = independent_pairs(force, k, series)
-        secant = tangent = np.asarray(share.tangent)
+        secant = tangent = np.asarray(share.stiffness)
     else:
         compliance = 1.0 / np.where(touching, k, 1.0)
         bulk = compliance[..., None] * np.eye(k.shape[1])
         gaps = np.where(touching, _relief(pair, rho1), np.inf)
         share = share_load(force, bulk, _NoHertz(), gaps, None if film is None else PlacedFilm(film, rho1))
-        secant, tangent = force / np.asarray(share.approach), np.asarray(share.tangent)
+        secant, tangent = force / np.asarray(share.transmission_error), np.asarray(share.stiffness)
     return MeshStiffness(
         label=f"{_LABELS[model]}, {pairs} pairs",
         phase=phase,
@@ -108,7 +108,7 @@ def separate_pairs_cycle(
         load_share=share.forces / force,
         secant=secant,
         tangent=tangent,
-        transmission_error=np.asarray(share.approach),
+        transmission_error=np.asarray(share.transmission_error),
         error=engine["compliance"].error if model == "fem" else None,
         seconds=time.perf_counter() - start,
     )

@@ -93,8 +93,8 @@ def closed_form_curves(pair: GearPair, force: float, positions: int) -> Iterator
         yield Curves(
             label,
             single,
-            np.asarray(share.tangent),
-            np.asarray(share.approach),
+            np.asarray(share.stiffness),
+            np.asarray(share.transmission_error),
             touching.sum(axis=1),
             time.perf_counter() - began,
         )

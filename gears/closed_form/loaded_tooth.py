@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Fault
+from base import Array, Faults
+from gears.bisection import bisect
 from gears.errors import GeometryError
 from gears.material import Material
 from gears.pair import GearPair
@@ -86,12 +87,9 @@ class LoadedTooth:
         """
         curve, start = self.profile.fillet_curve, self.profile.flank_rho[0]
         base = self.profile.base_radius
-        height_of_fillet = lambda beta: curve.point(beta)[..., 1]  # noqa: E731
-        height_of_flank = lambda rho: self.profile.involute(rho)[..., 1]  # noqa: E731
-        fillet = _parameter_at(height_of_fillet, top, 0.0, curve.end)
-        flank = _parameter_at(height_of_flank, top, start, self.profile.flank_rho[1])
-        beta, per_beta = _nodes(0.0, fillet)
-        rho, per_rho = _nodes(start, flank)
+        beta, per_beta = _nodes(0.0, _parameter_at(curve.point, top, 0.0, curve.end))
+        end = self.profile.flank_rho[1]
+        rho, per_rho = _nodes(start, _parameter_at(self.profile.involute, top, start, end))
         total = np.zeros_like(top)
         for points, rise in (
             (curve.point(beta), per_beta * curve.speed(beta) * curve.normal(beta)[..., 0]),
@@ -106,14 +104,10 @@ def _nodes(low: float, high: Array) -> tuple[Array, Array]:
     return np.asarray(low + half * (1.0 + _NODES)), np.asarray(half * _WEIGHTS)
 
 
-def _parameter_at(height: Callable[[Array], Array], top: Array, low: float, high: float) -> Array:
-    """Parameter at which a rising curve reaches `top`, kept within its ends; by bisection."""
-    below, above = np.full_like(top, low), np.full_like(top, high)
-    for _ in range(60):
-        middle = 0.5 * (below + above)
-        short = height(middle) < top
-        below, above = np.where(short, middle, below), np.where(short, above, middle)
-    return np.asarray(0.5 * (below + above))
+def _parameter_at(curve: Callable[[Array], Array], top: Array, low: float, high: float) -> Array:
+    """Parameter at which a rising curve of points reaches the height `top`, kept within its ends."""
+    ends = np.full_like(top, low), np.full_like(top, high)
+    return bisect(lambda parameter: curve(parameter)[..., 1] < top, *ends)
 
 
 def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, LoadedTooth]:
@@ -125,7 +119,7 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
         If a point of the path is not on both involutes.
     """
     teeth = []
-    faults = []
+    found = Faults()
     for name, profile, material, rho in zip(
         ("rho1", "rho2"), pair.teeth_profiles, pair.materials, (path.rho1, path.rho2), strict=True
     ):
@@ -134,8 +128,7 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
         if not np.all((rho >= low - slack) & (rho <= high + slack)):
             allowed = f"must be at least {low:.6g} and at most {high:.6g} m, the flank"
             value = f"{np.min(rho):g} .. {np.max(rho):g}"
-            faults.append(Fault(f"path.{name}", value, allowed, "closed forms hold between A and E"))
+            found.add(f"path.{name}", value, allowed, "closed forms hold between A and E")
         teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))
-    if faults:
-        raise GeometryError(faults)
+    found.raise_if_any(GeometryError)
     return teeth[0], teeth[1]

@@ -60,7 +60,7 @@ def random_bulk(seed, n, scale=1e-9):
 
 def residual(share, bulk, hertz, gaps, film=None):
     F = share.forces
-    out = (bulk @ F[..., None])[..., 0] + hertz.approach(F) + gaps - share.approach[..., None]
+    out = (bulk @ F[..., None])[..., 0] + hertz.approach(F) + gaps - share.transmission_error[..., None]
     return out if film is None else out - film.approach(F)
 
 
@@ -81,7 +81,7 @@ def test_equilibrium_and_complementarity(seed, pairs, force, gap, oil):
     film = Film() if oil else None
     share = share_load(force, bulk, Hertz(), gaps, film)
     off = residual(share, bulk, Hertz(), gaps, film)
-    size = np.abs(share.approach) + gaps.max() + (3e-6 if oil else 0.0)
+    size = np.abs(share.transmission_error) + gaps.max() + (3e-6 if oil else 0.0)
     assert share.forces.sum() == pytest.approx(force, rel=1e-10)
     assert np.all(share.forces >= 0.0)
     assert np.all(np.abs(off[share.forces > 0.0]) <= 1e-9 * size)
@@ -96,11 +96,11 @@ def test_tangent_is_the_slope_of_force_over_approach(seed, pairs, force, gap, oi
     film = Film() if oil else None
     low, mid, high = (share_load(force * s, bulk, Hertz(), gaps, film) for s in (1 - 1e-4, 1.0, 1 + 1e-4))
     if np.array_equal(low.forces > 0, high.forces > 0):
-        rise = high.approach - low.approach
-        rounding = 1e-14 * (np.abs(mid.approach) + gaps.max() + 3e-6)
+        rise = high.transmission_error - low.transmission_error
+        rounding = 1e-14 * (np.abs(mid.transmission_error) + gaps.max() + 3e-6)
         # the local laws bend on the scale of each pair's own force: truncation is the square of the step over it
         truncation = 1e-6 + (1e-4 * force / mid.forces[mid.forces > 0].min()) ** 2
-        assert abs(rise - 2e-4 * force / mid.tangent) <= truncation * rise + rounding
+        assert abs(rise - 2e-4 * force / mid.stiffness) <= truncation * rise + rounding
 
 
 @settings(max_examples=100, deadline=None)
@@ -120,14 +120,14 @@ def test_two_equal_springs_share_equally_and_a_gap_shifts_the_difference():
     share = share_load(force, bulk, Spring(1e-9), np.array([0.0, gap]))
     difference = gap / 3e-9
     assert np.allclose(share.forces, [(force + difference) / 2, (force - difference) / 2], rtol=1e-13)
-    assert share.tangent == pytest.approx(2 / 3e-9, rel=1e-13)
+    assert share.stiffness == pytest.approx(2 / 3e-9, rel=1e-13)
 
 
 def test_a_pair_that_just_touches_carries_nothing():
     bulk, force = np.diag([2e-9, 2e-9]), 5e3
     share = share_load(force, bulk, Spring(1e-9), np.array([0.0, 3e-9 * force]))
     assert share.forces[1] <= 1e-9 * force
-    assert share.approach == pytest.approx(3e-9 * force)
+    assert share.transmission_error == pytest.approx(3e-9 * force)
 
 
 def test_one_pair_and_huge_gap_and_absent_pair():
@@ -137,17 +137,17 @@ def test_one_pair_and_huge_gap_and_absent_pair():
         bulk[0, 0] = 1e-9
         share = share_load(1e3, bulk, Hertz(), [0.0, gap, gap])
         assert np.allclose(share.forces, [1e3, 0, 0], rtol=1e-12)
-        assert share.approach == pytest.approx(float(alone.approach), rel=1e-12)
-        assert share.tangent == pytest.approx(float(alone.tangent), rel=1e-12)
+        assert share.transmission_error == pytest.approx(float(alone.transmission_error), rel=1e-12)
+        assert share.stiffness == pytest.approx(float(alone.stiffness), rel=1e-12)
 
 
 def test_zero_force_touches_without_stiffness():
     share = share_load(0.0, random_bulk(2, 2), Hertz(), [1e-6, 0.0])
     assert np.array_equal(share.forces, [0.0, 0.0])
-    assert share.approach == 0.0
-    assert share.tangent == 0.0
+    assert share.transmission_error == 0.0
+    assert share.stiffness == 0.0
     with_spring = share_load(0.0, np.diag([1e-9, 2e-9]), Spring(1e-9), [1e-6, 0.0])
-    assert with_spring.tangent == pytest.approx(1 / 3e-9)
+    assert with_spring.stiffness == pytest.approx(1 / 3e-9)
 
 
 def test_many_positions_at_once_equal_each_alone():
@@ -158,8 +158,8 @@ def test_many_positions_at_once_equal_each_alone():
     for i in range(20):
         alone = share_load(17736.0, bulk[i], Hertz(), gaps[i], Film())
         assert np.allclose(together.forces[i], alone.forces, rtol=1e-10, atol=1e-8)
-        assert together.approach[i] == pytest.approx(float(alone.approach), rel=1e-10)
-        assert together.tangent[i] == pytest.approx(float(alone.tangent), rel=1e-8)
+        assert together.transmission_error[i] == pytest.approx(float(alone.transmission_error), rel=1e-10)
+        assert together.stiffness[i] == pytest.approx(float(alone.stiffness), rel=1e-8)
 
 
 def test_many_forces_at_once_equal_each_alone():
@@ -170,12 +170,12 @@ def test_many_forces_at_once_equal_each_alone():
     forces = np.array([1e-3, 30.0, 17736.0])
     together = share_load(forces[:, None, None], bulk, Hertz(), gaps)
     assert together.forces.shape == (3, 4, 5, 3)
-    assert together.approach.shape == together.tangent.shape == (3, 4, 5)
+    assert together.transmission_error.shape == together.stiffness.shape == (3, 4, 5)
     for k, force in enumerate(forces):
         alone = share_load(force, bulk, Hertz(), gaps)
         np.testing.assert_allclose(together.forces[k], alone.forces, rtol=1e-9, atol=1e-10 * force)
-        np.testing.assert_allclose(together.approach[k], alone.approach, rtol=1e-9)
-        np.testing.assert_allclose(together.tangent[k], alone.tangent, rtol=1e-7)
+        np.testing.assert_allclose(together.transmission_error[k], alone.transmission_error, rtol=1e-9)
+        np.testing.assert_allclose(together.stiffness[k], alone.stiffness, rtol=1e-7)
 
 
 def test_levers_balance_the_moment_and_tilt_the_tangent():
@@ -183,15 +183,16 @@ def test_levers_balance_the_moment_and_tilt_the_tangent():
     levers, force = np.array([0.9, 1.0, 1.2]), 5e3
     share = share_load(force, bulk, Hertz(), gaps, levers=levers)
     assert levers @ share.forces == pytest.approx(force, rel=1e-12)
-    assert np.abs(residual(share, bulk, Hertz(), gaps)).max() < 1e-9 * share.approach
+    assert np.abs(residual(share, bulk, Hertz(), gaps)).max() < 1e-9 * share.transmission_error
     step = 1e-4 * force
     low, high = (share_load(force + s, bulk, Hertz(), gaps, levers=levers) for s in (-step, step))
-    assert 2 * step / (high.approach - low.approach) == pytest.approx(float(share.tangent), rel=1e-6)
+    rise = high.transmission_error - low.transmission_error
+    assert 2 * step / rise == pytest.approx(float(share.stiffness), rel=1e-6)
     # one pair alone: a lever only scales its force
     one = share_load(1e3, [[1e-9]], Hertz(), [0.0], levers=[0.8])
     assert one.forces[0] == pytest.approx(1250.0, rel=1e-12)
     at_rest = share_load(0.0, np.diag([1e-9, 2e-9]), Spring(1e-9), [1e-6, 0.0], levers=[1.0, 0.5])
-    assert at_rest.tangent == pytest.approx(0.5 / 3e-9)
+    assert at_rest.stiffness == pytest.approx(0.5 / 3e-9)
 
 
 def test_film_in_series_equals_a_softer_spring():
@@ -208,8 +209,8 @@ def test_film_in_series_equals_a_softer_spring():
     wet = share_load(2e3, bulk, Spring(1e-9), gaps, LinearFilm(3e-10))
     dry = share_load(2e3, bulk, Spring(1.3e-9), gaps)
     assert np.allclose(wet.forces, dry.forces, rtol=1e-12)
-    assert wet.approach == pytest.approx(float(dry.approach) - 1e-5, rel=1e-9)
-    assert wet.tangent == pytest.approx(float(dry.tangent), rel=1e-12)
+    assert wet.transmission_error == pytest.approx(float(dry.transmission_error) - 1e-5, rel=1e-9)
+    assert wet.stiffness == pytest.approx(float(dry.stiffness), rel=1e-12)
 
 
 def test_all_faults_of_the_input_at_once():
@@ -232,8 +233,8 @@ def test_independent_pairs_share_in_proportion():
     k = np.array([[4e8, 2e8], [5e8, 0.0]])
     share = independent_pairs(600.0, k)
     assert np.allclose(share.forces, [[400, 200], [600, 0]])
-    assert np.allclose(share.tangent, [6e8, 5e8])
+    assert np.allclose(share.stiffness, [6e8, 5e8])
     film = independent_pairs(600.0, k, np.array([[4e8, np.inf], [5e8, 1.0]]))
-    assert np.allclose(film.tangent, [4e8, 2.5e8])
+    assert np.allclose(film.stiffness, [4e8, 2.5e8])
     with pytest.raises(LoadSharingError):
         independent_pairs(600.0, [[0.0, 0.0]])

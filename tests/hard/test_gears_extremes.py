@@ -99,13 +99,13 @@ def test_gaps_and_forces_over_thirty_decades():
             share = share_load(float(force), bulk, Line(), [0.0, gap, 3 * gap])
             assert share.forces.sum() == pytest.approx(force, rel=1e-10)
             assert np.all(np.diff(share.forces) <= 1e-9 * force)
-            assert math.isfinite(float(share.tangent))
+            assert math.isfinite(float(share.stiffness))
 
 
 def test_gap_at_the_edge_of_contact():
     """The second pair carries nothing, then continuously more, as the gap closes through the point of touch."""
     bulk, force = 1e-9 * np.eye(2), 1e4
-    alone = float(share_load(force, [[1e-9]], Line(), [0.0]).approach)
+    alone = float(share_load(force, [[1e-9]], Line(), [0.0]).transmission_error)
     loads = [
         float(share_load(force, bulk, Line(), [0.0, alone * (1 - s)]).forces[1])
         for s in (-1e-3, -1e-9, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
