@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 
 from base import Array, Faults, Limit
 
-__all__ = ["LAWS", "LIMITS", "Roughness", "height_integral", "zhao_fit"]
-
 LAWS = ("greenwood-tripp", "greenwood-williamson")
 LIMITS = {
     "deviation": Limit(1e-10, 1e-4, "m", "sigma in m, 1e-7 is a tenth of a micrometre"),

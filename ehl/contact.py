@@ -9,8 +9,6 @@ from base import Faults, Limit
 from ehl.lubricant import Lubricant
 from ehl.rheology import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE
 
-__all__ = ["LIMITS", "LineContact"]
-
 LIMITS = {
     "load": Limit(
         0.0,
@@ -151,6 +149,10 @@ class LineContact:
     def peak_pressure(self) -> float:
         """Hertz pressure p_H = 2w/(pi b) [Pa]."""
         return 2.0 * self.load / (math.pi * self.half_width)
+
+    def film_parameter(self, film: float) -> float:
+        """Film over the sagitta of the dry contact, h R/b^2 [-]."""
+        return film * self.radius / self.half_width**2
 
     @property
     def U2(self) -> float:

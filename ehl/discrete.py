@@ -18,20 +18,6 @@ from ehl.contact import LineContact
 from ehl.grid import face_weights, hat_weights
 from ehl.lubricant import Lubricant
 
-__all__ = [
-    "LOAD",
-    "Grid",
-    "Groups",
-    "Residual",
-    "centre_gap",
-    "film_gap",
-    "fluxes",
-    "inlet_pressure",
-    "load_inside",
-    "make_grid",
-]
-
-
 LOAD = 0.5 * math.pi  # integral of P dX
 _GAUSS = np.polynomial.legendre.leggauss(8)
 
@@ -106,20 +92,15 @@ class Groups:
     def of(cls, contact: LineContact, length: float) -> Groups:
         """Scale the contact by a length [m]."""
         pressure = 2.0 * contact.load / (math.pi * length)
-        lam = (
-            12.0
-            * contact.lubricant.viscosity
-            * contact.entrainment
-            * contact.radius**2
-            / (length**3 * pressure)
-        )
+        oil = contact.lubricant
+        lam = 12.0 * oil.viscosity * contact.entrainment * contact.radius**2 / (length**3 * pressure)
         return cls(
             length=length,
             pressure=pressure,
             gap=length**2 / contact.radius,
             compliance=(contact.half_width / length) ** 2 / math.pi,
             lam=lam,
-            lubricant=contact.lubricant,
+            lubricant=oil,
         )
 
 

@@ -15,9 +15,16 @@ if TYPE_CHECKING:
     from ehl.levels import State
     from ehl.supply import Supply
 
-__all__ = ["DEFINITIONS", "Film", "FilmErrors", "Spike", "hertz_approach"]
+MEANINGS = {
+    "approach": "tangent, -1/(d separation/dw): the film's yielding beyond the dry contact",
+    "tangent": "tangent, -dw/dh_cen",
+    "nodal-sum": "secant, int p/h dx",
+    "dowson-central": "tangent of a formula, 10 w/h_c",
+    "dowson-minimum": "tangent of a formula, w/(0.13 h_m)",
+}
+"""Definitions of a film's stiffness by name: what each is."""
 
-DEFINITIONS = ("approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum")
+DEFINITIONS = tuple(MEANINGS)
 
 
 @record

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
 
 import numpy as np
 
-from base import Faults, Limit, RangeWarning
-
-__all__ = ["GRADES", "LIMITS", "GradedOil", "gold_coefficient", "graded_oil", "viscosity_index", "walther"]
+from base import Faults, Limit, RangeWarning, quantity, record
 
 GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
 """Grades of ISO 3448: mid-point kinematic viscosity at 40 degC [mm^2/s]."""
@@ -37,6 +34,9 @@ _BASES = {  # s [1/GPa at 1 mm^2/s] and t of Gold's formula, density at 15 degC 
     "ester": (6.605, 0.1360, 950.0, 0.70),
     "pag": (5.489, 0.1485, 1050.0, 0.75),
 }
+BASES = tuple(_BASES)
+"""Base oils by name."""
+
 # ISO 2909: viscosity at 40 degC [mm^2/s] of the oils of index 0 (L) and 100 (H) against that at 100 degC (Y)
 _INDEX_TABLE = np.array(
     [
@@ -55,15 +55,15 @@ _INDEX_TABLE = np.array(
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@record
 class GradedOil:
     """What a grade gives at one temperature."""
 
-    viscosity: float  # eta0 [Pa s]
-    pressure_viscosity: float  # alpha [1/Pa]
-    density: float  # rho0 [kg/m^3]
-    kinematic_viscosity: float  # [mm^2/s]
-    kinematic_viscosity_100: float  # at 100 degC [mm^2/s]
+    viscosity: float = quantity("Pa s", "viscosity eta0 at ambient pressure")
+    pressure_viscosity: float = quantity("1/Pa", "pressure-viscosity coefficient alpha", shown="1/GPa")
+    density: float = quantity("kg/m3", "density rho0 at ambient pressure")
+    kinematic_viscosity: float = quantity("mm2/s", "kinematic viscosity")
+    kinematic_viscosity_100: float = quantity("mm2/s", "kinematic viscosity at 100 degC")
 
 
 def walther(temperature: float, nu_40: float, nu_100: float) -> float:
@@ -187,7 +187,7 @@ def graded_oil(
     found.number("vg", vg, LIMITS["vg"])
     found.number("temperature", temperature, LIMITS["temperature"])
     found.number("viscosity_index", index, LIMITS["viscosity_index"])
-    found.choice("base", base, tuple(_BASES), "choose the nearest")
+    found.choice("base", base, BASES, "choose the nearest")
     if density_15 is not None:
         found.number("density_15", density_15, LIMITS["density_15"])
     nu_100 = math.nan if found.found else _nu_100(vg, index)

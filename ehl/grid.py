@@ -8,24 +8,8 @@ import numpy as np
 
 from base import Array
 
-__all__ = [
-    "clusters",
-    "default_domain",
-    "face_weights",
-    "film_parameter",
-    "graded_nodes",
-    "hat_weights",
-    "uniform_nodes",
-]
-
-
 _NECK_SHARE = 1.5  # nodes at the outlet for one at the inlet: the neck converges last
 _SPIKE_SHARE = 0.6  # nodes at a spike for one at the inlet: more of them starve the inlet on coarse grids
-
-
-def film_parameter(film: float, half_width: float, radius: float) -> float:
-    """Return H_c = h R/b^2, the film in units of the dry contact's sagitta."""
-    return film * radius / half_width**2
 
 
 def default_domain(H_c: float, reach: float = 40.0) -> tuple[float, float]:
@@ -76,7 +60,7 @@ def graded_nodes(
     """
     s_in, s_out, neck = clusters(H_c)
     left, right = domain
-    ahead = -1.0 - left  # a near meniscus pumps the pressure up over the way it leaves
+    ahead = -1.0 - left  # a near meniscus pumps the pressure up over the distance it leaves
     s_in = min(s_in, ahead) if ahead > 0.0 else s_in
     crowds = [(-1.0, s_in, 1.0), (neck, s_out, _NECK_SHARE)]
     if spike is not None:
@@ -111,12 +95,6 @@ def graded_nodes(
         X = np.clip(X - change, left, right)
     X[0], X[-1] = left, right
     return X
-
-
-def uniform_nodes(n: int, domain: tuple[float, float]) -> Array:
-    """Equally spaced nodes on the domain [half-widths]."""
-    nodes: Array = np.linspace(domain[0], domain[1], n)
-    return nodes
 
 
 def face_weights(nodes: Array, *, upwind: bool = False) -> Array:

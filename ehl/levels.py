@@ -16,9 +16,6 @@ from ehl.newton import Iteration, newton
 from ehl.plan import Plan
 from ehl.regressions import moes_central
 
-__all__ = ["Figures", "Level", "State", "Tip", "cold", "dry_approach", "figures", "spike_of", "warm"]
-
-
 _SHARP = 0.2  # a maximum narrower than this share of the outlet zone is a spike
 _DROP = 0.9  # the width is taken where the pressure has fallen to this share of the tip
 

@@ -23,8 +23,6 @@ from ehl.rheology import (
     roelands_index,
 )
 
-__all__ = ["LIMITS", "Lubricant"]
-
 LIMITS = {
     "viscosity": Limit(0.0, 1e100, "Pa s", "give eta0 in Pa s", low_open=True),
     "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa", "give alpha in 1/Pa, near 2e-8 for mineral oil"),

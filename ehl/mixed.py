@@ -9,7 +9,7 @@ pressure at it, and s is where that pressure is what the share asks for at the m
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from base import Cost, Fault, InputError, described, quantity, record, shorten
 from ehl.asperities import Roughness
@@ -17,8 +17,6 @@ from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.solver import solve
 from ehl.supply import Supply
-
-__all__ = ["MixedFilm", "central_asperity_pressure", "solve_mixed"]
 
 _LEAST_SHARE = 1e-10
 _LEAST_FILM_SHARE = 1e-6
@@ -197,24 +195,17 @@ class _NoFilmError(Exception):
     """A trial film failed, or none is left to the load."""
 
 
+@dataclass
 class _Search:
     """Films at trial shares, each started from the last."""
 
-    def __init__(
-        self,
-        contact: LineContact,
-        roughness: Roughness,
-        tolerance: float,
-        supply: Supply | None,
-        start: Film | None,
-    ) -> None:
-        self.contact = contact
-        self.roughness = roughness
-        self.tolerance = tolerance
-        self.supply = supply
-        self.start = start
-        self.cost = Cost(0.0)
-        self.last: Film
+    contact: LineContact
+    roughness: Roughness
+    tolerance: float
+    supply: Supply | None
+    start: Film | None
+    cost: Cost = field(default_factory=lambda: Cost(0.0))
+    last: Film = field(init=False)
 
     def film_at(self, odds: float) -> Film:
         """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""

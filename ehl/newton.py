@@ -12,9 +12,6 @@ from base import Array, Integers
 from ehl.discrete import Grid, Groups, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.grid import face_weights
 
-__all__ = ["Factors", "Iteration", "newton"]
-
-
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
 _STEP_DONE = 1e-6  # Newton converges quadratically: after such a step the error is near rounding

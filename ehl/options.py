@@ -10,12 +10,10 @@ from ehl.contact import LineContact
 from ehl.regressions import moes_central
 from ehl.supply import Meniscus, OilLayer, Supply
 
-__all__ = ["ARTICLE_DOMAIN", "ARTICLE_NODES", "GRIDS", "Options", "warn_of_range"]
-
 GRIDS = ("graded", "uniform", "article")
 
-ARTICLE_NODES = 130
-ARTICLE_DOMAIN = (-4.0, 1.2)
+_ARTICLE_NODES = 130
+_ARTICLE_DOMAIN = (-4.0, 1.2)
 """The grid of a published study of spur gears: 130 equal nodes, criterion 1e-6 on the pressure."""
 
 _LIMITS = {
@@ -43,7 +41,7 @@ class Options:
         self._check(contact, found)
         found.raise_if_any()
         if self.grid == "article":
-            return replace(self, grid="uniform", nodes=ARTICLE_NODES, domain=ARTICLE_DOMAIN)
+            return replace(self, grid="uniform", nodes=_ARTICLE_NODES, domain=_ARTICLE_DOMAIN)
         return self
 
     @property

@@ -14,8 +14,6 @@ from ehl.plan import Plan
 from ehl.response import slopes
 from ehl.run import DRY, Run
 
-__all__ = ["failed_film", "film_of"]
-
 _GRID_FACTOR = 0.4  # as for the film
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from base import Array
 from ehl.contact import LineContact
 from ehl.discrete import Grid, make_grid
-from ehl.grid import clusters, default_domain, film_parameter, graded_nodes, uniform_nodes
+from ehl.grid import clusters, default_domain, graded_nodes
 from ehl.regressions import moes_central
 from ehl.supply import Meniscus, OilLayer, Supply, inlet_of_layer, starved_film
-
-__all__ = ["Plan", "expected_film"]
-
 
 _REUSE = 1.5  # a start's grid serves until H_c differs by this factor
 _NEAREST_INLET = 1e-6  # b ahead of the dry contact
@@ -21,7 +20,7 @@ _NEAREST_INLET = 1e-6  # b ahead of the dry contact
 
 def expected_film(contact: LineContact) -> float:
     """Return the flooded h R/b^2 by Moes' formula."""
-    return film_parameter(moes_central(contact), contact.half_width, contact.radius)
+    return contact.film_parameter(moes_central(contact))
 
 
 @dataclass(frozen=True)
@@ -48,9 +47,9 @@ class Plan:
     @classmethod
     def fed(cls, contact: LineContact, kind: str, supply: Supply, flooded: float) -> Plan:
         """Lay the plan of a starved contact, whose flooded film would be ``flooded`` [m]."""
-        H_flooded = film_parameter(flooded, contact.half_width, contact.radius)
+        H_flooded = contact.film_parameter(flooded)
         if isinstance(supply, OilLayer):
-            H_c = film_parameter(supply.thickness, contact.half_width, contact.radius)
+            H_c = contact.film_parameter(supply.thickness)
             distance = inlet_of_layer(H_flooded, H_c)
         else:
             distance = -1.0 - supply.position / contact.half_width
@@ -69,7 +68,7 @@ class Plan:
     def nodes(self, n: int, start: Array | None = None) -> Array:
         """Return n nodes [half-widths]; ``start`` are nodes close to them."""
         if self.kind == "uniform":
-            return uniform_nodes(n, self.domain)
+            return np.linspace(*self.domain, n)
         return graded_nodes(self.H_c, n, self.domain, self.spike, start)
 
     def grid(self, n: int) -> Grid:

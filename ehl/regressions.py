@@ -8,18 +8,6 @@ import warnings
 from base import Cost, Fault, Faults, InputError, RangeWarning, described, quantity, record
 from ehl.contact import LineContact
 
-__all__ = [
-    "FormulaFilm",
-    "dowson",
-    "dowson_higginson_minimum",
-    "dowson_toyoda_central",
-    "formula_stiffness",
-    "moes_central",
-    "nijenbanning_line_central",
-    "pan_hamrock_central",
-    "pan_hamrock_minimum",
-]
-
 _DEFINITIONS = ("dowson-central", "dowson-minimum")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,9 +19,6 @@ from ehl.levels import Level, dry_approach
 from ehl.plan import Plan, expected_film
 from ehl.supply import OilLayer, Supply
 
-__all__ = ["Slopes", "slopes"]
-
-
 _STEP = 3e-7  # of ln w and of ln(distance of the meniscus), in differences of the residual
 
 
@@ -30,23 +28,17 @@ class Slopes:
 
     central: float
     separation: float
-    ripple: float  # relative difference between the two ways of differentiating the separation
+    ripple: (
+        float  # relative difference between two derivatives of the separation, on fixed and on moving nodes
+    )
 
 
-@dataclass(frozen=True)
-class _Response:
+class _Response(NamedTuple):
     """Derivatives by one parameter [m]."""
 
     central: float
     separation: float
     flow: float  # NaN where it was not asked for
-
-    def less(self, other: _Response, factor: float) -> _Response:
-        return _Response(
-            self.central - factor * other.central,
-            self.separation - factor * other.separation,
-            self.flow - factor * other.flow,
-        )
 
 
 def slopes(level: Level, supply: Supply | None) -> Slopes:
@@ -84,7 +76,8 @@ def _along(
         return by_load
     farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_STEP))
     by_distance = _respond(level, before, level.contact, farther, flow=True)
-    return by_load.less(by_distance, by_load.flow / by_distance.flow)
+    follow = by_load.flow / by_distance.flow
+    return _Response(*(a - follow * b for a, b in zip(by_load, by_distance, strict=True)))
 
 
 def _respond(level: Level, before: Residual, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:

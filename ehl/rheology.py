@@ -15,20 +15,6 @@ from numpy.typing import ArrayLike
 
 from base import Array
 
-__all__ = [
-    "ROELANDS_LN_VISCOSITY",
-    "ROELANDS_PRESSURE",
-    "Barus",
-    "ConstantDensity",
-    "ConstantViscosity",
-    "DensityLaw",
-    "DowsonHigginson",
-    "Roelands",
-    "ViscosityLaw",
-    "roelands_index",
-]
-
-
 ROELANDS_PRESSURE = 1.0 / 5.1e-9  # p0 [Pa]
 ROELANDS_LN_VISCOSITY = -9.67  # ln of the viscosity at the pole of Roelands' law [ln(Pa s)]
 _DENSITY_RISE = 0.6e-9  # 1/Pa

@@ -1,4 +1,4 @@
-"""One call of the solver: grids one after another, with the ways out where Newton's method fails."""
+"""One call of the solver: grids one after another, with what is tried where Newton's method fails."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from ehl.grid import clusters
 from ehl.levels import Level, cold, spike_of, warm
 from ehl.plan import Plan
 from ehl.supply import OilLayer, Supply
-
-__all__ = ["DRY", "Run"]
 
 DRY = 1e-5
 """h R/b^2 below which a contact that is not solved is as good as dry."""

@@ -18,8 +18,6 @@ from ehl.plan import Plan
 from ehl.run import Run
 from ehl.supply import OilLayer, Supply
 
-__all__ = ["solve", "solve_path"]
-
 _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257

@@ -5,19 +5,10 @@ from __future__ import annotations
 import math
 
 from base import Faults, Limit, quantity, record
-from ehl.film import DEFINITIONS, Film
-
-__all__ = ["StiffnessRow", "stiffness_table"]
+from ehl.film import DEFINITIONS, MEANINGS, Film
 
 _FACE_WIDTH = Limit(0.0, 1e3, "m", "give b in m", low_open=True)
 _BODIES = Limit(0.0, 1e18, "N/m", "give it at the whole face", low_open=True)
-_KINDS = {
-    "approach": "tangent, -1/(d separation/dw): the film's yielding beyond the dry contact",
-    "tangent": "tangent, -dw/dh_cen",
-    "nodal-sum": "secant, int p/h dx",
-    "dowson-central": "tangent of a formula, 10 w/h_c",
-    "dowson-minimum": "tangent of a formula, w/(0.13 h_m)",
-}
 
 
 @record
@@ -85,5 +76,5 @@ def stiffness_table(
         stiffness = face_width * film.stiffness(definition)
         loss = math.nan if bodies is None else bodies / (bodies + stiffness)
         error = errors.get(definition, film.error if definition == "nodal-sum" else math.nan)
-        rows.append(StiffnessRow(definition, _KINDS[definition], stiffness, error, loss))
+        rows.append(StiffnessRow(definition, MEANINGS[definition], stiffness, error, loss))
     return tuple(rows)

@@ -15,8 +15,6 @@ import numpy as np
 
 from base import Array, Faults, Limit
 
-__all__ = ["LIMITS", "Meniscus", "OilLayer", "Supply", "dry_gap", "inlet_of_layer", "starved_film"]
-
 _FLOODED = "leave the supply out for a flooded inlet"
 LIMITS = {
     "position": Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True),
@@ -106,14 +104,14 @@ def _pumping(film: float) -> tuple[Array, Array]:
 def starved_film(flooded: float, distance: float) -> float:
     """Estimate of the film [b^2/R] behind a meniscus at a distance [b] ahead of the dry contact.
 
-    Grubin's inlet: the same pressure has to be pumped up as in the flooded inlet, over a shorter way.
+    Grubin's inlet: the same pressure has to be pumped up as in the flooded inlet, over a shorter distance.
     """
     need = _pumping(flooded)[1][-1]
     low, high = math.log(1e-12 * flooded), math.log(flooded)
     for _ in range(24):
         middle = 0.5 * (low + high)
-        ways, pumped = _pumping(math.exp(middle))
-        enough = float(np.interp(distance, ways, pumped)) > need
+        distances, pumped = _pumping(math.exp(middle))
+        enough = float(np.interp(distance, distances, pumped)) > need
         low, high = (middle, high) if enough else (low, middle)
     return math.exp(low)
 

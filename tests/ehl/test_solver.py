@@ -1,3 +1,4 @@
+import os
 import subprocess
 import sys
 import warnings
@@ -206,13 +207,26 @@ def test_importing_the_package_is_light():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def test_cost_holds_no_compilation(tmp_path):
+    code = """
+import time
+from ehl import LineContact, solve
+contact = LineContact.from_moes(20.0, 10.0)
+began = time.perf_counter()
+print(solve(contact).cost.seconds / (time.perf_counter() - began))
+"""
+    nothing_kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", code], check=True, env=nothing_kept, capture_output=True)
+    assert float(done.stdout) < 0.2
+
+
 def test_public_names():
     import ehl
 
     assert {"Lubricant", "LineContact", "solve", "solve_path", "Film"} <= set(ehl.__all__)
     for name in ehl.__all__:
         assert getattr(ehl, name) is not None
-    assert set(ehl.__all__) <= set(dir(ehl))
+    assert sorted(ehl.__all__) == sorted(dir(ehl))
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = ehl.no_such_name
 
