@@ -11,9 +11,11 @@ import numpy.typing as npt
 from base import Cost, Faults, Stopwatch
 from dynamics.exponents import stretch_rate
 from dynamics.flow import Tables, period_map, tables
+from dynamics.homes import Homes
 from dynamics.limits import NUMBER, RADIUS
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
+from dynamics.states import apart
 from dynamics.sweeps import APERIODIC, creeping, repeat_after, settling_periods
 
 __all__ = ["Attractor", "BasinResult", "basins"]
@@ -233,7 +235,7 @@ class _Found:
         self.periods += orbit.cost.periods
         self.iterations += orbit.cost.iterations
         size = max(float(np.max(np.abs(states))), 1e-300)
-        if not (orbit.converged and orbit.stable and _apart(orbit.state, states) < 1e-3 * size):
+        if not (orbit.converged and orbit.stable and apart(orbit.state, states) < 1e-3 * size):
             return UNSETTLED
         return self.note(orbit, period_map(self.table, orbit.state, orbit.periods).states)
 
@@ -243,7 +245,7 @@ class _Found:
             if orbit is None or other is None:
                 if orbit is other:
                     return i
-            elif len(points) == len(states) and _apart(orbit.state, points) < 1e-6 * max(
+            elif len(points) == len(states) and apart(orbit.state, points) < 1e-6 * max(
                 np.max(np.abs(points)), 1e-300
             ):
                 return i
@@ -253,8 +255,6 @@ class _Found:
 
     def settle(self, starts: FloatArray, limit: int, labels: IntArray, which: int = UNDECIDED) -> None:
         """Follow all starts with the label `which` until they arrive at a known periodic attractor."""
-        from dynamics.kernels.searching import settle
-
         if which != UNDECIDED:
             some = labels == which
             if np.any(some):
@@ -263,14 +263,10 @@ class _Found:
                 mine[mine == UNDECIDED] = which
                 labels[some], starts[some] = mine, there
             return
-        rows = [
-            np.column_stack([p, np.full(len(p), i), np.full(len(p), len(p))])
-            for i, (orbit, p) in enumerate(zip(self.orbits, self.points, strict=True))
-            if orbit is not None
-        ]
-        homes = np.vstack(rows) if rows else np.zeros((0, 4))
-        radius = self.near * float(np.max(np.abs(homes[:, :2]), initial=0.0))
-        self.periods += int(settle(self.table.arrays, starts, homes, radius, limit, labels))
+        known = [None if orbit is None else p for orbit, p in zip(self.orbits, self.points, strict=True)]
+        homes = Homes(self.table, known, self.near)
+        homes.settle(starts, limit, labels)
+        self.periods += homes.periods
 
     def attractors(self, labels: IntArray) -> tuple[Attractor, ...]:
         """Records with their shares."""
@@ -302,11 +298,6 @@ class _Sieve:
     def holds(self, states: FloatArray) -> bool:
         """Tell whether a motion has come to it: all of the later half of its states."""
         return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :]).T)]))
-
-
-def _apart(state: FloatArray, states: FloatArray) -> float:
-    """Distance of a state to the nearest of several, in the largest norm."""
-    return float(np.min(np.max(np.abs(states - state), axis=1)))
 
 
 def _axis(faults: Faults, name: str, given: tuple[float, float, int]) -> FloatArray:

@@ -4,62 +4,51 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.attraction import Attractor
-from dynamics.flow import Tables, tables
+from dynamics.flow import tables
+from dynamics.homes import Homes
 from dynamics.limits import CONFIDENCE, RADIUS
 from dynamics.oscillator import GearOscillator
+from dynamics.regions import Region, checked_region
 
 __all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-Region = tuple[tuple[float, float], tuple[float, float]]
+CORNERS = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])  # of a cell, in cells
 COUNTED = 5  # last levels from which the dimension is taken
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class BasinBoundary:
-    """Boundary between basins.
+    """Boundary between basins."""
 
-    Parameters
-    ----------
-    points : ndarray, shape (any, 2)
-        X and V in the middle of the smallest cells whose corners differ.
-    cell : tuple of float
-        Sides of these cells.
-    counts : ndarray of int
-        Cells with different corners at every level; from one to the next the sides are halved.
-    dimension : float
-        Box-counting dimension: slope of log2 of the counts over the level, from the last five levels.
-    dimension_error : float
-        Standard error of the slope.
-    shares : ndarray, shape (attractors + 1,)
-        Part of the region that comes to each attractor, from the areas of the cells; last, what comes to none of them.
-    error : float
-        Half the area of the smallest cells on the boundary, over the region: what the shares leave open.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether no level had more cells than allowed.
-    message : str
-        What was found.
-    """
+    headline = ("dimension", "dimension_error")
 
-    points: FloatArray
-    cell: tuple[float, float]
-    counts: IntArray
-    dimension: float
-    dimension_error: float
-    shares: FloatArray
-    error: float
+    points: Array = quantity(
+        "1", "X and V in the middle of the smallest cells whose corners differ", "cell state"
+    )
+    cell: tuple[float, float] = quantity("1", "sides of these cells", "state")
+    counts: Integers = quantity(
+        "1", "cells with different corners at every level; from one to the next the sides are halved", "level"
+    )
+    dimension: float = quantity(
+        "1", "box-counting dimension: slope of log2 of the counts over the level, from the last five levels"
+    )
+    dimension_error: float = quantity("1", "standard error of the slope")
+    shares: Array = quantity(
+        "1",
+        "part of the region that comes to each attractor, from the areas of the cells; last, what comes to none",
+        "attractor",
+    )
+    error: float = quantity(
+        "1",
+        "half the area of the smallest cells on the boundary, over the region: what the shares leave open",
+    )
     cost: Cost
-    converged: bool
+    converged: bool = quantity("1", "whether no level had more cells than allowed")
     message: str
 
 
@@ -143,17 +132,13 @@ def basin_boundary(
     halvings = faults.whole("levels", levels, 1, 20, "6 is usual")
     wait = faults.whole("limit", limit, 1, 10**7, "2000 is usual")
     near = faults.number("radius", radius, RADIUS)
-    homes = [a for a in attractors if a.orbit is not None]
+    homes = [a.states for a in attractors if a.orbit is not None]
     if not homes:
         faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
-    for k, (low, high) in enumerate(region):
-        if not low < high:
-            faults.add(
-                f"region[{k}]", (low, high), "must have the lower value first", "give ((x0, x1), (v0, v1))"
-            )
+    region = checked_region(faults, region)
     faults.raise_if_any()
-    labeller = _Labeller(tables(oscillator), homes, near, wait)
-    origin, width = np.array([r[0] for r in region]), np.array([r[1] - r[0] for r in region])
+    labeller = _Labeller(Homes(tables(oscillator), homes, near), wait)
+    origin, width = np.array(region)[:, 0], np.ptp(region, axis=1)
     corners = np.array([(i, j) for i in range(side) for j in range(side)], dtype=np.int64)
     counts, shares, fine = [], np.zeros(len(homes) + 1), True
     for level in range(halvings + 1):
@@ -168,12 +153,12 @@ def basin_boundary(
         if 4 * len(at) > max_cells:
             fine = False
             break
-        corners = (2 * at[:, None, :] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])).reshape(-1, 2)
+        corners = (2 * at[:, None, :] + CORNERS).reshape(-1, 2)
     for kind in range(len(shares)):
         shares[kind] += np.mean(boundary == kind, axis=1).sum() / number**2
     size = width / number
     slope, scatter = _slope(np.array(counts))
-    cost = Cost(watch.seconds, 2, len(labeller.known), labeller.periods)
+    cost = Cost(watch.seconds, 2, len(labeller.known), labeller.homes.periods)
     message = (
         f"{counts[-1]} boundary cells, {len(counts) - 1} halvings, dimension {slope:.3f} +- {scatter:.3f}"
     )
@@ -186,36 +171,24 @@ def basin_boundary(
 class _Labeller:
     """Labels of corners, each followed once."""
 
-    def __init__(self, table: Tables, homes: Sequence[Attractor], near: float, limit: int) -> None:
-        self.table, self.limit, self.none = table, limit, len(homes)
-        rows = [
-            np.column_stack([a.states, np.full(len(a.states), i), np.full(len(a.states), len(a.states))])
-            for i, a in enumerate(homes)
-        ]
-        self.homes = np.vstack(rows)
-        self.radius = near * float(np.max(np.abs(self.homes[:, :2])))
+    def __init__(self, homes: Homes, limit: int) -> None:
+        self.homes, self.limit = homes, limit
         self.known: dict[tuple[float, float], int] = {}
-        self.periods = 0
 
-    def at(self, cells: IntArray, low: FloatArray, size: FloatArray, number: int) -> IntArray:
+    def at(self, cells: Integers, low: Array, size: Array, number: int) -> Integers:
         """Labels of the four corners of cells, shape (any, 4)."""
-        from dynamics.kernels.searching import settle
-
-        places = cells[:, None, :] + np.array([(0, 0), (0, 1), (1, 0), (1, 1)])
+        places = cells[:, None, :] + CORNERS
         unique, back = np.unique(places.reshape(-1, 2), axis=0, return_inverse=True)
-        keys = [
-            (float(i) / number, float(j) / number) for i, j in unique
-        ]  # exact: dyadic shares of the region
+        # exact: dyadic shares of the region
+        keys = [(float(i) / number, float(j) / number) for i, j in unique]
         new = [k for k, key in enumerate(keys) if key not in self.known]
-        starts = low + unique[new] * size
-        labels = np.full(len(new), -1, dtype=np.int64)
-        self.periods += int(settle(self.table.arrays, starts, self.homes, self.radius, self.limit, labels))
-        labels[labels < 0] = self.none
+        labels = self.homes.settle(low + unique[new] * size, self.limit)
+        labels[labels < 0] = self.homes.number
         self.known.update((keys[k], int(label)) for k, label in zip(new, labels, strict=True))
         return np.array([self.known[key] for key in keys], dtype=np.int64)[back].reshape(-1, 4)
 
 
-def _slope(counts: IntArray) -> tuple[float, float]:
+def _slope(counts: Integers) -> tuple[float, float]:
     """Slope of log2 of the counts per level and its standard error; nan from fewer than three levels."""
     used = counts[-COUNTED:]
     if len(used) < 3 or np.any(used == 0):

@@ -4,71 +4,66 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
 from dynamics.diagrams import Diagram
-from dynamics.limits import NUMBER
-from dynamics.passing import Passing, is_direct_saddle
+from dynamics.limits import ordered
+from dynamics.manifolds import is_direct_saddle
+from dynamics.passing import Passing
 from dynamics.shooting import Orbit
 from dynamics.sweeps import sweep
 
 __all__ = ["Crisis", "boundary_crises", "boundary_crisis"]
 
-FloatArray = npt.NDArray[np.float64]
 SMOOTH = 1e-3  # of the size of the saddle: jump of the overshoot above which a change of sign is no tangency
 SETTLED = 20_000  # periods after which the motion beside the saddle is named
 LEAST = 9  # values looked at on a saddle's range, however narrow
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Crisis:
     """A tangency of the stable and the unstable manifold of a saddle.
 
-    Parameters
-    ----------
-    parameter : float
-        Where it happens; nan if not found.
-    saddle : Orbit
-        The saddle there.
-    side : int
-        Branch of its unstable manifold on which the attractor lies: 1 or -1 along the eigenvector of positive X.
-    overshoot : tuple of float
-        At both bounds: how far motions from that branch come past the stable manifold, over the size of the saddle.
-        Positive: they leave; negative: all turn back, the attractor is closed; -1: none comes back.
-    before : str
-        Motion that the branch leads to where it is closed, beside the crisis. Only if this is "aperiodic" does a
-        chaotic attractor end; if not, motions that pass the boundary to and fro before they settle begin (the
-        boundary of the basin becomes fractal).
-    after : str
-        Motion that the branch leads to at the other bound.
-    error : float
-        Width of the bracket, relative.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether the overshoot passes zero within the bounds, on one branch, without a jump, and the root is closed in
-        on.
-    message : str
-        What was found.
+    Only if `before` is "aperiodic" does a chaotic attractor end; if not, motions that pass the boundary to and fro
+    before they settle begin (the boundary of the basin becomes fractal).
     """
 
-    parameter: float
-    saddle: Orbit
-    side: int
-    overshoot: tuple[float, float]
-    before: str
-    after: str
-    error: float
+    headline = ("parameter", "before", "after")
+
+    saddle: Orbit = quantity("", "the saddle at the crisis, or the one given if none was found")
     cost: Cost
-    converged: bool
     message: str
+    parameter: float = quantity("1", "where it happens; nan if not found", error="error", default=math.nan)
+    side: int = quantity(
+        "1",
+        "branch of the saddle's unstable manifold on which the attractor lies: 1 or -1 along the eigenvector of "
+        "positive X",
+        default=0,
+    )
+    overshoot: tuple[float, float] = quantity(
+        "1",
+        "at both bounds, how far motions from that branch come past the stable manifold, over the size of the saddle; "
+        "positive: they leave; negative: all turn back, the attractor is closed; -1: none comes back",
+        "bound",
+        default=(math.nan, math.nan),
+    )
+    before: str = quantity(
+        "", "motion that the branch leads to where it is closed, beside the crisis", default=""
+    )
+    after: str = quantity("", "motion that the branch leads to at the other bound", default="")
+    error: float = quantity("1", "width of the bracket, relative", default=math.nan)
+    converged: bool = quantity(
+        "1",
+        "whether the overshoot passes zero within the bounds, on one branch, without a jump, and the root is closed in "
+        "on",
+        default=False,
+    )
 
 
 def boundary_crisis(
@@ -112,14 +107,14 @@ def boundary_crisis(
     """
     watch = Stopwatch()
     faults = Faults()
-    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
+    low, high = ordered(faults, "bounds", bounds)
     number = faults.whole("points", points, 10, 10**6, "2000 is usual")
     longest = faults.whole("periods", periods, 1, 10**6, "240 is usual")
     if not saddle.converged or not is_direct_saddle(saddle.multipliers):
         faults.add(
             "saddle", saddle.label, "must be a saddle with a multiplier above 1", "take one of find_orbits"
         )
-    elif not low <= saddle.oscillator.get(parameter) <= high or not low < high:
+    elif not low <= saddle.oscillator.get(parameter) <= high and low < high:
         faults.add("bounds", bounds, "must be a range with the saddle in it", "widen the bounds")
     faults.raise_if_any()
     branch = continue_branch(saddle, parameter, (low, high))
@@ -128,9 +123,7 @@ def boundary_crisis(
     if run.stop - run.start < 2:
         faults.add("saddle", saddle.label, "must exist over a range of the bounds", "narrow the bounds")
         faults.raise_if_any()
-    search = Passing(
-        saddle.oscillator, parameter, branch.values[run], branch.states[run], saddle.periods, number, longest
-    )
+    search = Passing(saddle.oscillator, branch, run, number, longest)
     low, high = max(low, float(search.values[0])), min(high, float(search.values[-1]))
     ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
@@ -138,7 +131,7 @@ def boundary_crisis(
         told = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
         message = f"no crisis of this saddle: overshoots at the bounds {told}"
         cost = Cost(watch.seconds, 2, 0, search.periods)
-        return Crisis(math.nan, saddle, 0, (math.nan, math.nan), "", "", math.nan, cost, False, message)
+        return Crisis(saddle, cost, message)
     return _closed_in(search, (low, high), ends[sides[0]], sides[0], watch)
 
 
@@ -190,9 +183,7 @@ def boundary_crises(
     runs = [(branch, run) for branch in diagram.branches if branch.periods <= most for run in _runs(branch)]
     found = []
     for done, (branch, run) in enumerate(runs, start=1):
-        search = Passing(
-            diagram.oscillator, diagram.parameter, branch.values[run], branch.states[run], branch.periods, some, longest
-        )  # fmt: skip
+        search = Passing(diagram.oscillator, branch, run, some, longest)
         low, high = float(search.values[0]), float(search.values[-1])
         looked = max(LEAST, math.ceil((high - low) / spacing) + 1)
         at = np.linspace(low, high, looked)[1:-1]  # at its ends a saddle is none
@@ -210,10 +201,7 @@ def boundary_crises(
 def _again(search: Passing, bounds: tuple[float, float], side: int) -> Crisis | None:
     """Close in with more points, if the change of sign is still there."""
     watch = Stopwatch()
-    fine = Passing(
-        search.oscillator, search.parameter, search.values, search.states, search.n, 4 * search.points,
-        search.longest,
-    )  # fmt: skip
+    fine = replace(search, points=4 * search.points, periods=0)
     ends = (fine.overshoot(bounds[0], side), fine.overshoot(bounds[1], side))
     return _closed_in(fine, bounds, ends, side, watch) if ends[0] * ends[1] < 0.0 else None
 
@@ -232,7 +220,7 @@ def _closed_in(
         message = f"no crisis of this saddle: near {search.parameter} = {root:.10g} the overshoot jumps by {jump:.2g}"
     good = abs(b - a) <= 1e-9 * abs(root) and jump <= SMOOTH
     cost = Cost(watch.seconds, 2, steps, search.periods)
-    return Crisis(root, at, side, ends, before, after, abs(b - a) / abs(root), cost, good, message)
+    return Crisis(at, cost, message, root, side, ends, before, after, abs(b - a) / abs(root), good)
 
 
 def _motion(search: Passing, value: float, side: int) -> str:
@@ -256,6 +244,6 @@ def _runs(branch: Branch) -> Iterator[slice]:
             start = i - 1 if turns and not ends else i
 
 
-def _holds(values: FloatArray, value: float) -> bool:
+def _holds(values: Array, value: float) -> bool:
     """Tell whether a value lies within a range of values."""
     return bool(values.min() <= value <= values.max())

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.branch import KINDS, Branch
 from dynamics.finding import find_orbits
 from dynamics.gathering import Gathering, Origin
 from dynamics.labelling import Stretch, stretches
-from dynamics.limits import NUMBER
+from dynamics.limits import ordered
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit
@@ -21,49 +20,29 @@ from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["Diagram", "Origin", "diagram"]
 
-FloatArray = npt.NDArray[np.float64]
 
+@record
+class Diagram(AsArray):
+    """Branches of periodic orbits over one parameter."""
 
-@dataclass(frozen=True, eq=False)
-class Diagram:
-    """Branches of periodic orbits over one parameter.
+    headline = ("parameter", "message")
 
-    Parameters
-    ----------
-    oscillator : GearOscillator
-        What moves; its value of the parameter is not used.
-    parameter : str
-        What is varied.
-    bounds : tuple of float
-        Its range.
-    branches : tuple of Branch
-        In the order in which they were found.
-    origins : tuple of Origin
-        How each was found.
-    left_out : tuple of str
-        Period doublings that were not followed, and why.
-    unsure : tuple of float
-        Parameter values of searches at which the indices of the orbits do not add up: something may be missing.
-    error : float
-        Largest estimated relative error of a special point.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether every branch ended for a good reason and every search's indices add up.
-    message : str
-        What was found.
-    """
-
-    oscillator: GearOscillator
-    parameter: str
-    bounds: tuple[float, float]
-    branches: tuple[Branch, ...]
-    origins: tuple[Origin, ...]
-    left_out: tuple[str, ...]
-    unsure: tuple[float, ...]
-    error: float
+    oscillator: GearOscillator = quantity("", "what moves; its value of the parameter is not used")
+    parameter: str = quantity("", "what is varied")
+    bounds: tuple[float, float] = quantity("1", "range of the parameter", "bound")
+    branches: tuple[Branch, ...] = quantity("", "branches in the order in which they were found")
+    origins: tuple[Origin, ...] = quantity("", "how each was found")
+    left_out: tuple[str, ...] = quantity("", "period doublings that were not followed, and why")
+    unsure: tuple[float, ...] = quantity(
+        "1",
+        "parameter values of searches at which the indices of the orbits do not add up: something may be missing",
+        "search",
+    )
+    error: float = quantity("1", "largest estimated relative error of a special point")
     cost: Cost
-    converged: bool
+    converged: bool = quantity(
+        "1", "whether every branch ended for a good reason and every search's indices add up"
+    )
     message: str
 
     def special(self, kind: str) -> list[SpecialPoint]:
@@ -101,17 +80,13 @@ class Diagram:
             for p in branch.points
         ]
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Columns branch, parameter, X, V, stable (0 or 1) of all points: what a plot needs."""
         rows = [
             np.column_stack([np.full(len(b.values), i), b.values, b.states, b.stable])
             for i, b in enumerate(self.branches)
         ]
-        return (np.concatenate(rows) if rows else np.empty((0, 5))).astype(
-            dtype if dtype is not None else np.float64
-        )
+        return np.concatenate(rows) if rows else np.empty((0, 5))
 
 
 def diagram(
@@ -170,9 +145,7 @@ def diagram(
     """
     watch = Stopwatch()
     faults = Faults()
-    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
-    if not low < high:
-        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
+    low, high = ordered(faults, "bounds", bounds)
     number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
     longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
     steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")

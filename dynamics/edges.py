@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Faults
+from base import Array, Booleans, Faults
 from dynamics.attraction import Attractor
-from dynamics.flow import Tables, period_map, tables
+from dynamics.flow import period_map, tables
+from dynamics.homes import Homes
+from dynamics.manifolds import is_direct_saddle
 from dynamics.oscillator import GearOscillator
-from dynamics.passing import is_direct_saddle
 from dynamics.shooting import Orbit, find_orbit
+from dynamics.states import apart
 
 __all__ = ["edge_saddles"]
 
-FloatArray = npt.NDArray[np.float64]
 SECTIONS = 16  # parts of the bracket tried at once
 ROUNDS = 14  # of sections: the bracket shrinks to rounding
 NEAR = 1e-2  # of the attractor's size: recurrence of the motion on the boundary that Newton's method is tried from
@@ -71,16 +71,16 @@ def edge_saddles(
     wait = faults.whole("limit", limit, 1, 10**7, "1000 is usual")
     longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
     faults.raise_if_any()
-    home = _Home(oscillator, attractor, radius, wait)
+    homes = Homes(tables(oscillator), [attractor.states], radius)
     met: list[tuple[Orbit, int]] = []
     angles = 2.0 * np.pi * (np.arange(number) + 0.5) / number
     for point in attractor.states:
-        for way in np.column_stack([np.cos(angles), np.sin(angles)]):
-            edge = home.edge(point, way)
-            orbit = None if edge is None else _saddle(oscillator, home.table, edge, home.size, longest)
+        for along in np.column_stack([np.cos(angles), np.sin(angles)]):
+            edge = _edge(homes, wait, point, along)
+            orbit = None if edge is None else _saddle(oscillator, homes, edge, longest)
             if orbit is None:
                 continue
-            same = [k for k, (o, _) in enumerate(met) if _same(home.table, o, orbit, home.size)]
+            same = [k for k, (known, _) in enumerate(met) if _same(known, orbit, homes.size)]
             if same:
                 met[same[0]] = (met[same[0]][0], met[same[0]][1] + 1)
             else:
@@ -88,65 +88,43 @@ def edge_saddles(
     return [orbit for orbit, _ in sorted(met, key=lambda m: -m[1])]
 
 
-class _Home:
-    """Tells whether starts come to an attractor."""
+def _edge(homes: Homes, limit: int, point: Array, along: Array) -> Array | None:
+    """State on the boundary on a ray from a point of the attractor, nearest to it; None if there is none."""
 
-    def __init__(self, oscillator: GearOscillator, attractor: Attractor, radius: float, limit: int) -> None:
-        n = len(attractor.states)
-        self.table, self.limit = tables(oscillator), limit
-        self.size = float(np.max(np.abs(attractor.states)))
-        self.homes = np.column_stack([attractor.states, np.zeros(n), np.full(n, n)])
-        self.radius = radius * self.size
+    def stay(distances: Array) -> Booleans:
+        return np.asarray(homes.settle(point + distances[:, None] * along, limit) == 0)
 
-    def holds(self, starts: FloatArray) -> npt.NDArray[np.bool_]:
-        """Which of the starts come back."""
-        from dynamics.kernels.searching import settle
-
-        labels = np.full(len(starts), -1, dtype=np.int64)
-        settle(self.table.arrays, starts.copy(), self.homes, self.radius, self.limit, labels)
-        return np.asarray(labels == 0)
-
-    def edge(self, point: FloatArray, way: FloatArray) -> FloatArray | None:
-        """State on the boundary on a ray from a point of the attractor, nearest to it; None if there is none."""
-        far = self.size * np.geomspace(1e-4, 3.0, 2 * SECTIONS)
-        inside = self.holds(point + far[:, None] * way)
-        out = int(np.argmin(inside))
-        if inside[out]:
-            return None
-        low, high = (0.0 if out == 0 else float(far[out - 1])), float(far[out])
-        for _ in range(ROUNDS):
-            tried = np.linspace(low, high, SECTIONS + 1)[1:-1]
-            back = self.holds(point + tried[:, None] * way)
-            k = int(np.argmin(back)) if not np.all(back) else len(tried)
-            low, high = (
-                (low if k == 0 else float(tried[k - 1])),
-                (high if k == len(tried) else float(tried[k])),
-            )
-        return np.asarray(point + 0.5 * (low + high) * way)
+    far = homes.size * np.geomspace(1e-4, 3.0, 2 * SECTIONS)
+    inside = stay(far)
+    out = int(np.argmin(inside))
+    if inside[out]:
+        return None
+    low, high = (0.0 if out == 0 else float(far[out - 1])), float(far[out])
+    for _ in range(ROUNDS):
+        tried = np.linspace(low, high, SECTIONS + 1)
+        back = stay(tried[1:-1])
+        k = int(np.argmin(back)) if not np.all(back) else len(back)
+        low, high = float(tried[k]), float(tried[k + 1])
+    return np.asarray(point + 0.5 * (low + high) * along)
 
 
-def _saddle(
-    oscillator: GearOscillator, table: Tables, edge: FloatArray, size: float, longest: int
-) -> Orbit | None:
+def _saddle(oscillator: GearOscillator, homes: Homes, edge: Array, longest: int) -> Orbit | None:
     """Saddle that the motion from a state on the boundary comes closest to."""
-    states = np.vstack([edge, period_map(table, edge, 40 + 2 * longest).states])
+    states = np.vstack([edge, period_map(homes.table, edge, 40 + 2 * longest).states])
     best: list[tuple[float, int, int]] = []
     for n in range(1, longest + 1):
         gap = np.max(np.abs(states[n:] - states[:-n]), axis=1)
         k = int(np.argmin(gap))
-        if gap[k] < NEAR * size:
+        if gap[k] < NEAR * homes.size:
             best.append((float(gap[k]), n, k))
     for _, n, k in sorted(best)[:4]:
         orbit = find_orbit(oscillator, states[k], periods=n)
-        near = float(np.max(np.abs(orbit.state - states[k]))) < 10.0 * NEAR * size
+        near = float(np.max(np.abs(orbit.state - states[k]))) < 10.0 * NEAR * homes.size
         if orbit.converged and is_direct_saddle(orbit.multipliers) and near:
             return orbit
     return None
 
 
-def _same(table: Tables, a: Orbit, b: Orbit, size: float) -> bool:
+def _same(a: Orbit, b: Orbit, size: float) -> bool:
     """Tell whether two orbits are one, perhaps from another period on."""
-    if a.periods != b.periods:
-        return False
-    points = period_map(table, a.state, a.periods).states
-    return bool(np.min(np.max(np.abs(points - b.state), axis=1)) < 1e-7 * size)
+    return a.periods == b.periods and apart(b.state, a.points) < 1e-7 * size

@@ -3,78 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow import Tables, period_map, tables
 from dynamics.index import index_at_infinity
-from dynamics.limits import NUMBER
 from dynamics.oscillator import GearOscillator
+from dynamics.regions import Region, checked_region
 from dynamics.shooting import Orbit, find_orbit
+from dynamics.states import apart
 from dynamics.sweeps import rest_state, settling_periods
 
 __all__ = ["IndexCount", "OrbitSet", "find_orbits", "reach"]
 
-FloatArray = npt.NDArray[np.float64]
-Region = tuple[tuple[float, float], tuple[float, float]]
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
-@dataclass(frozen=True)
+@record
 class IndexCount:
-    """Sum of the indices of the fixed points of the n-period map, against what it must be.
+    """Sum of the indices of the fixed points of the n-period map, against what it must be."""
 
-    Parameters
-    ----------
-    periods : int
-        n.
-    points : int
-        Fixed points found, those of shorter periods included.
-    found : int
-        Sum of their indices, the sign of (1 - m1)(1 - m2) of each.
-    expected : int or None
-        Index of the map on a large circle; None if it is not known.
-    """
+    headline = ("periods", "points", "found", "expected")
 
-    periods: int
-    points: int
-    found: int
-    expected: int | None
+    periods: int = quantity("1", "n")
+    points: int = quantity("1", "fixed points found, those of shorter periods included")
+    found: int = quantity("1", "sum of their indices, the sign of (1 - m1)(1 - m2) of each")
+    expected: int | None = quantity("1", "index of the map on a large circle; None if it is not known")
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class OrbitSet:
     """Orbits found.
 
-    Parameters
-    ----------
-    orbits : tuple of Orbit
-        By period, then by X at tau = 0.
-    counts : tuple of IndexCount
-        One for each period asked for. Where found and expected differ orbits are missing, or lie on a bifurcation.
-        Where they agree none need be missing, but pairs of opposite index may.
-    region : tuple
-        Where the searches started.
-    error : float
-        Largest estimated relative error of an orbit.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether all sums of indices are as expected.
-    message : str
-        What was found.
+    Where the indices found and expected of a period differ, orbits are missing, or lie on a bifurcation. Where they
+    agree none need be missing, but pairs of opposite index may.
     """
 
-    orbits: tuple[Orbit, ...]
-    counts: tuple[IndexCount, ...]
-    region: Region
-    error: float
+    headline = ("message",)
+
+    orbits: tuple[Orbit, ...] = quantity("", "orbits by period, then by X at tau = 0")
+    counts: tuple[IndexCount, ...] = quantity("", "sum of the indices, one for each period asked for")
+    region: Region = quantity("1", "where the searches started, ((x0, x1), (v0, v1))", "state bound")
+    error: float = quantity("1", "largest estimated relative error of an orbit")
     cost: Cost
-    converged: bool
+    converged: bool = quantity("1", "whether all sums of indices are as expected")
     message: str
 
     def __len__(self) -> int:
@@ -121,15 +95,7 @@ def find_orbits(
     wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
     side = faults.whole("starts", starts, 1, 1000, "10 is usual")
     if region is not None:
-        for k, (low, high) in enumerate(region):
-            a, b = (faults.number(f"region[{k}][{i}]", value, NUMBER) for i, value in enumerate((low, high)))
-            if not a < b:
-                faults.add(
-                    f"region[{k}]",
-                    (low, high),
-                    "must have the lower value first",
-                    "give ((x0, x1), (v0, v1))",
-                )
+        region = checked_region(faults, region)
     faults.raise_if_any()
     search = _Search(oscillator, region)
     counts = []
@@ -142,18 +108,18 @@ def find_orbits(
                 break
         counts.append(count)
     orbits = tuple(sorted(search.orbits, key=lambda o: (o.periods, float(o.state[0]))))
-    good = all(c.expected is not None and c.found == c.expected for c in counts)
-    message = f"{len(orbits)} orbits"
-    message += "".join(
-        f"; the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
+    good = all(c.found == c.expected for c in counts)
+    said = [f"{len(orbits)} orbits"]
+    said += [
+        f"the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
         for c in counts
         if c.expected is not None and c.found != c.expected
-    )
+    ]
     if any(c.expected is None for c in counts):
-        message += "; the sum of the indices is not known for this oscillator"
+        said.append("the sum of the indices is not known for this oscillator")
     cost = Cost(watch.seconds, 2, 0, search.periods)
     error = max((o.error for o in orbits), default=0.0)
-    return OrbitSet(orbits, tuple(counts), search.region, error, cost, good, message)
+    return OrbitSet(orbits, tuple(counts), search.region, error, cost, good, "; ".join(said))
 
 
 class _Search:
@@ -162,7 +128,6 @@ class _Search:
     def __init__(self, oscillator: GearOscillator, region: Region | None) -> None:
         self.oscillator, self.table = oscillator, tables(oscillator)
         self.orbits: list[Orbit] = []
-        self.points: list[FloatArray] = []  # of each orbit
         self.motion, self.periods = _long_motions(oscillator, self.table)
         size = np.max(np.abs(self.motion), axis=0, initial=1e-9)
         self.region = region if region is not None else _around(size)
@@ -175,7 +140,7 @@ class _Search:
         (x0, x1), (v0, v1) = self.region
         grid = np.stack(np.meshgrid(np.linspace(x0, x1, side), np.linspace(v0, v1, side)), axis=-1)
         starts = np.concatenate([self.motion[-RECURRENT:], grid.reshape(-1, 2)])
-        known = [p for orbit, p in zip(self.orbits, self.points, strict=True) if n % orbit.periods == 0]
+        known = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
         found = np.empty((4096, 2))
         number = sum(len(p) for p in known)
         if number:
@@ -183,7 +148,7 @@ class _Search:
         last, used = hunt(self.table.arrays, starts, n, 40, self.scale, found, number)
         self.periods += int(used)
         for point in found[number:last]:
-            if not any(np.min(np.max(np.abs(p - point), axis=1)) < 1e-7 * self.scale for p in self.points):
+            if not self._knows(point):
                 self._keep(find_orbit(self.oscillator, point, periods=n))
 
     def twins(self, n: int) -> None:
@@ -223,13 +188,12 @@ class _Search:
         return IndexCount(n, number, total, index_at_infinity(self.oscillator, n))
 
     def _keep(self, orbit: Orbit) -> None:
-        if not orbit.converged:
-            return
-        points = period_map(self.table, orbit.state, orbit.periods).states
-        if any(np.min(np.max(np.abs(p - orbit.state), axis=1)) < 1e-7 * self.scale for p in self.points):
-            return
-        self.orbits.append(orbit)
-        self.points.append(points)
+        if orbit.converged and not self._knows(orbit.state):
+            self.orbits.append(orbit)
+
+    def _knows(self, state: Array) -> bool:
+        """Whether a state lies on one of the orbits."""
+        return any(apart(state, orbit.points) < 1e-7 * self.scale for orbit in self.orbits)
 
 
 def reach(oscillator: GearOscillator) -> Region:
@@ -237,7 +201,7 @@ def reach(oscillator: GearOscillator) -> Region:
     return _around(np.max(np.abs(_long_motions(oscillator, tables(oscillator))[0]), axis=0, initial=1e-9))
 
 
-def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[FloatArray, int]:
+def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[Array, int]:
     """States of motions from three starts, the later ones at the end, and the periods that they took.
 
     What diverges is left out.
@@ -254,7 +218,7 @@ def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[FloatArray
     return (np.stack(parts, axis=1).reshape(-1, 2) if parts else np.array([rest])), used
 
 
-def _around(size: FloatArray) -> Region:
+def _around(size: Array) -> Region:
     """Box somewhat larger than a motion."""
     x, v = (float(1.3 * s + 0.1 * np.max(size)) for s in size)
     return (-x, x), (-v, v)

@@ -5,79 +5,56 @@ from __future__ import annotations
 import dataclasses
 import math
 import warnings
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, InputError, RangeWarning, Stopwatch
+from base import Array, Cost, Fault, Faults, InputError, RangeWarning, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.flow import period_map, tables, turning_points
-from dynamics.limits import NUMBER
+from dynamics.limits import ordered
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import EPS, exact_determinant, floquet_multipliers
 from dynamics.special import SpecialPoint
 
 __all__ = ["ContactGrazing", "ContactOrbit", "ResonanceError", "contact_grazing", "contact_orbit"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class ContactOrbit:
-    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash.
+    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash."""
 
-    Parameters
-    ----------
-    state : ndarray, shape (2,)
-        X and V at tau = 0.
-    multipliers : ndarray, shape (2,)
-        Floquet multipliers.
-    clearance : float
-        How far the orbit stays from the limit, min(side X) - D; it exists with the backlash if not negative.
-    tau, acceleration : float
-        Time of the point nearest to the limit, and X'' there.
-    """
+    headline = ("clearance", "tau", "acceleration")
 
-    state: FloatArray
-    multipliers: npt.NDArray[np.complex128] | FloatArray
-    clearance: float
-    tau: float
-    acceleration: float
+    state: Array = quantity("1", "X and V at tau = 0", "state")
+    multipliers: npt.NDArray[np.complex128] | Array = quantity("1", "Floquet multipliers", "multiplier")
+    clearance: float = quantity(
+        "1",
+        "how far the orbit stays from the limit, min(side X) - D; it exists with the backlash if not negative",
+    )
+    tau: float = quantity("1", "time of the point nearest to the limit")
+    acceleration: float = quantity("1", "X'' there")
 
 
-@dataclass(frozen=True, eq=False)
-class ContactGrazing:
-    """Parameter values at which the orbit that never leaves contact touches the limit.
+@record
+class ContactGrazing(AsArray):
+    """Parameter values at which the orbit that never leaves contact touches the limit."""
 
-    Parameters
-    ----------
-    points : tuple of SpecialPoint
-        In the order of the parameter.
-    values, clearance : ndarray, shape (n,)
-        The scan: parameter values and how far the orbit stays from the limit; negative where it would cross.
-    error : float
-        Largest estimated relative error of a point.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether every change of sign ended in a point.
-    message : str
-        What was found.
-    """
+    headline = ("message",)
 
-    points: tuple[SpecialPoint, ...]
-    values: FloatArray
-    clearance: FloatArray
-    error: float
+    points: tuple[SpecialPoint, ...] = quantity("", "grazings in the order of the parameter")
+    values: Array = quantity("1", "parameter values of the scan", "value")
+    clearance: Array = quantity(
+        "1", "how far the orbit stays from the limit in the scan; negative where it would cross", "value"
+    )
+    error: float = quantity("1", "largest estimated relative error of a point")
     cost: Cost
-    converged: bool
+    converged: bool = quantity("1", "whether every change of sign ended in a point")
     message: str
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Parameter values of the points."""
-        return np.array([p.parameter for p in self.points]).astype(dtype if dtype is not None else np.float64)
+        return np.array([p.parameter for p in self.points])
 
 
 class ResonanceError(InputError):
@@ -113,26 +90,17 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     matrix = np.eye(2) - image.jacobian
     stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
     if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
-        faults.add(
-            "oscillator",
-            "multiplier 1",
-            "must have a linear equation without resonance",
-            "change the frequency",
-        )
-        raise ResonanceError(tuple(faults.found))
+        allowed = "must have a linear equation without resonance"
+        raise ResonanceError([Fault("oscillator", "multiplier 1", allowed, "change the frequency")])
     state = np.linalg.solve(matrix, image.state)
-    state += np.linalg.solve(
-        matrix, period_map(table, state).state - state
-    )  # one refinement, against rounding
+    # one refinement, against rounding
+    state += np.linalg.solve(matrix, period_map(table, state).state - state)
     turns = turning_points(table, state)
     at = int(np.argmin(side * turns[:, 1])) if len(turns) else -1
     tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, state[0], 0.0)
     if side * state[0] < side * nearest:  # nearest at tau = 0 itself, where the motion begins and ends
-        tau, nearest, acceleration = (
-            0.0,
-            state[0],
-            float(linear.force(0.0) - linear.stiffness(0.0) * state[0]),
-        )
+        tau, nearest = 0.0, state[0]
+        acceleration = float(linear.force(0.0) - linear.stiffness(0.0) * state[0])
     return ContactOrbit(
         state=state + np.array([side * oscillator.half_backlash, 0.0]),
         multipliers=floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(linear, 1)),
@@ -178,9 +146,7 @@ def contact_grazing(
     watch = Stopwatch()
     faults = Faults()
     n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
-    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
-    if not low < high:
-        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
+    low, high = ordered(faults, "bounds", bounds)
     faults.raise_if_any()
     evaluations = 0
 

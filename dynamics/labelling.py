@@ -2,51 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array, quantity, record
 from dynamics.branch import Branch
 from dynamics.special import SpecialPoint
 
 __all__ = ["Stretch", "stretches"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class Stretch:
-    """Neighbouring orbits of a branch with one label.
+    """Neighbouring orbits of a branch with one label."""
 
-    Parameters
-    ----------
-    label : str
-        n-p-q or Un-p-q.
-    stable : bool
-        Stability of all its orbits.
-    periods : int
-        Period, in excitation periods.
-    low, high : float
-        Least and greatest parameter value.
-    begins, ends : SpecialPoint or None
-        Special point at its first and last orbit along the branch; None at an end of the branch.
-    value : float
-        Parameter of an orbit in the middle of the range.
-    state : ndarray, shape (2,)
-        X and V of that orbit at tau = 0.
-    """
+    headline = ("label", "low", "high")
 
-    label: str
-    stable: bool
-    periods: int
-    low: float
-    high: float
-    begins: SpecialPoint | None
-    ends: SpecialPoint | None
-    value: float
-    state: FloatArray
+    label: str = quantity("", "n-p-q or Un-p-q")
+    stable: bool = quantity("1", "stability of all its orbits")
+    periods: int = quantity("1", "period, in excitation periods")
+    low: float = quantity("1", "least parameter value")
+    high: float = quantity("1", "greatest parameter value")
+    begins: SpecialPoint | None = quantity(
+        "", "special point at its first orbit along the branch; None at its end"
+    )
+    ends: SpecialPoint | None = quantity(
+        "", "special point at its last orbit along the branch; None at its end"
+    )
+    value: float = quantity("1", "parameter of an orbit in the middle of the range")
+    state: Array = quantity("1", "X and V of that orbit at tau = 0", "state")
 
     @property
     def limits(self) -> tuple[SpecialPoint, ...]:
@@ -94,7 +79,7 @@ def _between(branch: Branch, i: int) -> SpecialPoint | None:
     width = max(float(np.ptp(branch.values)), 1e-300)
     size = max(float(np.max(np.abs(branch.states))), 1e-300)
 
-    def place(value: float, state: FloatArray) -> FloatArray:
+    def place(value: float, state: Array) -> Array:
         return np.array([value / width, state[0] / size, state[1] / size])
 
     a, b = (place(float(branch.values[k]), branch.states[k]) for k in (i, i + 1))

@@ -2,77 +2,49 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Fault, Faults, InputError, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
+from dynamics.branch_problem import Steps
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem
-from dynamics.limits import NUMBER
+from dynamics.limits import ordered
 from dynamics.locus_tracing import DoublePoint, Tracer
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import floquet_multipliers, motion_label
 from dynamics.special import SpecialPoint, of_kind
+from dynamics.states import scale_of
 
 __all__ = ["CODIMENSION_TWO", "DoublePoint", "Locus", "continue_locus"]
 
-FloatArray = npt.NDArray[np.float64]
 CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazing", "double grazing")
 
 
-@dataclass(frozen=True, eq=False)
-class Locus:
-    """A curve of special points in two parameters.
+@record
+class Locus(AsArray):
+    """A curve of special points in two parameters."""
 
-    Parameters
-    ----------
-    kind : str
-        "saddle-node", "period-doubling" or "grazing".
-    boundary : int
-        At a grazing 1 for X = D, -1 for X = -D; else 0.
-    parameters : tuple of str
-        The two parameters.
-    periods : int
-        Period of the orbits, in excitation periods.
-    values : ndarray, shape (m, 2)
-        Parameters along the curve.
-    states : ndarray, shape (m, 2)
-        X and V at tau = 0.
-    multipliers : ndarray of complex, shape (m, 2)
-        Floquet multipliers.
-    labels : tuple of str
-        n-p-q.
-    points : tuple of DoublePoint
-        Points of codimension two in their order along the curve.
-    ended : tuple of str
-        Why the curve ended at its first and at its last point.
-    error : float
-        Largest estimated relative error of a point of codimension two.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether both ends are at a bound, at the start again, or at a grazing that ends the curve.
-    message : str
-        What happened.
-    """
+    headline = ("kind", "message")
 
-    kind: str
-    boundary: int
-    parameters: tuple[str, str]
-    periods: int
-    values: FloatArray
-    states: FloatArray
-    multipliers: npt.NDArray[np.complex128]
-    labels: tuple[str, ...]
-    points: tuple[DoublePoint, ...]
-    ended: tuple[str, str]
-    error: float
+    kind: str = quantity("", "saddle-node, period-doubling or grazing")
+    boundary: int = quantity("1", "at a grazing 1 for X = D, -1 for X = -D; else 0")
+    parameters: tuple[str, str] = quantity("", "the two parameters", "parameter")
+    periods: int = quantity("1", "period of the orbits, in excitation periods")
+    values: Array = quantity("1", "parameters along the curve", "point parameter")
+    states: Array = quantity("1", "X and V at tau = 0", "point state")
+    multipliers: npt.NDArray[np.complex128] = quantity("1", "Floquet multipliers", "point multiplier")
+    labels: tuple[str, ...] = quantity("", "n-p-q of each orbit", "point")
+    points: tuple[DoublePoint, ...] = quantity("", "points of codimension two in their order along the curve")
+    ended: tuple[str, str] = quantity("", "why the curve ended at its first and at its last point")
+    error: float = quantity("1", "largest estimated relative error of a point of codimension two")
     cost: Cost
-    converged: bool
+    converged: bool = quantity(
+        "1", "whether both ends are at a bound, at the start again, or at a grazing that ends the curve"
+    )
     message: str
 
     def special(self, kind: str) -> list[DoublePoint]:
@@ -90,11 +62,9 @@ class Locus:
         """
         return of_kind(self.points, kind, CODIMENSION_TWO)
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """The two parameters, shape (m, 2)."""
-        return self.values.astype(dtype if dtype is not None else np.float64)
+        return self.values
 
 
 def continue_locus(
@@ -107,7 +77,7 @@ def continue_locus(
     max_step: float = 0.02,
     min_step: float = 1e-7,
     max_points: int = 2000,
-    progress: Callable[[int, FloatArray], None] | None = None,
+    progress: Callable[[int, Array], None] | None = None,
 ) -> Locus:
     """Follow a special point in two parameters, both ways.
 
@@ -146,36 +116,24 @@ def continue_locus(
     start = oscillator.with_parameter(parameters[0], point.parameter)
     if parameters[0] == parameters[1]:
         faults.add("parameters", parameters, "must be two different parameters", "name another one")
-    low, high = np.empty(2), np.empty(2)
-    for k in range(2):
-        low[k], high[k] = (faults.number(f"bounds[{k}][{i}]", bounds[k][i], NUMBER) for i in range(2))
-        value = start.get(parameters[k])
-        if not low[k] < high[k]:
-            faults.add(f"bounds[{k}]", bounds[k], "must have the lower value first", "give (low, high)")
-        elif not low[k] <= value <= high[k]:
-            faults.add("point", value, f"must have its {parameters[k]} within bounds", "widen the bounds")
-    limit = faults.whole("max_points", max_points, 1, 10**6, "2000 is usual")
+    ranges = [ordered(faults, f"bounds[{k}]", bounds[k]) for k in range(2)]
+    for name, (least, most) in zip(parameters, ranges, strict=True):
+        if not least <= start.get(name) <= most and least < most:
+            faults.add("point", start.get(name), f"must have its {name} within bounds", "widen the bounds")
+    steps = Steps(step, max_step, min_step, max_points)
+    steps.check(faults)
     faults.raise_if_any()
-    scale = max(float(np.max(np.abs(point.state))), start.half_backlash, 1e-300)
-    problem = OrbitProblem(start, parameters, point.periods, low, high, scale)
-    phase = 0.0 if math.isnan(point.tau) else (point.tau / (point.periods * start.period)) % 1.0
-    condition = Condition(
-        point.kind, point.boundary, 0 if point.kind != "grazing" else int(np.sign(point.acceleration)), phase
-    )
+    low, high = np.array(ranges).T
+    problem = OrbitProblem(start, parameters, point.periods, low, high, scale_of(start, point.state))
+    condition = Condition.of(start, point)
     guess = problem.unknowns(point.state, [start.get(name) for name in parameters])
     first = special_orbit(problem, condition, guess, np.array([0.0, 0.0, 0.0, 1.0]))
     if first is None:
-        faults.add(
-            "point",
-            point.parameter,
-            "must be a point that can be met again",
-            "next to a grazing, start elsewhere",
-        )
-        faults.raise_if_any()
-        raise AssertionError
+        allowed, remedy = "must be a point that can be met again", "next to a grazing, start elsewhere"
+        raise InputError([Fault("point", f"{point.parameter}", allowed, remedy)])
     tracers = []
     for sign in (-1.0, 1.0):
-        tracer = Tracer(problem, condition, first, sign, (step, max_step, min_step), limit, progress)
+        tracer = Tracer(problem, condition, first, sign, steps, progress)
         tracer.run()
         tracers.append(tracer)
         if tracer.ended == "closed":

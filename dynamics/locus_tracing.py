@@ -2,45 +2,42 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array, quantity, record
+from dynamics.branch_problem import Steps
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem, Point, passes
 from dynamics.crossings import match_extrema
+from dynamics.roots import bracketed
 from dynamics.shooting import EPS
 
 __all__ = ["DoublePoint", "Tracer"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class DoublePoint:
     """A point of a locus at which a second condition is met.
 
-    Parameters
-    ----------
-    kind : str
-        "cusp" (two saddle-node curves meet), "saddle-node and grazing", "period-doubling and grazing", "double
-        grazing" (two extrema touch). Both multipliers 1 or -1 needs a determinant of 1, that is no damping.
-    values : ndarray, shape (2,)
-        The parameters.
-    state : ndarray, shape (2,)
-        X and V at tau = 0.
-    error : float
-        Error of a parameter, relative, that what is left of the second condition stands for.
+    Both multipliers 1 or -1 needs a determinant of 1, that is no damping.
     """
 
-    kind: str
-    values: FloatArray
-    state: FloatArray
-    error: float
+    headline = ("kind",)
+
+    kind: str = quantity(
+        "",
+        "cusp (two saddle-node curves meet), saddle-node and grazing, period-doubling and grazing, double grazing (two "
+        "extrema touch)",
+    )
+    values: Array = quantity("1", "the parameters", "parameter", error="error")
+    state: Array = quantity("1", "X and V at tau = 0", "state")
+    error: float = quantity(
+        "1", "relative error of a parameter that what is left of the second condition stands for"
+    )
 
 
 class Tracer:
@@ -48,10 +45,10 @@ class Tracer:
 
     def __init__(
         self, problem: OrbitProblem, condition: Condition, start: Point, sign: float,
-        steps: tuple[float, float, float], limit: int, progress: Callable[[int, FloatArray], None] | None,
+        steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
-        self.problem, self.condition, self.limit, self.progress = problem, condition, limit, progress
-        self.step, self.max_step, self.min_step = steps
+        self.problem, self.condition, self.steps, self.progress = problem, condition, steps, progress
+        self.step = steps.first
         self.points = [start]
         self.phases = problem.phases(start)
         self.double: list[DoublePoint] = []
@@ -63,14 +60,14 @@ class Tracer:
     def run(self) -> None:
         """Step until the locus ends."""
         while not self.ended:
-            if len(self.points) > self.limit:
-                self.ended = f"{self.limit} points: raise max_points"
+            if len(self.points) > self.steps.points:
+                self.ended = f"{self.steps.points} points: raise max_points"
                 return
             last = self.points[-1]
             new = self._try(last)
             if new is None:
                 self.step *= 0.5
-                if self.step < self.min_step:
+                if self.step < self.steps.least:
                     self.ended = self._why(last)
                 continue
             self._accept(last, new)
@@ -95,7 +92,7 @@ class Tracer:
         if np.any(row == 1.0):
             new.u[row == 1.0] = guess[row == 1.0]
         tangent = self._tangent(new, new.u - last.u)
-        if abs(tangent @ self.tangent) < 0.9 and self.step > 16.0 * self.min_step:
+        if abs(tangent @ self.tangent) < 0.9 and self.step > 16.0 * self.steps.least:
             return None
         if self.condition.kind == "grazing":
             turn = abs(self._phase(new) - self.condition.phase + 0.5) % 1.0 - 0.5
@@ -115,14 +112,14 @@ class Tracer:
             self.condition = replace(self.condition, phase=self._phase(new))
         if np.any((new.u[2:] == 0.0) | (new.u[2:] == 1.0)):
             self.ended = "bound"
-        self.step = min(1.3 * self.step, self.max_step)
+        self.step = min(1.3 * self.step, self.steps.most)
         if self.progress is not None:
             self.progress(len(self.points), new.values)
 
     def _phase(self, point: Point) -> float:
         return float(point.extrema[self.condition.nearest(point), 0])
 
-    def _tangent(self, point: Point, along: FloatArray) -> FloatArray:
+    def _tangent(self, point: Point, along: Array) -> Array:
         """Null vector of the three equations, turned to the side of `along`."""
         rows = np.array([*(point.derivative - np.eye(2, 4)), self.condition.gradient(self.problem, point)])
         way = np.linalg.svd(rows)[2][-1]
@@ -138,28 +135,17 @@ class Tracer:
             tests.append(("saddle-node and grazing", a.fold, b.fold))
             tests.append(("period-doubling and grazing", a.flip, b.flip))
         floor = [float(self.problem.packed(p.u)[6]) for p in (a, b)]
+        own = (self.condition.nearest(a), self.condition.boundary) if kind == "grazing" else None
+        name = "double grazing" if kind == "grazing" else f"{kind} and grazing"
         for i, j in match_extrema(a, b) if min(floor) > 0.0 else []:
             for boundary in (1,) if self.problem.oscillator.one_sided else (1, -1):
-                if (
-                    kind == "grazing"
-                    and boundary == self.condition.boundary
-                    and i == self.condition.nearest(a)
-                ):
-                    continue
-                name = "double grazing" if kind == "grazing" else f"{kind} and grazing"
-                tests.append(
-                    (
-                        name,
-                        float(a.extrema[i, 1]) - boundary * floor[0],
-                        float(b.extrema[j, 1]) - boundary * floor[1],
-                    )
-                )
+                if (i, boundary) != own:
+                    before = float(a.extrema[i, 1]) - boundary * floor[0]
+                    tests.append((name, before, float(b.extrema[j, 1]) - boundary * floor[1]))
         return tests
 
     def _mark(self, kind: str, a: Point, b: Point, before: float, after: float) -> None:
         """Close in on a point of codimension two between two neighbours: Brent's method along their chord."""
-        from scipy.optimize import brentq
-
         chord = b.u - a.u
         row = chord / np.linalg.norm(chord)
         seen: list[Point] = []
@@ -170,15 +156,14 @@ class Tracer:
                 return before if share == 0.0 else after
             found = special_orbit(self.problem, self.condition, a.u + share * chord, row)
             value = math.nan if found is None else self._again(kind, a, found, before)
-            if found is None or not math.isfinite(value):
-                raise _LostError
-            seen.append(found)
-            left.append(value)
+            if found is not None and math.isfinite(value):
+                seen.append(found)
+                left.append(value)
             return value
 
-        search: Callable[..., float] = brentq
-        with contextlib.suppress(_LostError, RuntimeError):  # the last point then says how far it is
-            measure(float(search(measure, 0.0, 1.0, xtol=1e-15, rtol=8.9e-16, maxiter=100)))
+        root = bracketed(measure, 0.0, 1.0, xtol=1e-15)
+        if root is not None:  # if not, the last point says how far it is
+            measure(root)
         if seen:
             last, rest = seen[-1].values, abs(left[-1] / (after - before))
             error = float(np.max(rest * np.abs(b.values - a.values) / np.maximum(np.abs(last), 1e-300)))
@@ -203,7 +188,7 @@ class Tracer:
         return "ends at a grazing" if gap < 1e-4 else "Newton's method did not arrive"
 
 
-def _cusp(point: Point, reference: FloatArray) -> tuple[float, FloatArray]:
+def _cusp(point: Point, reference: Array) -> tuple[float, Array]:
     """Second derivative of the map along its null vector, projected on the left one, and the null vector.
 
     Its sign is that of the null vector, which is turned to the side of a reference, that of a neighbour.
@@ -212,7 +197,3 @@ def _cusp(point: Point, reference: FloatArray) -> tuple[float, FloatArray]:
     w, q = left[:, 1], right[1] if right[1] @ reference >= 0.0 else -right[1]
     value = float(w @ np.einsum("k,kij,j->i", q, point.second[:2], q))
     return value if w @ q >= 0.0 else -value, q
-
-
-class _LostError(Exception):
-    """The locus could not be followed to a point between two neighbours."""

@@ -3,56 +3,58 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, Limit, Stopwatch
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow import DEGREE, Tables, period_map, tables
+from dynamics.limits import POSITIVE
 from dynamics.oscillator import GearOscillator
+from dynamics.regions import Region, within
 from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
 
-__all__ = ["Manifold", "carried", "manifold", "reversed_tables"]
+__all__ = ["Manifold", "carried", "is_direct_saddle", "is_saddle", "manifold", "reversed_tables"]
 
-FloatArray = npt.NDArray[np.float64]
-Region = tuple[tuple[float, float], tuple[float, float]]
 FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
+ROUNDS = 2000  # of a manifold at most
 SPLIT = 1e-12  # least gap of the start's parameter that is still halved
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Manifold:
-    """A manifold of a periodic orbit in the plane tau = 0.
+    """A manifold of a periodic orbit in the plane tau = 0."""
 
-    Parameters
-    ----------
-    orbit : Orbit
-        The saddle.
-    kind : str
-        "stable" or "unstable".
-    curves : tuple of ndarray, shape (any, 2)
-        X and V along every branch, from the orbit outwards: two for each point of the orbit.
-    rounds : tuple of int
-        Rounds of the orbit that carried each branch out.
-    error : float
-        Bend of the first stretches, over the size of the orbit: by how much images depart from the eigenvector.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether every gap between neighbours within the region is within the spacing.
-    message : str
-        Why the branches ended.
-    """
+    headline = ("kind", "message")
 
-    orbit: Orbit
-    kind: str
-    curves: tuple[FloatArray, ...]
-    rounds: tuple[int, ...]
-    error: float
+    orbit: Orbit = quantity("", "the saddle")
+    kind: str = quantity("", "stable or unstable")
+    curves: tuple[Array, ...] = quantity(
+        "1",
+        "X and V along every branch, shape (any, 2), from the orbit outwards: two for each point of the orbit",
+    )
+    rounds: tuple[int, ...] = quantity("1", "rounds of the orbit that carried each branch out", "branch")
+    error: float = quantity(
+        "1",
+        "bend of the first stretches, over the size of the orbit: by how much images depart from the eigenvector",
+    )
     cost: Cost
-    converged: bool
-    message: str
+    converged: bool = quantity(
+        "1", "whether every gap between neighbours within the region is within the spacing"
+    )
+    message: str = quantity("", "why the branches ended")
+
+
+def is_saddle(multipliers: npt.ArrayLike) -> bool:
+    """Tell whether one real multiplier is outside the unit circle and the other within."""
+    first, second = np.asarray(multipliers, dtype=np.complex128).tolist()
+    return bool(first.imag == 0.0 and abs(first) > 1.0 > abs(second))
+
+
+def is_direct_saddle(multipliers: npt.ArrayLike) -> bool:
+    """Tell whether one multiplier is above 1 and the other within the unit circle."""
+    return is_saddle(multipliers) and bool(np.real(np.asarray(multipliers)[0]) > 1.0)
 
 
 def reversed_tables(oscillator: GearOscillator) -> Tables:
@@ -72,7 +74,7 @@ def reversed_tables(oscillator: GearOscillator) -> Tables:
     return Tables(packed, coef, edge)
 
 
-def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> FloatArray:
+def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
     """States after whole periods, shape (any, 2); nan where a motion is lost.
 
     Parameters
@@ -139,37 +141,29 @@ def manifold(
     faults = Faults()
     if kind not in ("stable", "unstable"):
         faults.add("kind", kind, "must be 'stable' or 'unstable'", "name one of these")
-    multipliers = np.asarray(orbit.multipliers)
-    if (
-        not orbit.converged
-        or np.iscomplexobj(multipliers)
-        or not abs(multipliers[0]) > 1.0 > abs(multipliers[1])
-    ):
+    if not orbit.converged or not is_saddle(orbit.multipliers):
         faults.add(
             "orbit",
             orbit.label or "not converged",
             "must be a saddle",
             "take an unstable orbit of find_orbits",
         )
-    long = faults.number("length", length, Limit(0.0, low_open=True, remedy="20 is usual"))
-    gap = faults.number("spacing", spacing, Limit(0.0, low_open=True, remedy="0.02 is usual"))
+    long = faults.number("length", length, replace(POSITIVE, remedy="20 is usual"))
+    gap = faults.number("spacing", spacing, replace(POSITIVE, remedy="0.02 is usual"))
     most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
     faults.raise_if_any()
     grower = _Grower(orbit, kind == "stable", region, long, gap, most)
-    points = period_map(grower.forward, orbit.state, orbit.periods).states
-    curves, rounds, told, errors = [], [], [], []
-    for point in np.roll(points, 1, axis=0):
-        along = grower.direction(point)
-        for sign in (1.0, -1.0):
-            curve, number, ended, error = grower.grow(point, sign * along)
-            curves.append(curve)
-            rounds.append(number)
-            told.append(ended)
-            errors.append(error)
-    message = ", ".join(f"{told.count(t)} branches ended: {t}" for t in sorted(set(told)))
+    grown = [
+        grower.grow(point, sign * along)
+        for point in np.roll(orbit.points, 1, axis=0)
+        for along in (grower.direction(point),)
+        for sign in (1.0, -1.0)
+    ]
+    curves, rounds, ended, errors = zip(*grown, strict=True)
+    message = ", ".join(f"{ended.count(why)} branches ended: {why}" for why in sorted(set(ended)))
     cost = Cost(watch.seconds, 2, 0, grower.periods)
-    fine = all(t in ("length", "left the region") for t in told)
-    return Manifold(orbit, kind, tuple(curves), tuple(rounds), max(errors), cost, fine, message)
+    fine = all(why in ("length", "left the region") for why in ended)
+    return Manifold(orbit, kind, curves, rounds, max(errors), cost, fine, message)
 
 
 class _Grower:
@@ -181,8 +175,7 @@ class _Grower:
         self.orbit, self.backwards = orbit, backwards
         self.forward = tables(orbit.oscillator)
         self.table = reversed_tables(orbit.oscillator) if backwards else self.forward
-        states = period_map(self.forward, orbit.state, orbit.periods).states
-        self.scale = max(float(np.max(np.abs(states))), 1e-300)
+        self.scale = max(float(np.max(np.abs(orbit.points))), 1e-300)
         box = 3.0 * self.scale
         self.region = ((-box, box), (-box, box)) if region is None else region
         self.length, self.gap, self.most = length * self.scale, gap * self.scale, most
@@ -192,7 +185,7 @@ class _Grower:
         self.stretch = 1.0 / stretch if backwards else stretch
         self.periods = 0
 
-    def direction(self, point: FloatArray) -> FloatArray:
+    def direction(self, point: Array) -> Array:
         """Eigenvector at a point of the orbit, from its exact multiplier."""
         n = self.orbit.periods
         jacobian = period_map(self.forward, point, n).jacobian
@@ -200,7 +193,7 @@ class _Grower:
         wanted = float(np.real(floquet_multipliers(trace, determinant)[1 if self.backwards else 0]))
         return np.asarray(np.linalg.svd(jacobian - wanted * np.eye(2))[2][1])
 
-    def grow(self, point: FloatArray, along: FloatArray) -> tuple[FloatArray, int, str, float]:
+    def grow(self, point: Array, along: Array) -> tuple[Array, int, str, float]:
         """Curve, rounds, why it ended, and the bend of its first stretch."""
         first = FIRST * self.scale
         share = np.linspace(0.0, 1.0, 9)
@@ -213,34 +206,29 @@ class _Grower:
         error = float(bend) / self.scale
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
-            inside = self._inside(at)
+            inside = within(self.region, at)
             total += float(np.sum(step[inside[:-1] & inside[1:]]))
             count += len(at)
             curves.append(at)
-            if not np.any(inside):
-                return np.concatenate(curves), number, "left the region", error
-            if total > self.length:
-                return np.concatenate(curves), number, "length", error
-            if count > self.most:
-                return np.concatenate(curves), number, f"{self.most} points: raise max_points", error
-            if number > 2000:
-                return np.concatenate(curves), number, "2000 rounds", error
+            reasons = {
+                "left the region": not np.any(inside),
+                "length": total > self.length,
+                f"{self.most} points: raise max_points": count > self.most,
+                f"{ROUNDS} rounds": number > ROUNDS,
+            }
+            if any(reasons.values()):
+                ended = next(why for why, holds in reasons.items() if holds)
+                return np.concatenate(curves), number, ended, error
             number += 1
             share, at = self._refined(point, along, first, number, share, self._carry(at, 1))
 
     def _refined(
-        self,
-        point: FloatArray,
-        along: FloatArray,
-        first: float,
-        number: int,
-        share: FloatArray,
-        at: FloatArray,
-    ) -> tuple[FloatArray, FloatArray]:
+        self, point: Array, along: Array, first: float, number: int, share: Array, at: Array
+    ) -> tuple[Array, Array]:
         """Starts and points with gaps within the spacing."""
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
-            inside = self._inside(at)
+            inside = within(self.region, at)
             wide = (step > self.gap) & (inside[:-1] | inside[1:]) & (np.diff(share) > SPLIT)
             if not np.any(wide) or len(at) > self.most:
                 return share, at
@@ -249,14 +237,9 @@ class _Grower:
             new = self._carry(self._start(point, along, middle, first), number)
             share, at = np.insert(share, where + 1, middle), np.insert(at, where + 1, new, axis=0)
 
-    def _start(self, point: FloatArray, along: FloatArray, share: FloatArray, first: float) -> FloatArray:
+    def _start(self, point: Array, along: Array, share: Array, first: float) -> Array:
         return np.asarray(point + np.outer(first * self.stretch**share, along))
 
-    def _carry(self, at: FloatArray, rounds: int) -> FloatArray:
+    def _carry(self, at: Array, rounds: int) -> Array:
         self.periods += len(at) * rounds * self.round
         return carried(self.table, at, rounds * self.round, self.backwards)
-
-    def _inside(self, at: FloatArray) -> npt.NDArray[np.bool_]:
-        (x0, x1), (v0, v1) = self.region
-        with np.errstate(invalid="ignore"):
-            return np.asarray((at[:, 0] >= x0) & (at[:, 0] <= x1) & (at[:, 1] >= v0) & (at[:, 1] <= v1))

@@ -3,81 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction import basins
 from dynamics.finding import reach
 from dynamics.oscillator import GearOscillator
+from dynamics.states import apart, scale_of
 from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, rest_state, sweep
 
 __all__ = ["Motion", "MultiSweep", "multi_sweep"]
 
-FloatArray = npt.NDArray[np.float64]
 CHUNK = 16  # values swept before it is looked whether the motions are known
 ENDLESS = 1e4  # times D and the deflection at rest: a motion that large grows without bound
 SHARED = 0.5  # of the union of their boxes: from there on two aperiodic motions are taken for one
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Motion:
-    """An attractor at one value of the parameter.
+    """An attractor at one value of the parameter."""
 
-    Parameters
-    ----------
-    value : float
-        The value.
-    label : str
-        n-p-q, "aperiodic" or "diverged".
-    periods : int
-        n; 0 if aperiodic.
-    states : ndarray, shape (kept, 2)
-        X and V at tau = 0 mod the excitation period.
-    directions : frozenset of str
-        Directions of the sweeps that met it: "up", "down".
-    """
+    headline = ("value", "label")
 
-    value: float
-    label: str
-    periods: int
-    states: FloatArray
-    directions: frozenset[str]
+    value: float = quantity("1", "value of the parameter")
+    label: str = quantity("", "n-p-q, aperiodic or diverged")
+    periods: int = quantity("1", "n; 0 if aperiodic")
+    states: Array = quantity("1", "X and V at tau = 0 mod the excitation period", "kept state")
+    directions: frozenset[str] = quantity("", "directions of the sweeps that met it: up, down")
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class MultiSweep:
-    """Attractors over one parameter.
+    """Attractors over one parameter."""
 
-    Parameters
-    ----------
-    parameter : str
-        What was varied.
-    values : ndarray, shape (m,)
-        Its values, rising.
-    motions : tuple of tuple of Motion
-        Those met at each value.
-    sweeps : int
-        Sweeps made, in either direction.
-    error : float
-        As of `sweep`, the largest of all.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether every motion stayed bounded.
-    message : str
-        What was found.
-    """
+    headline = ("parameter", "message")
 
-    parameter: str
-    values: FloatArray
-    motions: tuple[tuple[Motion, ...], ...]
-    sweeps: int
-    error: float
+    parameter: str = quantity("", "what was varied")
+    values: Array = quantity("1", "values of the parameter, rising", "value")
+    motions: tuple[tuple[Motion, ...], ...] = quantity("", "attractors met at each value")
+    sweeps: int = quantity("1", "sweeps made, in either direction")
+    error: float = quantity("1", "as of `sweep`, the largest of all")
     cost: Cost
-    converged: bool
+    converged: bool = quantity("1", "whether every motion stayed bounded")
     message: str
 
     def at(self, value: float) -> tuple[Motion, ...]:
@@ -173,15 +143,14 @@ def multi_sweep(
 class _Met:
     """Motions met so far."""
 
-    def __init__(self, oscillator: GearOscillator, parameter: str, grid: FloatArray, max_period: int) -> None:
+    def __init__(self, oscillator: GearOscillator, parameter: str, grid: Array, max_period: int) -> None:
         self.oscillator, self.parameter, self.grid, self.longest = oscillator, parameter, grid, max_period
         self.motions: list[list[Motion]] = [[] for _ in grid]
-        rest = rest_state(oscillator.with_parameter(parameter, float(grid[0])))
-        self.size = max(oscillator.half_backlash, float(np.max(np.abs(rest))), 1e-300)
+        self.size = scale_of(oscillator, rest_state(oscillator.with_parameter(parameter, float(grid[0]))))
         self.sweeps = self.periods = 0
         self.error, self.bounded = 0.0, True
 
-    def follow(self, direction: str, i: int, state: FloatArray, whole: bool) -> None:
+    def follow(self, direction: str, i: int, state: Array, whole: bool) -> None:
         """Sweep from a value on; unless the whole range is wanted, until a chunk of values brings nothing new."""
         step = 1 if direction == "up" else -1
         path = np.arange(i, len(self.grid)) if step == 1 else np.arange(i, -1, -1)
@@ -202,7 +171,7 @@ class _Met:
                     return
                 state = rest_state(self.oscillator.with_parameter(self.parameter, float(self.grid[part[-1]])))
 
-    def knows(self, i: int, label: str, states: FloatArray) -> bool:
+    def knows(self, i: int, label: str, states: Array) -> bool:
         """Tell whether a motion has been met at a value."""
         return any(_same(m, label, states) for m in self.motions[i])
 
@@ -213,8 +182,7 @@ class _Met:
             label, n, self.bounded = DIVERGED, 0, False
         for k, motion in enumerate(here):
             if _same(motion, label, found.states[j]):
-                both = motion.directions | {direction}
-                here[k] = Motion(motion.value, motion.label, motion.periods, motion.states, both)
+                here[k] = replace(motion, directions=motion.directions | {direction})
                 return False
         here.append(Motion(float(self.grid[i]), label, n, found.states[j], frozenset({direction})))
         return True
@@ -235,22 +203,21 @@ class _Met:
         )
 
 
-def _bounded(states: FloatArray, size: float) -> bool:
+def _bounded(states: Array, size: float) -> bool:
     """Tell whether states are finite and of no size that only unlimited growth leads to."""
     return bool(np.max(np.abs(states)) <= ENDLESS * size)  # False for nan
 
 
-def _same(motion: Motion, label: str, states: FloatArray) -> bool:
+def _same(motion: Motion, label: str, states: Array) -> bool:
     """Tell whether a motion has the label and the states of another."""
     if motion.label != label or label == DIVERGED:
         return motion.label == label
     if label == APERIODIC:
         return _overlap(motion.states, states) > SHARED
-    gaps = np.max(np.abs(motion.states - states[-1]), axis=1)
-    return bool(np.min(gaps) < 1e-3 * np.max(np.abs(motion.states)))
+    return bool(apart(states[-1], motion.states) < 1e-3 * np.max(np.abs(motion.states)))
 
 
-def _overlap(a: FloatArray, b: FloatArray) -> float:
+def _overlap(a: Array, b: Array) -> float:
     """Part that the boxes around two sets of states share, of that which they cover together."""
     low, high = np.maximum(a.min(axis=0), b.min(axis=0)), np.minimum(a.max(axis=0), b.max(axis=0))
     shared = float(np.prod(np.maximum(high - low, 0.0)))

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from dynamics.flow import period_map, tables
-from dynamics.manifolds import carried
+from base import Array, Booleans
+from dynamics.branch import Branch
+from dynamics.flow import tables
+from dynamics.manifolds import carried, is_direct_saddle
 from dynamics.oscillator import GearOscillator
+from dynamics.roots import bracketed
 from dynamics.shooting import Orbit, find_orbit
 
-__all__ = ["LOST", "Passing", "is_direct_saddle"]
+__all__ = ["Passing"]
 
-FloatArray = npt.NDArray[np.float64]
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
 NEAR = 0.04  # of the size of the saddle: nearness at which a passing motion's side is told
 ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured
@@ -27,12 +29,7 @@ FIRST_ROUNDS = 4  # searches for an earlier tangency
 LOST = -1.0
 
 
-def is_direct_saddle(multipliers: npt.ArrayLike) -> bool:
-    """Tell whether one multiplier is above 1 and the other within the unit circle."""
-    first, second = np.asarray(multipliers, dtype=np.complex128).tolist()
-    return bool(first.imag == 0.0 and first.real > 1.0 > abs(second))
-
-
+@dataclass
 class Passing:
     """Motions of the unstable manifold of a saddle that is followed over a parameter.
 
@@ -40,35 +37,49 @@ class Passing:
     ----------
     oscillator : GearOscillator
         The oscillator; its value of the parameter is not used.
-    parameter : str
-        As in `GearOscillator.with_parameter`.
-    values, states : ndarray, shape (m,) and (m, 2)
-        The saddle over the parameter, its values rising or falling throughout.
-    n : int
-        Its period.
-    points, periods : int
+    branch : Branch
+        The saddle's.
+    run : slice
+        Its points on which it is a saddle and the parameter rises or falls throughout.
+    points, longest : int
         Points of the stretch of the unstable manifold, and periods that they are followed.
+    periods : int
+        Periods that all motions have been followed.
     """
 
-    def __init__(
-        self, oscillator: GearOscillator, parameter: str, values: FloatArray, states: FloatArray, n: int, points: int,
-        periods: int,
-    ) -> None:  # fmt: skip
-        order = np.argsort(values)
-        self.oscillator, self.parameter, self.n = oscillator, parameter, n
-        self.values, self.states = values[order], states[order]
-        self.points, self.longest = points, periods
-        self.periods = 0
+    oscillator: GearOscillator
+    branch: Branch
+    run: slice
+    points: int
+    longest: int
+    periods: int = 0
+
+    def __post_init__(self) -> None:
+        """Order the saddle's points by the parameter."""
+        order = np.argsort(self.branch.values[self.run])
+        self.values: Array = self.branch.values[self.run][order]
+        self.states: Array = self.branch.states[self.run][order]
+
+    @property
+    def parameter(self) -> str:
+        """What is varied."""
+        return self.branch.parameter
 
     def saddle(self, value: float) -> Orbit:
         """The saddle at a value, by Newton's method from between its neighbours."""
         guess = [float(np.interp(value, self.values, self.states[:, k])) for k in range(2)]
-        return find_orbit(self.oscillator.with_parameter(self.parameter, value), guess, periods=self.n)
+        return find_orbit(
+            self.oscillator.with_parameter(self.parameter, value), guess, periods=self.branch.periods
+        )
 
     def overshoot(self, value: float, side: int) -> float:
         """Largest u of returning motions, over the size of the saddle; -1 if none returns, nan without a saddle."""
         orbit = self.saddle(value)
-        if not orbit.converged or orbit.periods != self.n or not is_direct_saddle(orbit.multipliers):
+        if (
+            not orbit.converged
+            or orbit.periods != self.branch.periods
+            or not is_direct_saddle(orbit.multipliers)
+        ):
             return math.nan
         n, multiplier = orbit.periods, float(np.real(orbit.multipliers[0]))
         size = _size(orbit)
@@ -76,23 +87,21 @@ class Passing:
         table = tables(orbit.oscillator)
         begin = math.ceil(math.log(BEGUN / FIRST) / math.log(multiplier))
 
-        def states(share: FloatArray, more: int) -> FloatArray:
+        def states(share: Array, more: int) -> Array:
             first = orbit.state + side * FIRST * size * np.outer(multiplier**share, along)
             self.periods += len(share) * (n * begin + more)
             return carried(table, first, n * begin + more)
 
-        def passed(at: FloatArray) -> FloatArray:
+        def passed(at: Array) -> Array:
             return np.asarray(-side * ((at - orbit.state) @ across) / size)
 
-        def followed(k: int, share: FloatArray) -> FloatArray:
+        def followed(k: int, share: Array) -> Array:
             return passed(states(share, k)) / multiplier**ROUNDS
 
         share = (np.arange(self.points) + 0.5) / self.points
         at = states(share, 0)
         follow, lobes = ROUNDS * n, []
-        measured: list[
-            tuple[npt.NDArray[np.bool_], FloatArray]
-        ] = []  # near the saddle, and raw u, period by period
+        measured: list[tuple[Booleans, Array]] = []  # near the saddle, and raw u, period by period
         for k in range(1, self.longest + follow + 1):
             at = carried(table, at, 1)
             with np.errstate(invalid="ignore"):
@@ -115,7 +124,7 @@ class Passing:
                 break
         return largest
 
-    def _top(self, lobe: Callable[[FloatArray], FloatArray], middle: float) -> float:
+    def _top(self, lobe: Callable[[Array], Array], middle: float) -> float:
         """Largest value of a lobe about a point of the stretch: windows that shrink around it."""
         width, largest = 2.0 / self.points, -math.inf
         for _ in range(6):
@@ -150,28 +159,21 @@ class Passing:
         Brent's method: the overshoot has kinks where another lobe leads. At a tangency no jump is left; it is infinite
         if the saddle gets lost on the way.
         """
-        from scipy.optimize import brentq
-
         seen: dict[float, float] = {}
 
         def measure(value: float) -> float:
             if value not in seen:
                 seen[value] = self.overshoot(value, side)
-            if not math.isfinite(seen[value]):
-                raise _LostError
             return seen[value]
 
-        tight = 2e-11 * max(abs(b) for b in bounds)
-        try:
-            brentq(measure, *bounds, xtol=tight, rtol=8.9e-16, maxiter=100)
-        except (_LostError, RuntimeError):  # RuntimeError: not within the trials
+        if bracketed(measure, *bounds, xtol=2e-11 * max(abs(b) for b in bounds)) is None:
             return (*bounds, math.inf, len(seen))
         at = sorted(seen)
         pairs = [(a, b) for a, b in pairwise(at) if seen[a] * seen[b] <= 0.0]
         a, b = min(pairs, key=lambda pair: pair[1] - pair[0])
         return a, b, abs(seen[b] - seen[a]), len(seen)
 
-    def beside(self, value: float, side: int, distance: float = 1e-3) -> FloatArray | None:
+    def beside(self, value: float, side: int, distance: float = 1e-3) -> Array | None:
         """A state beside the saddle on one branch of its unstable manifold; None without a saddle."""
         orbit = self.saddle(value)
         if not orbit.converged or not is_direct_saddle(orbit.multipliers):
@@ -183,16 +185,12 @@ class Passing:
 
 def _size(orbit: Orbit) -> float:
     """Largest of X and V at all its points: the same from whichever period it is taken."""
-    return float(np.max(np.abs(period_map(orbit.oscillator, orbit.state, orbit.periods).states)))
+    return float(np.max(np.abs(orbit.points)))
 
 
-def _directions(jacobian: FloatArray, multiplier: float) -> tuple[FloatArray, FloatArray]:
+def _directions(jacobian: Array, multiplier: float) -> tuple[Array, Array]:
     """Right eigenvector of a multiplier, towards positive X, and the left one with product 1."""
     along = np.linalg.svd(jacobian - multiplier * np.eye(2))[2][1]
     along = along if along[0] >= 0.0 else -along
     across = np.linalg.svd(jacobian.T - multiplier * np.eye(2))[2][1]
     return np.asarray(along), np.asarray(across / (across @ along))
-
-
-class _LostError(Exception):
-    """The saddle is none at a value."""

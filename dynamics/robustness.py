@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults
+from base import Faults, quantity, record
 from dynamics.flow import trajectory
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
 from dynamics.tracking import marked
 
 __all__ = ["ForceRange", "force_range", "special_sensitivities"]
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def special_sensitivities(
@@ -55,21 +52,13 @@ def special_sensitivities(
     return dict(zip(wanted, mark.slopes(wanted)[2].tolist(), strict=True))
 
 
-@dataclass(frozen=True)
+@record
 class ForceRange:
-    """Least and greatest force of a motion, over the mean force.
+    """Least and greatest force of a motion, over the mean force."""
 
-    Parameters
-    ----------
-    least, greatest : float
-        Of K(tau) f(X) / F_m; negative where the back flanks touch.
-    error : float
-        Change of the two with half as many samples, the larger one.
-    """
-
-    least: float
-    greatest: float
-    error: float
+    least: float = quantity("1", "least of K(tau) f(X) / F_m; negative where the back flanks touch")
+    greatest: float = quantity("1", "greatest of K(tau) f(X) / F_m")
+    error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
 def force_range(

@@ -4,62 +4,42 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults
+from base import Array, Faults, quantity, record
 
 __all__ = ["OfKind", "SpecialPoint", "of_kind"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class SpecialPoint:
-    """A special point.
+    """A special point."""
 
-    Parameters
-    ----------
-    kind : str
-        "grazing", "saddle-node" or "period-doubling".
-    parameter : float
-        Value of the parameter.
-    state : ndarray, shape (2,)
-        X and V at tau = 0.
-    multipliers : ndarray, shape (2,)
-        Floquet multipliers.
-    label : str
-        Motion at the point. At a grazing the touch itself is not counted and a U says that the motion is
-        unstable; at the other kinds it is marginal.
-    error : float
-        Estimated error of the parameter value, relative.
-    periods : int
-        Period of the orbit, in excitation periods.
-    boundary : int
-        At a grazing: 1 for X = D, -1 for X = -D; else 0.
-    tau : float
-        At a grazing: time of the touch; else nan.
-    acceleration : float
-        At a grazing: X'' at the touch; else nan.
-    stiffness : float
-        At a grazing: K at the touch; else nan. With the acceleration it gives the square-root law of the
-        multipliers.
-    """
+    headline = ("kind", "parameter", "label")
 
-    kind: str
-    parameter: float
-    state: FloatArray
-    multipliers: npt.NDArray[np.complex128] | FloatArray
-    label: str
-    error: float
-    periods: int = 1
-    boundary: int = 0
-    tau: float = math.nan
-    acceleration: float = math.nan
-    stiffness: float = math.nan
+    kind: str = quantity("", "grazing, saddle-node or period-doubling")
+    parameter: float = quantity("1", "value of the parameter", error="error")
+    state: Array = quantity("1", "X and V at tau = 0", "state")
+    multipliers: npt.NDArray[np.complex128] | Array = quantity("1", "Floquet multipliers", "multiplier")
+    label: str = quantity(
+        "",
+        "motion at the point; at a grazing the touch itself is not counted and a U says that the motion is unstable, "
+        "at the other kinds it is marginal",
+    )
+    error: float = quantity("1", "estimated relative error of the parameter value")
+    periods: int = quantity("1", "period of the orbit, in excitation periods", default=1)
+    boundary: int = quantity("1", "at a grazing 1 for X = D, -1 for X = -D; else 0", default=0)
+    tau: float = quantity("1", "time of the touch at a grazing; else nan", default=math.nan)
+    acceleration: float = quantity("1", "X'' at the touch of a grazing; else nan", default=math.nan)
+    stiffness: float = quantity(
+        "1",
+        "K at the touch of a grazing, which with the acceleration gives the square-root law of the multipliers; else "
+        "nan",
+        default=math.nan,
+    )
 
 
 class OfKind(Protocol):

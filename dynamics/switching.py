@@ -11,6 +11,7 @@ from dynamics.flow import period_map, tables
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
+from dynamics.states import scale_of
 
 __all__ = ["doubled_orbit"]
 
@@ -47,7 +48,7 @@ def doubled_orbit(
         faults.add("point", point.kind, "must be a period-doubling", "take one from Branch.special")
     faults.raise_if_any()
     n = point.periods
-    scale = max(float(np.max(np.abs(point.state))), oscillator.half_backlash, 1e-300)
+    scale = scale_of(oscillator, point.state)
     low, high = np.array([bounds[0]]), np.array([bounds[1]])
     problem = OrbitProblem(oscillator, (parameter,), 2 * n, low, high, scale)
     here = oscillator.with_parameter(parameter, point.parameter)

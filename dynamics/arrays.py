@@ -1,0 +1,26 @@
+"""Records that numpy turns into arrays."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array
+
+__all__ = ["AsArray"]
+
+
+class AsArray(ABC):
+    """What `numpy.asarray` makes a table of: the columns that a plot needs."""
+
+    @abstractmethod
+    def columns(self) -> Array:
+        """The table."""
+
+    def __array__(
+        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
+    ) -> npt.NDArray[np.generic]:
+        """The table as an array of numpy."""
+        return self.columns().astype(np.float64 if dtype is None else dtype)

@@ -1,0 +1,49 @@
+"""Known attractors, and which of them starts come to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from base import Array, Integers
+from dynamics.flow import Tables
+
+__all__ = ["Homes"]
+
+
+class Homes:
+    """Periodic attractors that starts are followed to.
+
+    Parameters
+    ----------
+    table : Tables
+        The oscillator.
+    points : sequence of ndarray, shape (n, 2), or None
+        X and V of each attractor after every excitation period; None for one that is not periodic.
+    nearness : float
+        Distance that counts as arrived, over the size of the largest of them.
+    """
+
+    def __init__(self, table: Tables, points: Sequence[Array | None], nearness: float) -> None:
+        rows = [
+            np.column_stack([p, np.full(len(p), i), np.full(len(p), len(p))])
+            for i, p in enumerate(points)
+            if p is not None
+        ]
+        self.table, self.number = table, len(points)
+        self.rows = np.vstack(rows) if rows else np.zeros((0, 4))
+        self.size = float(np.max(np.abs(self.rows[:, :2]), initial=0.0))
+        self.radius = nearness * self.size
+        self.periods = 0
+
+    def settle(self, starts: Array, limit: int, labels: Integers | None = None) -> Integers:
+        """Index of the attractor that each start comes to within some periods; negative for none.
+
+        The starts are replaced by their last states. Those with a label other than -1 already are left alone.
+        """
+        from dynamics.kernels.searching import settle
+
+        found = np.full(len(starts), -1, dtype=np.int64) if labels is None else labels
+        self.periods += int(settle(self.table.arrays, starts, self.rows, self.radius, limit, found))
+        return found
