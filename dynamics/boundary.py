@@ -68,6 +68,12 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     ------
     InputError
         If the numbers do not fit.
+
+    Examples
+    --------
+    >>> low, high = share_interval(30, 100)
+    >>> round(low, 4), round(high, 4)
+    (0.2189, 0.3958)
     """
     from statistics import NormalDist
 
@@ -125,6 +131,15 @@ def basin_boundary(
     ------
     InputError
         If an argument is out of range, or no attractor is periodic.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, basin_boundary, basins
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
+    >>> edge = basin_boundary(osc, found.attractors, ((-1.0, 1.0), (-1.0, 1.0)), cells=4, levels=2)
+    >>> edge.counts
+    array([16, 45, 97])
     """
     watch = Stopwatch()
     faults = Faults()

@@ -104,6 +104,15 @@ def boundary_crisis(
     ------
     InputError
         If the orbit is not such a saddle, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, boundary_crisis, find_orbits
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.778, 0.4, half_backlash=0.8)
+    >>> saddle = next(orbit for orbit in find_orbits(osc, (1,)).orbits if orbit.label == "U1-1-0")
+    >>> crisis = boundary_crisis(saddle, "error_amplitude", (0.777, 0.783), points=20, periods=12)
+    >>> round(crisis.parameter, 6), crisis.before, crisis.after
+    (0.779904, 'aperiodic', '4-4-3')
     """
     watch = Stopwatch()
     faults = Faults()
@@ -172,6 +181,14 @@ def boundary_crises(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, boundary_crises, diagram
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.778, 0.4, half_backlash=0.8)
+    >>> whole = diagram(osc, "error_amplitude", (0.7785, 0.7815), periods=(1,), searches=1, swept=0)
+    >>> [round(c.parameter, 6) for c in boundary_crises(whole, values=2, points=10, periods=12, max_period=1)]
+    [0.779904]
     """
     faults = Faults()
     number = faults.whole("values", values, 2, 10**6, "200 is usual")

@@ -61,6 +61,14 @@ def edge_saddles(
     ------
     InputError
         If the attractor is not periodic, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, basins, edge_saddles
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
+    >>> [saddle.label for saddle in edge_saddles(osc, found.attractors[0], rays=2)]
+    ['U1-1-0']
     """
     faults = Faults()
     if attractor.orbit is None:

@@ -89,6 +89,13 @@ def find_orbits(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbits
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> [orbit.label for orbit in find_orbits(osc, (1,)).orbits]
+    ['1-0-0', 'U1-1-0', '1-1-1']
     """
     watch = Stopwatch()
     faults = Faults()

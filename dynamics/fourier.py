@@ -73,6 +73,13 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     InputError
         If a sample is not finite, the mean is zero, the order is too high for the samples, or the positions
         cannot tell the harmonics apart.
+
+    Examples
+    --------
+    >>> from dynamics import fit_fourier
+    >>> fit = fit_fourier([1.2, 1.1, 0.9, 0.8], order=1)
+    >>> fit.stiffness.mean, round(fit.harmonics[0], 4)
+    (1.0, 0.2121)
     """
     watch = Stopwatch()
     faults = Faults()

@@ -79,6 +79,13 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
         If there is none, because a Floquet multiplier of the linear equation is one.
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> contact_orbit(osc).clearance > 0.0  # it does not feel the backlash
+    True
     """
     faults = Faults()
     if side not in (1, -1):
@@ -140,6 +147,14 @@ def contact_grazing(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, contact_grazing
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = contact_grazing(osc, "frequency", (0.6, 0.7), points=20)
+    >>> round(found.points[0].parameter, 6)
+    0.633534
     """
     from scipy.optimize import brentq
 

@@ -51,6 +51,14 @@ def stretches(branch: Branch) -> tuple[Stretch, ...]:
     -------
     tuple of Stretch
         In their order along the branch. One that lies between two neighbouring points of the branch is left out.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.64, half_backlash=0.2)
+    >>> branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.62, 0.67))
+    >>> [stretch.label for stretch in stretches(branch)]
+    ['1-0-0', '1-1-0', 'U1-1-0']
     """
     found, first = [], 0
     for label, run in groupby(branch.labels):

@@ -110,6 +110,16 @@ def continue_locus(
     ------
     InputError
         If an argument is out of range, or the point cannot be met again.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, continue_locus, find_orbit
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.64, half_backlash=0.2)
+    >>> branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.62, 0.67))
+    >>> (fold,) = branch.special("saddle-node")
+    >>> locus = continue_locus(osc, fold, ("frequency", "mean_force"), ((0.6, 0.7), (0.095, 0.105)))
+    >>> locus.ended
+    ('bound', 'bound')
     """
     watch = Stopwatch()
     faults = Faults()

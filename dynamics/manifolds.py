@@ -136,6 +136,14 @@ def manifold(
     ------
     InputError
         If the orbit is no saddle, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbits, manifold
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> saddle = next(orbit for orbit in find_orbits(osc, (1,)).orbits if not orbit.stable)
+    >>> manifold(saddle, "stable", length=3.0).message
+    '2 branches ended: length'
     """
     watch = Stopwatch()
     faults = Faults()

@@ -113,6 +113,14 @@ def multi_sweep(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, multi_sweep
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = multi_sweep(osc, "frequency", [0.58, 0.6, 0.62], seeds=1, starts=3)
+    >>> [motion.label for motion in found.at(0.6)]
+    ['1-0-0', '1-1-1']
     """
     watch = Stopwatch()
     faults = Faults()

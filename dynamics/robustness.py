@@ -46,6 +46,15 @@ def special_sensitivities(
     ------
     InputError
         If there is no such parameter.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, special_sensitivities
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.64, half_backlash=0.2)
+    >>> branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.62, 0.67))
+    >>> (fold,) = branch.special("saddle-node")
+    >>> round(special_sensitivities(osc, "frequency", fold, ["mean_force"])["mean_force"], 4)
+    1.6776
     """
     mark = marked(oscillator, parameter, point)
     wanted = [n for n in (oscillator.parameters if names is None else names) if n != parameter]
@@ -55,6 +64,8 @@ def special_sensitivities(
 @record
 class ForceRange:
     """Least and greatest force of a motion, over the mean force."""
+
+    headline = ("least", "greatest")
 
     least: float = quantity("1", "least of K(tau) f(X) / F_m; negative where the back flanks touch")
     greatest: float = quantity("1", "greatest of K(tau) f(X) / F_m")
@@ -81,6 +92,14 @@ def force_range(
     ------
     InputError
         If there is no mean force, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = force_range(osc, find_orbit(osc, (0.35, 0.0)).state)
+    >>> round(found.least, 3), round(found.greatest, 3)
+    (0.182, 2.277)
     """
     faults = Faults()
     number = faults.whole("samples", samples, 4, 10**6, "400 is ample")

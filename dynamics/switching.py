@@ -42,6 +42,15 @@ def doubled_orbit(
     ------
     InputError
         If the point is not a period doubling.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, doubled_orbit, find_orbits
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.95, half_backlash=0.2)
+    >>> (orbit,) = find_orbits(osc, (1,)).orbits
+    >>> (doubling,) = continue_branch(orbit, "frequency", (0.88, 0.96)).special("period-doubling")
+    >>> doubled_orbit(osc, "frequency", doubling, (0.88, 0.96)).label
+    '2-2-0'
     """
     faults = Faults()
     if point.kind != "period-doubling":

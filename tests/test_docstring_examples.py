@@ -11,6 +11,7 @@ import pytest
 
 PACKAGES: tuple[str, ...] = (
     "base",
+    "dynamics.inverse",
     "ehl",
 )
 """Packages whose public functions all have an example."""

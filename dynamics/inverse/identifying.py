@@ -77,6 +77,16 @@ def identify(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> from dynamics.inverse import Event, OneOf, identify
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.2, 0.2, 0.6, half_backlash=0.2)
+    >>> events = [Event("grazing", "1-0-0", 0.6335, digits=4), Event("saddle-node", "1-1-0", 0.6556, digits=4)]
+    >>> found = identify(osc, "frequency", events, {"mean_force": OneOf((0.1,))}, (0.62, 0.67))
+    >>> found.converged, found.best.values
+    (True, {'mean_force': 0.1})
     """
     watch = Stopwatch()
     problem = checked(oscillator, parameter, events, unknowns, bounds)

@@ -115,8 +115,8 @@ def directions(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[D
 
 def unseen(found: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
     """Directions that the events do not see, and known parameters on which none of them depends."""
-    problem = found.problem
-    known = [n for n in found.oscillator.parameters if n not in problem.unknowns and n != problem.parameter]
+    unknown = {found.problem.parameter, *(name for direction in seen for name in direction.parts)}
+    known = [name for name in found.oscillator.parameters if name not in unknown]
     matrix = found.sensitivity(known, rows) * _sizes(found, known)
     idle = [n for n, column in zip(known, matrix.T, strict=True) if np.all(np.abs(column) < 1e-6)]
     return (*(str(d) for d in seen if not d.seen), *(idle if len(rows) else ()))

@@ -38,9 +38,14 @@ class Event:
         return float(self.printed)
 
     @property
+    def digits(self) -> int:
+        """Decimals printed."""
+        return len(self.printed.partition(".")[2])
+
+    @property
     def unit(self) -> float:
         """One unit of the last printed digit."""
-        return 10.0 ** -len(self.printed.partition(".")[2])
+        return 10.0**-self.digits
 
 
 EVENTS = (

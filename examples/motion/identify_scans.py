@@ -69,7 +69,7 @@ def printed(section: str) -> list[Event]:
             e.kind,
             e.labels[0] if e.labels else LABELS.get(e.name, "*-*-*"),
             e.value,
-            len(e.printed.partition(".")[2]),
+            e.digits,
             fitted=e.name not in SCORED[section],
             trust=0.3 if e.kind == "grazing" else 1.0,
         )

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics import FourierStiffness, GearOscillator
+from dynamics import GearOscillator
+from tests.validation.article_motion import lubricated
 
 
 def step_by_step(osc: GearOscillator, state, duration: float):
@@ -73,14 +74,7 @@ def article():
     """The oscillator of the lubricated frequency scan: `article(frequency=0.6, ...)`."""
 
     def make(kappa=0.18, phi=0.0, **changes):
-        values = {
-            "damping_ratio": 0.05,
-            "mean_force": 0.1,
-            "error_amplitude": 0.2,
-            "frequency": 0.6,
-            "half_backlash": 0.2,
-        }
-        return GearOscillator(stiffness=FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
+        return lubricated(kappa=kappa, phase=phi, **changes)
 
     return make
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from base import InputError
-from dynamics import FourierStiffness, GearOscillator, basin_boundary, basins, find_orbits, manifold
+from dynamics import basin_boundary, basins, find_orbits, manifold
 from dynamics.boundary import share_interval
+from tests.validation.article_motion import lubricated
 
-OSC = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+OSC = lubricated(0.6)
 BOX = ((-0.2, 0.9), (-0.5, 0.7))
 
 

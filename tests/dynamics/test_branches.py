@@ -12,8 +12,6 @@ from scipy.optimize import brentq
 
 from base import InputError
 from dynamics import (
-    FourierStiffness,
-    GearOscillator,
     continue_branch,
     find_orbit,
     find_orbits,
@@ -21,11 +19,12 @@ from dynamics import (
     sweep,
 )
 from dynamics.flow import turning_points
+from tests.validation.article_motion import lubricated, starved
 
 
 @pytest.fixture(scope="module")
 def scan():
-    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
+    osc = lubricated(0.5)
     return osc, continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.3, 1.3))
 
 
@@ -203,8 +202,7 @@ def test_end_of_patience_is_said(article):
 
 def test_branch_that_grows_without_bound_goes_to_the_edge_of_the_linear_resonance():
     """Far out backlash does not count: the branch tends to where the linear equation's multiplier is -1, as D/A."""
-    starved = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 1.7, half_backlash=1.0)
-    (start,) = (o for o in find_orbits(starved, (2,)).orbits if o.label == "2-1-1")
+    (start,) = (o for o in find_orbits(starved(1.7), (2,)).orbits if o.label == "2-1-1")
     branch = continue_branch(start, "frequency", (0.1, 2.5))
     assert branch.converged
     assert branch.ended == ("the motion grows without bound",) * 2

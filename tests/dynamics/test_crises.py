@@ -7,24 +7,17 @@ import pytest
 
 from base import InputError
 from dynamics import (
-    FourierStiffness,
-    GearOscillator,
     basins,
     boundary_crises,
     boundary_crisis,
     diagram,
     find_orbits,
 )
-
-
-def scan(frequency: float) -> GearOscillator:
-    return GearOscillator(
-        FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, frequency, half_backlash=0.2
-    )
+from tests.validation.article_motion import lubricated
 
 
 def saddle(label: str):
-    return next(o for o in find_orbits(scan(1.13), (3,)).orbits if o.label == label)
+    return next(o for o in find_orbits(lubricated(1.13), (3,)).orbits if o.label == label)
 
 
 @pytest.mark.slow
@@ -40,7 +33,7 @@ def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
     assert found.parameter == pytest.approx(1.119740782, abs=2e-9)
     assert again.parameter == pytest.approx(found.parameter, abs=1e-9)
     for shift, kinds in ((-0.004, {"6-4-4"}), (0.004, {"6-4-4", "aperiodic"})):
-        here = scan(found.parameter + shift)
+        here = lubricated(found.parameter + shift)
         labels = {
             a.label for a in basins(here, (-1.5, 1.5, 8), (-1.5, 1.5, 8), limit=10_000).attractors if a.share
         }
@@ -51,7 +44,7 @@ def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
 def test_all_saddles_of_a_diagram():
     """The same crisis without its saddle being named."""
     whole = diagram(
-        scan(1.13), "frequency", (1.117, 1.123), periods=(1, 3), searches=2, swept=0, max_period=3
+        lubricated(1.13), "frequency", (1.117, 1.123), periods=(1, 3), searches=2, swept=0, max_period=3
     )
     found = boundary_crises(whole, values=4, points=250)
     assert "U3-3-1" in {c.saddle.label for c in found if c.before == "aperiodic"}
@@ -67,6 +60,6 @@ def test_no_crisis_is_said_to_be_none():
 
 
 def test_only_saddles_are_taken():
-    stable = next(o for o in find_orbits(scan(0.6), (1,)).orbits if o.stable)
+    stable = next(o for o in find_orbits(lubricated(0.6), (1,)).orbits if o.stable)
     with pytest.raises(InputError, match="saddle"):
         boundary_crisis(stable, "frequency", (0.5, 0.7))

@@ -9,7 +9,6 @@ import pytest
 
 from base import InputError
 from dynamics import (
-    FourierStiffness,
     GearOscillator,
     contact_grazing,
     continue_branch,
@@ -22,14 +21,11 @@ from dynamics import (
     sweep,
 )
 from dynamics.sensitivity import map_derivatives
+from tests.validation import article_motion
 
 
-def lubricated(**changes) -> GearOscillator:
-    values = {
-        "damping_ratio": 0.05, "mean_force": 0.1, "error_amplitude": 0.2, "frequency": 0.5, "half_backlash": 0.2,
-    }  # fmt: skip
-    kappa = changes.pop("kappa", 0.18)
-    return GearOscillator(FourierStiffness(1.0, (kappa,), (0.0,)), **(values | changes))
+def lubricated(frequency: float = 0.5, **changes) -> GearOscillator:
+    return article_motion.lubricated(frequency, **changes)
 
 
 @pytest.fixture(scope="module")

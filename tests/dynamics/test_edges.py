@@ -5,16 +5,13 @@ from __future__ import annotations
 import pytest
 
 from base import InputError
-from dynamics import FourierStiffness, GearOscillator, basins, edge_saddles, find_orbits
-
-
-def scan(frequency: float) -> GearOscillator:
-    return GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, frequency, 0.2)
+from dynamics import basins, edge_saddles, find_orbits
+from tests.validation.article_motion import lubricated
 
 
 @pytest.mark.parametrize("label", ["1-0-0", "1-1-1"])
 def test_saddle_between_two_motions_is_met_from_both(label):
-    osc = scan(0.6)
+    osc = lubricated(0.6)
     grid = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8))
     attractor = next(a for a in grid.attractors if a.label == label)
     (met,) = edge_saddles(osc, attractor)
@@ -25,13 +22,13 @@ def test_saddle_between_two_motions_is_met_from_both(label):
 
 def test_edge_of_6_4_4_holds_the_saddle_of_its_crisis():
     """U3-3-1, with which the chaos beside 6-4-4 ends at 1.11974, parts the two at 1.13; no period is given."""
-    grid = basins(scan(1.13), (-1.5, 1.5, 4), (-1.5, 1.5, 4))
+    grid = basins(lubricated(1.13), (-1.5, 1.5, 4), (-1.5, 1.5, 4))
     (attractor,) = (a for a in grid.attractors if a.label == "6-4-4")
-    assert [o.label for o in edge_saddles(scan(1.13), attractor, rays=3)] == ["U3-3-1"]
+    assert [o.label for o in edge_saddles(lubricated(1.13), attractor, rays=3)] == ["U3-3-1"]
 
 
 def test_only_periodic_attractors():
-    chaotic = basins(scan(1.04), (0.2, 0.4, 2), (0.0, 0.1, 2), limit=300).attractors[0]
+    chaotic = basins(lubricated(1.04), (0.2, 0.4, 2), (0.0, 0.1, 2), limit=300).attractors[0]
     assert chaotic.orbit is None
     with pytest.raises(InputError, match="periodic"):
-        edge_saddles(scan(1.04), chaotic)
+        edge_saddles(lubricated(1.04), chaotic)

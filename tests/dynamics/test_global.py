@@ -17,6 +17,7 @@ from dynamics import (
     lyapunov_scan,
     period_map,
 )
+from tests.validation.article_motion import lubricated
 
 
 @pytest.mark.parametrize(
@@ -104,7 +105,7 @@ def test_too_short_an_average_is_said(article):
 
 @pytest.fixture(scope="module")
 def hysteresis():
-    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    osc = lubricated(0.6)
     return osc, basins(osc, x=(-1, 1, 40), v=(-1, 1, 30))
 
 

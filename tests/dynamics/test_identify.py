@@ -22,6 +22,7 @@ from dynamics.inverse.scan import anchored, ranked, scan
 from dynamics.inverse.scoring import directions, left_out, unseen
 from dynamics.sweeps import rest_state
 from dynamics.tracking import marked
+from tests.validation.article_motion import starved
 
 ZETA, KAPPA, FORCE = "damping_ratio", "stiffness.amplitudes[0]", "mean_force"
 BOUNDS = (0.3, 2.0)
@@ -137,7 +138,7 @@ def test_grazings_and_distrusted_events_are_the_last_choice(points):
 
 def test_a_motion_of_three_periods_takes_part():
     """Starved scan: its 3-1-1 lies on an isola that no branch in contact leads to; its fold is met and gives D."""
-    here = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 2.4, 1.0)
+    here = starved(2.4)
     fold = Event("saddle-node", "3-1-1", 2.478570588355, 12)
     catalogue = Catalogue(
         Problem(here, "frequency", (fold,), {"half_backlash": Ranged(0.3, 3.0)}, (1.8, 2.6)), Tally()

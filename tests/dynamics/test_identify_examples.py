@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import pytest
 
-FOLDER = Path(__file__).parents[2] / "examples" / "motion"
-
-
-def example(name: str, monkeypatch):
-    monkeypatch.syspath_prepend(str(FOLDER))
-    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, name, module)
-    spec.loader.exec_module(module)
-    return module
+from tests.example_scripts import example
 
 
 @pytest.mark.slow
-def test_the_starved_frequency_scan_is_identified(monkeypatch, capsys):
-    (found,) = example("identify_scans", monkeypatch).main(["6.2"])
+def test_the_starved_frequency_scan_is_identified(capsys):
+    (found,) = example("identify_scans").main(["6.2"])
     assert found.converged
     assert tuple(found.best.values.values()) == (0.01, 0.1, 0.05, 1.0)
     assert "half_backlash" in capsys.readouterr().out
 
 
 @pytest.mark.slow
-def test_a_drawn_oscillator_is_found_back_from_points_with_two_misprints(monkeypatch):
-    recoveries = example("identify_recoveries", monkeypatch)
+def test_a_drawn_oscillator_is_found_back_from_points_with_two_misprints():
+    recoveries = example("identify_recoveries")
     here, events, rng = recoveries.drawn(3)
     spoilt = recoveries.misprinted(events, 2, rng)
     assert sum(a != b for a, b in zip(events, spoilt, strict=True)) == 2

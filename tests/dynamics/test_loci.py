@@ -14,10 +14,7 @@ from dynamics import (
     find_orbit,
     find_orbits,
 )
-
-
-def starved(frequency: float) -> GearOscillator:
-    return GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, frequency, 1.0)
+from tests.validation.article_motion import starved
 
 
 def test_locus_of_a_bubble_closes_however_small_it_is():

@@ -18,12 +18,7 @@ from dynamics import (
 from dynamics.flow import tables
 from dynamics.labelling import stretches
 from dynamics.manifolds import carried, reversed_tables
-
-
-def hysteresis(frequency: float = 0.6) -> GearOscillator:
-    return GearOscillator(
-        FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, frequency, half_backlash=0.2
-    )
+from tests.validation.article_motion import lubricated, starved
 
 
 def test_running_backwards_undoes_the_map():
@@ -39,7 +34,7 @@ def test_running_backwards_undoes_the_map():
 
 
 def saddle(frequency: float = 0.6):
-    found = find_orbits(hysteresis(frequency), (1,)).orbits
+    found = find_orbits(lubricated(frequency), (1,)).orbits
     (unstable,) = (o for o in found if not o.stable)
     return unstable, [o for o in found if o.stable]
 
@@ -56,7 +51,7 @@ def test_stable_manifold_parts_the_basins():
             across = np.array([-chord[1], chord[0]]) / np.linalg.norm(chord)
             sides = []
             for sign in (-1.0, 1.0):
-                last = period_map(hysteresis(), curve[i] + sign * 1e-6 * across, skip=600).state
+                last = period_map(lubricated(), curve[i] + sign * 1e-6 * across, skip=600).state
                 sides.append(int(np.argmin([np.max(np.abs(o.state - last)) for o in stable])))
             assert sides[0] != sides[1]
             ends |= set(sides)
@@ -67,7 +62,7 @@ def test_unstable_manifold_leads_to_both_attractors():
     unstable, stable = saddle()
     result = manifold(unstable, "unstable", length=6.0)
     assert result.error < 1e-8
-    last = [period_map(hysteresis(), curve[-1], skip=600).state for curve in result.curves]
+    last = [period_map(lubricated(), curve[-1], skip=600).state for curve in result.curves]
     reached = {int(np.argmin([np.max(np.abs(o.state - s)) for o in stable])) for s in last}
     assert reached == {0, 1}
 
@@ -76,7 +71,7 @@ def test_manifolds_are_invariant():
     """The image of a curve's points lies on the curve, within the bend of its chords."""
     unstable, _ = saddle()
     curve = manifold(unstable, "unstable", length=4.0, spacing=0.002).curves[0]
-    images = carried(tables(hysteresis()), curve[: len(curve) // 3], 1)
+    images = carried(tables(lubricated()), curve[: len(curve) // 3], 1)
     gap = [np.min(np.linalg.norm(curve - p, axis=1)) for p in images]
     assert max(gap) < 0.002 * 0.6
 
@@ -89,7 +84,7 @@ def test_manifold_refuses_what_has_none():
 
 def test_small_isola_closes():
     """A loop of period 3 that spans a twentieth of the bounds is followed once, not until the points run out."""
-    osc = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 0.4277777777777778, 1.0)
+    osc = starved(0.4277777777777778)
     orbit = find_orbit(osc, (1.18853132, -0.02896794), periods=3)
     branch = continue_branch(orbit, "frequency", (0.3, 2.6))
     assert branch.ended == ("closed", "closed")
@@ -100,7 +95,7 @@ def test_small_isola_closes():
 
 
 def test_stretches_meet_at_special_points():
-    branch = continue_branch(find_orbit(hysteresis(0.5), (0.35, 0.0)), "frequency", (0.5, 0.8))
+    branch = continue_branch(find_orbit(lubricated(0.5), (0.35, 0.0)), "frequency", (0.5, 0.8))
     found = stretches(branch)
     assert [s.label for s in found] == ["1-0-0", "1-1-0", "U1-1-0", "U1-1-1", "1-1-1"]
     first, touching, *_, last = found
@@ -113,5 +108,5 @@ def test_stretches_meet_at_special_points():
         "saddle-node",
     )
     for stretch in found:
-        here = hysteresis(stretch.value)
+        here = lubricated(stretch.value)
         assert find_orbit(here, stretch.state).label == stretch.label

@@ -2,28 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from dynamics import SmoothOscillator, smooth
-
-FOLDER = Path(__file__).parents[2] / "examples" / "motion"
-
-
-def example(name: str):
-    sys.path.insert(0, str(FOLDER))
-    try:
-        spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module
-        spec.loader.exec_module(module)
-        return module
-    finally:
-        sys.path.remove(str(FOLDER))
+from tests.example_scripts import example
 
 
 def ran(scan: str, folder: Path, *more: str) -> str:

@@ -7,11 +7,7 @@ import pytest
 
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, basins, multi_sweep, sweep
-
-
-def lubricated(frequency: float = 0.6) -> GearOscillator:
-    return GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, frequency, 0.2)
-
+from tests.validation.article_motion import lubricated
 
 VALUES = np.linspace(0.575, 0.615, 9)
 

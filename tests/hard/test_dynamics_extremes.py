@@ -10,17 +10,11 @@ import pytest
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, period_map, trajectory
 from dynamics.flow import tables
 from dynamics.grazing import contact_orbit
+from tests.validation.article_motion import lubricated
 
 
 def oscillator(kappa=0.18, phi=0.0, **changes) -> GearOscillator:
-    values = {
-        "damping_ratio": 0.05,
-        "mean_force": 0.1,
-        "error_amplitude": 0.2,
-        "frequency": 0.6,
-        "half_backlash": 0.2,
-    }
-    return GearOscillator(FourierStiffness(1.0, (kappa,), (phi,)), **(values | changes))
+    return lubricated(kappa=kappa, phase=phi, **changes)
 
 
 def plain_taylor(osc: GearOscillator, state, periods: int = 1, steps: int = 4000, order: int = 20, share=1.0):

@@ -13,28 +13,24 @@ import numpy as np
 import pytest
 
 from base import InputError
-from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, sweep
-from dynamics.inverse import Event, Ranged, identify
+from dynamics import continue_branch, find_orbit, sweep
+from dynamics.inverse import identify
+from tests.example_scripts import example
+from tests.validation.article_motion import event
 
 SIX = (
-    Event("saddle-node", "1-1-0", 0.43701658, 8),
-    Event("period-doubling", "1-2-0", 0.43647824, 8),
-    Event("saddle-node", "1-1-0", 0.53528214, 8),
-    Event("period-doubling", "1-1-0", 0.53961873, 8),
-    Event("period-doubling", "2-1-0", 0.78450762, 8),
-    Event("period-doubling", "1-1-0", 1.691, 3, fitted=False),
+    event("6.2", "SN1, 1-1-0"),
+    event("6.2", "PD1, 1-2-0"),
+    event("6.2", "SN3, 1-1-0"),
+    event("6.2", "PD5, 1-1-0"),
+    event("6.2", "PD7, 2-1-0"),
+    event("6.2", "1-1-0 regained", fitted=False),
 )
-GR1 = Event("grazing", "1-0-0", 0.43701486, 8)
-SN12 = Event("saddle-node", "3-1-1", 2.47857060, 8)
-PD16 = Event("period-doubling", "3-1-1", 1.53394281, 8, fitted=False)
-ANY = GearOscillator(FourierStiffness(1.0, (0.2,), (0.0,)), 0.03, 0.1, 0.2, 0.4, 0.5)
-ZETA, KAPPA, FORCE, PLAY = "damping_ratio", "stiffness.amplitudes[0]", "mean_force", "half_backlash"
-RANGES = {
-    ZETA: Ranged(0.005, 0.1),
-    KAPPA: Ranged(0.05, 0.4),
-    FORCE: Ranged(0.005, 0.4),
-    PLAY: Ranged(0.1, 3.0),
-}
+GR1, SN12 = event("6.2", "GR1, 1-0-0"), event("6.2", "SN12, 3-1-1")
+PD16 = event("6.2", "PD16, 3-1-1", fitted=False)
+SEARCH = example("identify_scans").SEARCHES["6.2"]
+ANY, RANGES = SEARCH.oscillator, SEARCH.unknowns
+ZETA, KAPPA, FORCE, PLAY = RANGES
 
 
 @pytest.fixture(scope="module")

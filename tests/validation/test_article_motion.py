@@ -1,7 +1,6 @@
 """Claims of the article's section 6 about motion, each tried on its scans (docs/validation/article_motion.md).
 
-Scans: 6.1 lubricated (kappa .18, zeta .05, F_m .1, eps .2, D .2), 6.2 starved (kappa .1, zeta .01, F_m .05, eps .2,
-D 1), both over frequency.
+Scans: 6.1 lubricated and 6.2 starved, both over frequency, 6.3 lubricated over the error amplitude.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import numpy as np
 import pytest
 
 from dynamics import (
-    FourierStiffness,
     GearOscillator,
     basins,
     boundary_crisis,
@@ -22,14 +20,7 @@ from dynamics import (
     sweep,
     trajectory,
 )
-
-
-def lubricated(frequency: float, phase: float = 0.0, kappa: float = 0.18) -> GearOscillator:
-    return GearOscillator(FourierStiffness(1.0, (kappa,), (phase,)), 0.05, 0.1, 0.2, frequency, 0.2)
-
-
-def starved(frequency: float) -> GearOscillator:
-    return GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, frequency, 1.0)
+from tests.validation.article_motion import lubricated, lubricated_error, starved
 
 
 def first_chaos(osc: GearOscillator) -> float:
@@ -92,10 +83,6 @@ def test_least_motion_in_phase_greatest_in_opposition_all_around(frequency: floa
 @pytest.mark.slow
 def test_chaos_of_the_error_scan_ends_at_a_saddle():
     """The article prints .68; ours ends at .7799045, told by a tangency and, apart from it, by whether chaos lasts."""
-
-    def lubricated_error(error: float) -> GearOscillator:
-        return GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, error, 0.4, 0.8)
-
     saddle = next(o for o in find_orbits(lubricated_error(0.778), (1,)).orbits if o.label == "U1-1-0")
     found = boundary_crisis(saddle, "error_amplitude", (0.77, 0.785), points=500, periods=90)
     assert found.converged

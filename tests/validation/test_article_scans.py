@@ -11,28 +11,31 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics import FourierStiffness, GearOscillator, contact_grazing, continue_branch, find_orbit, sweep
+from dynamics import contact_grazing, continue_branch, find_orbit, sweep
+from tests.validation.article_motion import lubricated, lubricated_error, printed, starved
 
 
 def test_lubricated_grazing():
-    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    osc = lubricated()
     result = contact_grazing(osc, bounds=(0.4, 1.0))
     (point,) = result.points
     assert point.parameter == pytest.approx(0.633533993217297, rel=0, abs=1e-14)
-    assert round(point.parameter, 4) == 0.6335  # as printed
+    assert round(point.parameter, 4) == printed("6.1", "grazing", "1-0-0")
     assert result.error < 1e-14
 
 
 def test_starved_grazing_is_printed_late():
-    osc = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 0.4, half_backlash=1.0)
+    osc = starved(0.4)
     (point,) = contact_grazing(osc, bounds=(0.42, 0.45)).points
     assert point.parameter == pytest.approx(0.43252601, rel=0, abs=5e-9)
-    assert abs(point.parameter - 0.43701486) > 4e-3  # the printed value lies on the fold that follows
+    assert (
+        abs(point.parameter - printed("6.2", "grazing", "1-0-0")) > 4e-3
+    )  # the printed value lies on the fold that follows
 
 
 def test_lubricated_scan_from_both_ends():
     """As the article says: 1-0-0 first, 1-1-0 last, hysteresis from 0.5694 to 0.6556, 2-1-1 and 6-4-4 between."""
-    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    osc = lubricated()
     values = np.linspace(0.1, 2.1, 201)
     up, down = (sweep(osc, values=values, direction=d) for d in ("up", "down"))
     assert up.labels[0] == down.labels[0] == "1-0-0"
@@ -50,31 +53,19 @@ def nearest(branch, kind: str, value: float):
 
 
 def test_lubricated_special_points():
-    osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
+    osc = lubricated(0.5)
     branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.5, 1.2))
     assert branch.converged
-    for kind, label, computed, printed, apart in (
-        ("grazing", "1-0-0", 0.633533993217297, 0.6335, 5e-5),
-        ("saddle-node", "1-1-0", 0.6555759637891, 0.6556, 5e-5),
-        ("saddle-node", "1-1-1", 0.5694026368887, 0.5694, 5e-5),
-        (
-            "period-doubling",
-            "1-1-0",
-            0.8872414998606,
-            0.8873,
-            7e-5,
-        ),  # printed 6e-5 away: the one that is not met
+    for kind, label, computed, apart in (
+        ("grazing", "1-0-0", 0.633533993217297, 5e-5),
+        ("saddle-node", "1-1-0", 0.6555759637891, 5e-5),
+        ("saddle-node", "1-1-1", 0.5694026368887, 5e-5),
+        ("period-doubling", "1-1-0", 0.8872414998606, 7e-5),  # printed 6e-5 away: the one that is not met
     ):
         point = nearest(branch, kind, computed)
         assert point.parameter == pytest.approx(computed, rel=0, abs=1e-12)
-        assert abs(point.parameter - printed) < apart
+        assert abs(point.parameter - printed("6.1", kind, label)) < apart
         assert point.label == label
-
-
-def starved(frequency: float) -> GearOscillator:
-    return GearOscillator(
-        FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, frequency, half_backlash=1.0
-    )
 
 
 def test_starved_special_points():
@@ -86,33 +77,33 @@ def test_starved_special_points():
     assert third.labels[-1] == "3-1-1"
     longer = find_orbit(starved(2.0), third.states[-1, -1], periods=3)
     longer = continue_branch(longer, "frequency", (1.45, 2.6))
-    for branch, kind, label, computed, printed, apart in (
-        (contact, "saddle-node", "1-1-0", 0.43701657, 0.43701658, 2e-8),
-        (contact, "period-doubling", "1-2-0", 0.43647822, 0.43647824, 3e-8),
-        (contact, "saddle-node", "1-1-0", 0.53528213, 0.53528214, 2e-8),
-        (second, "period-doubling", "2-1-0", 0.78450758, 0.78450762, 5e-8),
-        (bumping, "period-doubling", "1-1-0", 0.53961770, 0.53961873, 2e-6),
-        (bumping, "period-doubling", "1-1-0", 1.69095831, 1.691, 5e-5),
-        (longer, "period-doubling", "3-1-1", 1.53393379, 1.53394281, 1e-5),
-        (longer, "saddle-node", "3-1-1", 2.47857059, 2.47857060, 2e-8),
+    for branch, kind, label, computed, apart in (
+        (contact, "saddle-node", "1-1-0", 0.43701657, 2e-8),
+        (contact, "period-doubling", "1-2-0", 0.43647822, 3e-8),
+        (contact, "saddle-node", "1-1-0", 0.53528213, 2e-8),
+        (second, "period-doubling", "2-1-0", 0.78450758, 5e-8),
+        (bumping, "period-doubling", "1-1-0", 0.53961770, 2e-6),
+        (bumping, "period-doubling", "1-1-0", 1.69095831, 5e-5),
+        (longer, "period-doubling", "3-1-1", 1.53393379, 1e-5),
+        (longer, "saddle-node", "3-1-1", 2.47857059, 2e-8),
     ):
         point = nearest(branch, kind, computed)
         assert point.parameter == pytest.approx(computed, rel=0, abs=5.1e-9)
-        assert abs(point.parameter - printed) < apart
+        assert abs(point.parameter - printed("6.2", kind, label, computed)) < apart
         assert point.label == label
 
 
 def test_error_amplitude_scan():
     """Parameters found by an inverse search (the article prints D only); five digits were computed by a prototype."""
-    osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.4, 0.4, half_backlash=0.8)
+    osc = lubricated_error()
     branch = continue_branch(find_orbit(osc, (0.9, 0.0)), "error_amplitude", (0.2, 1.2))
-    for kind, computed, printed, apart in (
-        ("grazing", 0.55869, 0.5594, 8e-4),  # printed late
-        ("saddle-node", 0.58966, 0.5897, 5e-5),
-        ("saddle-node", 0.52338, 0.5234, 5e-5),
-        ("period-doubling", 0.63434, 0.6343, 5e-5),
-        ("period-doubling", 1.07615, 1.076, 2e-4),
+    for kind, label, computed, apart in (
+        ("grazing", "1-0-0", 0.55869, 8e-4),  # printed late
+        ("saddle-node", "1-1-0", 0.58966, 5e-5),
+        ("saddle-node", "1-2-0", 0.52338, 5e-5),
+        ("period-doubling", "1-2-0", 0.63434, 5e-5),
+        ("period-doubling", "2-3-1", 1.07615, 2e-4),
     ):
         point = nearest(branch, kind, computed)
         assert point.parameter == pytest.approx(computed, rel=0, abs=5.1e-6)
-        assert abs(point.parameter - printed) < apart
+        assert abs(point.parameter - printed("6.3", kind, label)) < apart

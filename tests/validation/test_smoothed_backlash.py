@@ -13,8 +13,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit
+from tests.validation.article_motion import lubricated
 
-KAPPA, ZETA, FORCE, EPS, D = 0.18, 0.05, 0.1, 0.2, 0.2
+EXACT = lubricated()
+(KAPPA,) = EXACT.stiffness.amplitudes
+ZETA, FORCE, EPS, D = EXACT.damping_ratio, EXACT.mean_force, EXACT.error_amplitude, EXACT.half_backlash
 
 
 def shot(state, w: float, s: float):
