@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import App, Parameter, validators
+from cyclopts import App, Parameter
 
 from base import Fault, InputError, SolverError
+from flankfilm.study.execution import Execution
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
@@ -35,12 +37,28 @@ def _version() -> str:
 app.version = _version
 
 
-Tolerance = Annotated[
-    str | None, Parameter(help="Relative, such as 0.5% or 0.005; overrules the scene's tolerance.")
-]
-UseCache = Annotated[
-    bool, Parameter(name="--cache", help="Use results of earlier runs whose inputs and code are the same.")
-]
+@dataclass(frozen=True)
+class SceneOptions:
+    """Options of the commands that compute a scene.
+
+    Parameters
+    ----------
+    out : Path, optional
+        Folder for the results; SCENE-results, or SCENE-verify, beside you if left out.
+    tolerance : str, optional
+        Relative, such as 0.5% or 0.005; overrules the scene's tolerance.
+    cache : bool
+        Use results of earlier runs whose inputs and code are the same.
+    """
+
+    out: Path | None = None
+    tolerance: str | None = None
+    cache: bool = True
+
+
+ForScene = Annotated[SceneOptions, Parameter(name="*")]
+HowRows = Annotated[Execution, Parameter(name="*")]
+RowsFolder = Annotated[Path, Parameter(help="Folder for the rows and what is made of them.")]
 
 
 def _prepare() -> None:
@@ -65,16 +83,7 @@ def _read(scene: Path, tolerance: str | None) -> Scene:
 
 
 @app.command
-def run(
-    scene: Path,
-    /,
-    *,
-    out: Annotated[
-        Path | None, Parameter(help="Folder for the results; SCENE-results beside you if left out.")
-    ] = None,
-    tolerance: Tolerance = None,
-    cache: UseCache = True,
-) -> int:
+def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     """Compute what SCENE wants and write the results and a report.
 
     Parameters
@@ -87,28 +96,19 @@ def run(
     from flankfilm.report.contents import summary
     from flankfilm.run import run_scene
 
-    wanted = _read(scene, tolerance)
+    wanted = _read(scene, options.tolerance)
     # a results file is called like all others: its folder tells it apart
     name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
-    folder = out if out is not None else Path(f"{name}-results")
+    folder = options.out or Path(f"{name}-results")
     with console_progress() as progress:
-        results = run_scene(wanted, folder, use_cache=cache, progress=progress)
+        results = run_scene(wanted, folder, use_cache=options.cache, progress=progress)
     for line in summary(results):
         print(line)
     return 0
 
 
 @app.command
-def verify(
-    scene: Path,
-    /,
-    *,
-    out: Annotated[
-        Path | None, Parameter(help="Folder for the results; SCENE-verify beside you if left out.")
-    ] = None,
-    tolerance: Tolerance = None,
-    cache: UseCache = True,
-) -> int:
+def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     """Tabulate every closed form of tooth stiffness against finite elements, with the latter's error.
 
     Parameters
@@ -123,10 +123,10 @@ def verify(
     from flankfilm.verify.run import verify_scene
     from flankfilm.verify.tables import costs, table, write_verification
 
-    wanted = _read(scene, tolerance)
-    folder = out if out is not None else Path(f"{scene.stem}-verify")
+    wanted = _read(scene, options.tolerance)
+    folder = options.out or Path(f"{scene.stem}-verify")
     with console_progress() as progress:
-        found = verify_scene(wanted, folder, use_cache=cache, progress=progress)
+        found = verify_scene(wanted, folder, use_cache=options.cache, progress=progress)
         files = write_verification(found, wanted, folder)
     screen = Console(width=None if sys.stdout.isatty() else 160)
     for reference in (found.references[0], found.like_for_like):
@@ -137,25 +137,8 @@ def verify(
     return 0
 
 
-ExecutorKind = Annotated[Literal["processes", "dask", "mpi"], Parameter(help="Where the rows are computed.")]
-WorkerCount = Annotated[
-    int | None,
-    Parameter(help="Processes; one for each core if left out.", validator=validators.Number(gte=1)),
-]
-Resume = Annotated[bool, Parameter(negative="", help="Go on from the rows in the folder.")]
-
-
 @app.command
-def study(
-    study: Path,
-    /,
-    *,
-    out: Annotated[Path, Parameter(help="Folder for the rows and the finished study.")],
-    executor: ExecutorKind = "processes",
-    workers: WorkerCount = None,
-    resume: Resume = False,
-    cache: UseCache = True,
-) -> int:
+def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
     """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
 
     Parameters
@@ -170,27 +153,14 @@ def study(
     from flankfilm.study.run import run_study
 
     plan = read_plan(study)
-    with console_rows() as told:
-        found = run_study(
-            plan, out, kind=executor, workers=workers, resume=resume, use_cache=cache, told=told
-        )
-    files = write_study(found, out)
-    for line in (*summary(found), ", ".join(str(path) for path in (out / "rows.csv", *files))):
-        print(line)
+    with console_rows() as progress:
+        found = run_study(plan, out, how, progress)
+    _conclude(summary(found), out, write_study(found, out))
     return SOLVER_FAULT if len(found.failures) == len(found.rows) else 0
 
 
 @app.command
-def optimise(
-    task: Path,
-    /,
-    *,
-    out: Annotated[Path, Parameter(help="Folder for the evaluations and the optimum.")],
-    executor: ExecutorKind = "processes",
-    workers: WorkerCount = None,
-    resume: Resume = False,
-    cache: UseCache = True,
-) -> int:
+def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
     """Look for the least of one output, or the trade-off of several, over keys of a scene within bounds.
 
     Parameters
@@ -205,12 +175,16 @@ def optimise(
     from flankfilm.progress import console_rows
 
     asked = read_task(task)
-    with console_rows() as told:
-        found = find(asked, out, kind=executor, workers=workers, resume=resume, use_cache=cache, told=told)
-    files = write_optimum(found, out)
-    for line in (*summary(found), ", ".join(str(path) for path in (out / "rows.csv", *files))):
-        print(line)
+    with console_rows() as progress:
+        found = find(asked, out, how, progress)
+    _conclude(summary(found), out, write_optimum(found, out))
     return 0
+
+
+def _conclude(lines: Sequence[str], out: Path, files: Sequence[Path]) -> None:
+    """Print what rows gave, and where they are."""
+    for line in (*lines, ", ".join(str(path) for path in (out / "rows.csv", *files))):
+        print(line)
 
 
 @app.command

@@ -17,45 +17,41 @@ def silent(what: str, done: int, total: int) -> None:
 @contextmanager
 def console_progress() -> Iterator[Progress]:
     """Show a bar with the time left on a terminal; show nothing elsewhere."""
-    if not sys.stderr.isatty():
-        yield silent
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("starting", total=None)
-
-        def show(what: str, done: int, total: int) -> None:
-            bar.update(task, description=what, completed=done, total=total)
-
-        yield show
+    with _bar("{task.description}") as advance:
+        yield (lambda what, done, total: advance(what, done, total)) if advance else silent
 
 
 @contextmanager
 def console_rows() -> Iterator[Callable[[int, int], None]]:
     """Show rows done, rows per second and the time left on a terminal; show nothing elsewhere."""
+    with _bar("rows", rate=True) as advance:
+        yield lambda done, total: advance("rows", done, total) if advance else None
+
+
+@contextmanager
+def _bar(text: str, rate: bool = False) -> Iterator[Progress | None]:
+    """Bar with what is being done, steps done, perhaps their rate, and the time left; None off the terminal."""
     if not sys.stderr.isatty():
-        yield lambda done, total: None
+        yield None
         return
+    from rich import progress
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
 
-    columns = (
-        TextColumn("rows"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("rows", total=None, rate="")
+    columns = [progress.TextColumn(text), progress.BarColumn(), progress.MofNCompleteColumn()]
+    if rate:
+        columns.append(progress.TextColumn("{task.fields[rate]}"))
+    columns.append(progress.TimeRemainingColumn())
+    with progress.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("starting", total=None, rate="")
 
-        def show(done: int, total: int) -> None:
+        def show(what: str, done: int, total: int) -> None:
             speed = bar.tasks[0].speed
-            bar.update(task, completed=done, total=total, rate=f"{speed:.2g} rows/s" if speed else "")
+            bar.update(
+                task,
+                description=what,
+                completed=done,
+                total=total,
+                rate=f"{speed:.2g} rows/s" if speed else "",
+            )
 
         yield show

@@ -11,15 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import SolverError
-from flankfilm.folder import claim
 from flankfilm.optimise.search import FAILED, front, search
 from flankfilm.optimise.task import Task
-from flankfilm.study.executors import Kind, default_workers
-from flankfilm.study.kept import take_up
+from flankfilm.study.execution import Execution, Progress
+from flankfilm.study.kept import KeptRows, Work, kept_rows
 from flankfilm.study.plan import Value
 from flankfilm.study.row import Row, RowResult
-from flankfilm.study.run import Told
-from flankfilm.study.table import ROWS, Columns, Line, append, locked
+from flankfilm.study.table import Columns, Line
 from flankfilm.study.workers import Workers
 
 Array = NDArray[np.float64]
@@ -68,11 +66,10 @@ class _Evaluator:
     """Evaluates points, each once; what is there already is taken from the table."""
 
     task: Task
-    path: Path
-    columns: Columns
+    kept: KeptRows
     workers: Workers
     use_cache: bool
-    told: Told
+    progress: Progress
     known: dict[tuple[float, tuple[Value, ...]], RowResult]
     asked: dict[tuple[float, tuple[Value, ...]], RowResult] = field(default_factory=dict)
     computed: int = 0
@@ -88,10 +85,10 @@ class _Evaluator:
         ]
         for result in self.workers.computed(rows):
             tol, values = missing[result.index - start]
-            append(self.path, self.columns, (tol, *values), result)
+            self.kept.add((tol, *values), result)
             self.known[tol, values] = result
             self.computed += 1
-            self.told(len(self.known), self.task.evaluations)
+            self.progress(len(self.known), self.task.evaluations)
         for point in points:
             self.asked.setdefault(point, self.known[point])
         results = [self.known[point] for point in points]
@@ -119,36 +116,37 @@ def _limits(task: Task, results: list[RowResult]) -> Array:
 def optimise(
     task: Task,
     folder: Path,
-    *,
-    kind: Kind = "processes",
-    workers: int | None = None,
-    resume: bool = False,
-    use_cache: bool = True,
-    told: Told = lambda done, total: None,
+    how: Execution = Execution(),
+    progress: Progress = lambda done, total: None,
 ) -> Optimum:
     """Search the best points of a task; every evaluation goes into ``rows.csv`` of a folder.
 
     The search is the same whenever it runs: taken up again, it asks for the same points, finds those that are
     there, and goes on to the same end.
 
+    Parameters
+    ----------
+    task : Task
+    folder : Path
+        Made when it does not exist.
+    how : Execution
+        Where points are computed, and whether a search that was begun in the folder is taken up.
+    progress : callable
+        Called with evaluations done and evaluations in all.
+
     Raises
     ------
     InputError
-        Where the folder holds something else, or evaluations of this task without `resume`.
+        Where the folder holds something else, or evaluations of this task without ``resume``.
     SolverError
         Where no point keeps the limits.
     """
     start = time.perf_counter()
-    claim(folder)
     columns = Columns(("tolerance", *task.keys), task.outputs)
-    with locked(folder):
-        lines = take_up(
-            folder, "optimisation", task.title, {"task": _plain(task), "scene": task.scene}, columns, resume
-        )
-        held = dict(_points(task, lines))
-        with Workers(kind, workers or default_workers()) as staff:
-            evaluator = _Evaluator(task, folder / ROWS, columns, staff, use_cache, told, held)
-            search(task, evaluator)
+    work = Work("optimisation", task.title, {"task": _plain(task), "scene": task.scene}, columns)
+    with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
+        evaluator = _Evaluator(task, kept, staff, how.cache, progress, dict(_points(task, kept.lines)))
+        search(task, evaluator)
     evaluations = tuple(Evaluation(*point, result) for point, result in evaluator.asked.items())
     best = _best(task, evaluations)
     if not best.size:

@@ -8,15 +8,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from base import Fault, InputError
-from flankfilm.scene.explain import explain_all
-from flankfilm.scene.reader import parse_toml, read_text, validated
+from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section
-from flankfilm.study.outputs import OUTPUTS
-from flankfilm.study.plan import Follow, Range, Value, base_scene, following, put
+from flankfilm.study.plan import (
+    Follow,
+    Range,
+    RowsFile,
+    Value,
+    base_scene,
+    following,
+    put,
+    read_rows_file,
+    refuse_unknown_outputs,
+)
 
 COARSENING = 5.0
 """The tolerance of the first phase, in tolerances of the scene."""
@@ -39,11 +46,9 @@ class Limit(Section):
         return self
 
 
-class OptimisationFile(Section):
+class OptimisationFile(RowsFile):
     """A whole optimisation file."""
 
-    title: str = Field(default="", max_length=200, description="title of the optimisation")
-    scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
     minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
         default=(), description="outputs wanted least; with several in all, their trade-off is sought"
     )
@@ -53,22 +58,13 @@ class OptimisationFile(Section):
     evaluations: int = Field(default=300, ge=8, le=1_000_000, description="scenes computed at most")
     population: int = Field(default=24, ge=8, le=1000, description="scenes of each generation of the search")
     seed: int = Field(default=1, ge=0, description="of the search; the same seed gives the same search")
-    vary: dict[str, Range] = Field(min_length=1, description="keys of the scene that may change, with ranges")
-    follow: dict[str, Follow] = Field(
-        default_factory=dict, description="keys of the scene that follow a varied one"
-    )
-    set: dict[str, Value] = Field(
-        default_factory=dict, description="keys of the scene that have another value throughout"
-    )
+    vary: dict[str, Range] = Field(description="keys of the scene that may change, with ranges")
     limits: dict[str, Limit] = Field(default_factory=dict, description="bounds of outputs")
 
     @model_validator(mode="after")
     def _something_to_want(self) -> OptimisationFile:
         if not self.minimise and not self.maximise:
             raise ValueError('name at least one output, such as minimise = ["transmission_error_um"]')
-        for key, rule in self.follow.items():
-            if rule.of not in self.vary:
-                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
         return self
 
 
@@ -140,19 +136,9 @@ def read_task(path: Path) -> Task:
     InputError
         With every fault of the file.
     """
-    raw = parse_toml(read_text(path), str(path))
-    try:
-        asked = OptimisationFile.model_validate(raw)
-    except ValidationError as error:
-        raise InputError(explain_all(error.errors(), OptimisationFile)) from error
+    asked = read_rows_file(path, OptimisationFile)
     names = (*asked.minimise, *asked.maximise, *asked.limits)
-    faults = [
-        Fault("outputs", repr(name), "is not an output", f"Allowed: {', '.join(OUTPUTS)}")
-        for name in names
-        if name not in OUTPUTS
-    ]
-    if faults:
-        raise InputError(faults)
+    refuse_unknown_outputs(names)
     scene = base_scene(asked.scene, asked.set, names, path.parent)
     fine = parse_tolerance(scene.get("tolerance", Scene.model_fields["tolerance"].default), "tolerance")
     task = Task(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.units import FACTORS, suffix
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_netcdf
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.run import StudyResults
@@ -37,26 +38,10 @@ def dataset(found: StudyResults) -> xr.Dataset:
 
 
 def unit_of(key: str) -> str:
-    """Unit that a scene's key carries, "1" where it carries none."""
+    """Unit that a scene's key ends in, "1" where it carries none."""
+    endings = ((suffix(unit), unit) for unit in sorted(FACTORS, key=len, reverse=True))
     last = key.rpartition(".")[2]
-    for suffix, unit in _UNITS.items():
-        if last.endswith(suffix):
-            return unit
-    return "1"
-
-
-_UNITS = {
-    "_per_GPa": "1/GPa",
-    "_kg_per_m3": "kg/m3",
-    "_N_per_m": "N/m",
-    "_Pa_s": "Pa s",
-    "_GPa": "GPa",
-    "_mm": "mm",
-    "_um": "um",
-    "_Nm": "N m",
-    "_rpm": "rpm",
-    "_deg": "deg",
-}
+    return next((unit for ending, unit in endings if ending and last.endswith(f"_{ending}")), "1")
 
 
 def write_study(found: StudyResults, folder: Path) -> list[Path]:

@@ -1,72 +1,114 @@
-"""Taking up a folder of rows: a new one, or one that holds some of the same work by the same code."""
+"""A folder of rows that only grows: taken up anew, or where the same work by the same code was left."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from base import Fault, InputError
 from flankfilm.cache import code_digest
 from flankfilm.dataset import write_text
-from flankfilm.study.table import ROWS, Columns, Line, read_lines
+from flankfilm.folder import claim
+from flankfilm.study.row import RowResult
+from flankfilm.study.table import ROWS, Columns, Line, append, locked, read_lines
 
 PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 
-Work = Literal["study", "optimisation"]
 
+@dataclass(frozen=True)
+class Work:
+    """What the rows of a folder are of.
 
-def take_up(
-    folder: Path, work: Work, title: str, identity: Mapping[str, Any], columns: Columns, resume: bool
-) -> list[Line]:
-    """Give the rows that a folder holds of some work, and note the work in a folder that holds none.
-
-    Parameters
+    Attributes
     ----------
-    folder : Path
-        Locked by the caller.
-    work : {"study", "optimisation"}
-        Names the note, ``study.json`` or ``optimisation.json``.
+    kind : {"study", "optimisation"}
+        Names the note in the folder, ``study.json`` or ``optimisation.json``.
     title : str
         For a person who reads the note.
     identity : mapping
         What makes two of them the same, as plain values.
     columns : Columns
+        Of the table of rows.
+    """
+
+    kind: Literal["study", "optimisation"]
+    title: str
+    identity: Mapping[str, Any]
+    columns: Columns
+
+
+@dataclass(frozen=True)
+class KeptRows:
+    """The table of a folder, locked: rows that were there, and room for more.
+
+    Attributes
+    ----------
+    path : Path
+        ``rows.csv``.
+    columns : Columns
+    lines : tuple of Line
+        Rows that were there.
+    """
+
+    path: Path
+    columns: Columns
+    lines: tuple[Line, ...]
+
+    def add(self, values: Sequence[object], result: RowResult) -> None:
+        """Keep a row with the values of its keys."""
+        append(self.path, self.columns, values, result)
+
+
+@contextmanager
+def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
+    """Take up the rows that a folder holds of some work, and note the work in a folder that holds none.
+
+    Parameters
+    ----------
+    folder : Path
+        Made when it does not exist; nobody else may use it meanwhile.
+    work : Work
     resume : bool
         Whether to go on from rows that are there.
-
-    Returns
-    -------
-    list of Line
 
     Raises
     ------
     InputError
-        Where the folder holds rows of something else, of other code, or of this work without `resume`.
+        Where the folder cannot be written or another process works there, where it holds rows of something else or of
+        other code, or of this work without `resume`.
     """
-    digest = code_digest(PACKAGES)
-    note = folder / f"{work}.json"
-    another = "Name another folder with --out"
+    claim(folder)
+    with locked(folder):
+        digest = code_digest(PACKAGES)
+        lines = _rows_there(folder, work, resume, digest)
+        plain = {"title": work.title, work.kind: work.identity, "code_sha256": digest}
+        write_text(_note(folder, work), json.dumps(plain, indent=1))
+        yield KeptRows(folder / ROWS, work.columns, tuple(lines))
+
+
+def _note(folder: Path, work: Work) -> Path:
+    return folder / f"{work.kind}.json"
+
+
+def _rows_there(folder: Path, work: Work, resume: bool, digest: str) -> list[Line]:
+    note, another = _note(folder, work), "Name another folder with --out"
     if not note.exists():
         if (folder / ROWS).exists():
             raise InputError([Fault(str(folder), "", f"holds {ROWS} without its {note.name}", another)])
-        _write(note, work, title, identity, digest)
         return []
     held = json.loads(note.read_text(encoding="utf-8"))
-    if held.get(work) != json.loads(json.dumps(identity)):
-        told = f"holds another {work}, or this one with other keys, rows or outputs"
-        raise InputError([Fault(str(folder), "", told, another)])
-    rows = read_lines(folder / ROWS, columns)
+    if held.get(work.kind) != json.loads(json.dumps(work.identity)):
+        allowed = f"holds another {work.kind}, or this one with other keys, rows or outputs"
+        raise InputError([Fault(str(folder), "", allowed, another)])
+    rows = read_lines(folder / ROWS, work.columns)
     if rows and not resume:
-        told = f"holds {len(rows)} rows of this {work}"
-        raise InputError([Fault(str(folder), "", told, "Add --resume to go on from them")])
+        allowed = f"holds {len(rows)} rows of this {work.kind}"
+        raise InputError([Fault(str(folder), "", allowed, "Add --resume to go on from them")])
     if rows and held.get("code_sha256") != digest:
-        told = "holds rows that other code or libraries computed"
-        raise InputError([Fault(str(folder), "", told, f"{another} to start anew")])
-    _write(note, work, title, identity, digest)
+        allowed = "holds rows that other code or libraries computed"
+        raise InputError([Fault(str(folder), "", allowed, f"{another} to start anew")])
     return rows
-
-
-def _write(note: Path, work: Work, title: str, identity: Mapping[str, Any], digest: str) -> None:
-    write_text(note, json.dumps({"title": title, work: identity, "code_sha256": digest}, indent=1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import itertools
 import json
 import math
@@ -9,12 +10,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
-from base import Fault, InputError
+from base import Fault, Faults, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
 from flankfilm.scene.section import Section
@@ -79,11 +80,40 @@ class Follow(Section):
     plus: Bounded = Field(default=0.0, description="added to that")
 
 
-class StudyFile(Section):
-    """A whole study file."""
+class RowsFile(Section):
+    """What a study and an optimisation have in common: a scene, keys that vary or follow, and keys that are set."""
 
     title: str = Field(default="", max_length=200, description="title of the study")
     scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
+    vary: Any = Field(description="keys of the scene that vary, each with a range or a list of values")
+    follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(
+        default_factory=dict, description="keys of the scene that follow a varied one"
+    )
+    set: dict[str, Value] = Field(
+        default_factory=dict, description="keys of the scene that have another value throughout"
+    )
+
+    @model_validator(mode="after")
+    def _leaders_and_places(self) -> RowsFile:
+        if not self.vary:
+            raise ValueError('vary needs a key of the scene, such as "pair.pinion.profile_shift"')
+        for key, rule in self.follow.items():
+            if rule.of not in self.vary:
+                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
+        twice = (self.vary.keys() & self.follow.keys()) | (
+            self.set.keys() & (self.vary.keys() | self.follow.keys())
+        )
+        if twice:
+            raise ValueError(f"{', '.join(sorted(twice))} stands in two of vary, follow and set")
+        return self
+
+
+F = TypeVar("F", bound=RowsFile)
+
+
+class StudyFile(RowsFile):
+    """A whole study file."""
+
     outputs: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=200)] = Field(
         description="computed for every row; the names are listed below"
     )
@@ -99,18 +129,10 @@ class StudyFile(Section):
         dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]],
         Field(max_length=MOST_KEYS),
     ] = Field(description="keys of the scene that vary, each with a range or a list of values")
-    follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(
-        default_factory=dict, description="keys of the scene that follow a varied one"
-    )
-    set: dict[str, Value] = Field(
-        default_factory=dict, description="keys of the scene that have another value in every row"
-    )
 
     @model_validator(mode="after")
     def _one_design(self) -> StudyFile:
         sampled = self.design in ("latin-hypercube", "sobol")
-        if not self.vary:
-            raise ValueError('vary needs a key of the scene, such as "pair.pinion.profile_shift"')
         if sampled and self.samples is None:
             raise ValueError(f'design = "{self.design}" needs samples')
         if not sampled and self.samples is not None:
@@ -118,14 +140,6 @@ class StudyFile(Section):
         for key, values in self.vary.items():
             if isinstance(values, Range) and not sampled and values.steps is None:
                 raise ValueError(f'vary "{key}" needs steps in a {self.design}')
-        for key, rule in self.follow.items():
-            if rule.of not in self.vary:
-                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
-        twice = (self.vary.keys() & self.follow.keys()) | (
-            self.set.keys() & (self.vary.keys() | self.follow.keys())
-        )
-        if twice:
-            raise ValueError(f"{', '.join(sorted(twice))} stands in two of vary, follow and set")
         return self
 
 
@@ -179,24 +193,33 @@ def read_plan(path: Path) -> Plan:
     InputError
         With every fault of the file.
     """
+    return plan_of(read_rows_file(path, StudyFile), path.parent)
+
+
+def read_rows_file(path: Path, kind: type[F]) -> F:
+    """Read and check a study or an optimisation file, apart from the scene in it."""
     raw = parse_toml(read_text(path), str(path))
     refuse_long_lists({key: value for key, value in raw.items() if key != "vary"})
     try:
-        study = StudyFile.model_validate(raw)
+        return kind.model_validate(raw)
     except ValidationError as error:
-        raise InputError(explain_all(error.errors(), StudyFile)) from error
-    return plan_of(study, path.parent)
+        raise InputError(explain_all(error.errors(), kind)) from error
+
+
+def refuse_unknown_outputs(names: Iterable[str]) -> None:
+    """Refuse outputs that no row has, all at once."""
+    found = Faults()
+    for name in names:
+        if name not in OUTPUTS:
+            near = difflib.get_close_matches(name, OUTPUTS, n=1)
+            remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(OUTPUTS)}"
+            found.add("outputs", repr(name), "is not an output", remedy)
+    found.raise_if_any()
 
 
 def plan_of(study: StudyFile, folder: Path) -> Plan:
     """Lay out the rows of a study whose scene file is named from `folder`."""
-    faults = [
-        Fault("outputs", repr(name), "is not an output", f"Allowed: {', '.join(OUTPUTS)}")
-        for name in study.outputs
-        if name not in OUTPUTS
-    ]
-    if faults:
-        raise InputError(faults)
+    refuse_unknown_outputs(study.outputs)
     scene = base_scene(study.scene, study.set, study.outputs, folder)
     keys = (*study.vary, *study.follow)
     varied = tuple(study.vary)

@@ -20,6 +20,7 @@ from flankfilm.optimise.search import front
 from flankfilm.optimise.task import read_task
 from flankfilm.scene import read_scene
 from flankfilm.scene.reader import validated
+from flankfilm.study.execution import Execution
 from flankfilm.study.row import RowResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -56,7 +57,7 @@ def largest_sliding(pair):
 def test_least_sliding_is_balanced_sliding(tmp_path):
     """The larger of two figures, one falling and one rising with the shift, is least where they are equal."""
     task = read_task(task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 300'))
-    found = optimise(task, tmp_path / "out", workers=1)
+    found = optimise(task, tmp_path / "out", Execution(workers=1))
     best = found.evaluations[found.best[0]]
     balanced = brentq(lambda x: balance(task, x), -0.3, 0.6)
     assert best.values[0] == pytest.approx(balanced, abs=2e-3)
@@ -69,11 +70,11 @@ def test_a_limit_is_kept_and_reached(tmp_path):
     upper = SHIFT.replace("-0.3", "0.1")  # there sliding grows and the contact ratio falls with the shift
     limit = '[limits]\n"contact_ratio" = { at_least = 1.68 }\n' + upper
     task = read_task(task_file(tmp_path, wanted, limit))
-    found = optimise(task, tmp_path / "out", workers=1)
+    found = optimise(task, tmp_path / "out", Execution(workers=1))
     best = found.evaluations[found.best[0]]
     sliding, ratio = best.result.values
     assert ratio >= 1.68
-    free = optimise(read_task(task_file(tmp_path, wanted, upper)), tmp_path / "free", workers=1)
+    free = optimise(read_task(task_file(tmp_path, wanted, upper)), tmp_path / "free", Execution(workers=1))
     assert free.evaluations[free.best[0]].result.values[0] > sliding  # the limit costs something
     assert ratio == pytest.approx(1.68, abs=2e-3)
 
@@ -82,7 +83,7 @@ def test_limits_that_nothing_keeps_end_with_a_reason(tmp_path):
     limit = '[limits]\n"contact_ratio" = { at_least = 3.0 }\n' + SHIFT
     task = read_task(task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 24', limit))
     with pytest.raises(SolverError, match="none of"):
-        optimise(task, tmp_path / "out", workers=1)
+        optimise(task, tmp_path / "out", Execution(workers=1))
 
 
 def test_a_front_holds_what_nothing_betters():
@@ -94,7 +95,7 @@ def test_a_front_holds_what_nothing_betters():
 def test_several_objectives_trade_off(tmp_path):
     wanted = 'minimise = ["specific_sliding"]\nmaximise = ["contact_ratio"]\nevaluations = 120'
     task = read_task(task_file(tmp_path, wanted))
-    found = optimise(task, tmp_path / "out", workers=1)
+    found = optimise(task, tmp_path / "out", Execution(workers=1))
     front_values = found.objectives()[found.best]
     # the grid's front, found by trying, is not better than ours anywhere by more than the search's steps
     shifts = np.linspace(-0.3, 0.6, 181)
@@ -115,7 +116,7 @@ def test_several_objectives_trade_off(tmp_path):
 def test_taken_up_again_it_ends_with_the_same_points(tmp_path):
     path = task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 60')
     task = read_task(path)
-    whole = optimise(task, tmp_path / "whole", workers=1)
+    whole = optimise(task, tmp_path / "whole", Execution(workers=1))
     rows = tmp_path / "whole" / "rows.csv"
     for kept in (1, 17, 40):
         folder = tmp_path / f"cut{kept}"
@@ -126,8 +127,8 @@ def test_taken_up_again_it_ends_with_the_same_points(tmp_path):
         cut = lines[: kept + 1] if kept < 17 else lines[: kept // 2] + lines[kept // 2 + 1 : kept + 1]
         (folder / "rows.csv").write_bytes(b"".join(cut) + b"9,0.0")
         with pytest.raises(InputError, match="--resume"):
-            optimise(task, folder, workers=1)
-        again = optimise(task, folder, workers=1, resume=True)
+            optimise(task, folder, Execution(workers=1))
+        again = optimise(task, folder, Execution(workers=1, resume=True))
         assert [e.values for e in again.evaluations] == [e.values for e in whole.evaluations]
         assert [e.result.values for e in again.evaluations] == [e.result.values for e in whole.evaluations]
         assert again.computed == whole.computed - (len(cut) - 1)

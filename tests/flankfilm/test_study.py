@@ -16,6 +16,7 @@ import pytest
 import xarray as xr
 
 from base import InputError
+from flankfilm.study.execution import Execution
 from flankfilm.study.outputs import OUTPUTS
 from flankfilm.study.plan import read_plan
 from flankfilm.study.run import run_study
@@ -123,7 +124,7 @@ class TestRows:
         from flankfilm.scene.reader import validated
 
         plan = read_plan(study_file(tmp_path, SHIFTS))
-        found = run_study(plan, tmp_path / "out", workers=1)
+        found = run_study(plan, tmp_path / "out", Execution(workers=1))
         for row in found.rows:
             pair = gear_pair(validated(plan.raw_scene(row.index)))
             assert row.values[0] == pair.contact_ratio
@@ -133,7 +134,7 @@ class TestRows:
 
     def test_a_row_that_fails_says_why_and_the_others_go_on(self, tmp_path):
         plan = read_plan(study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9, -0.1]'))
-        found = run_study(plan, tmp_path / "out", workers=1)
+        found = run_study(plan, tmp_path / "out", Execution(workers=1))
         assert [bool(row.fault) for row in found.rows] == [False, True, False]
         assert "pair.pinion.tip_alteration" in found.rows[1].fault
         assert math.isnan(found.rows[1].values[0])
@@ -157,14 +158,14 @@ class TestRows:
 
     def test_a_torn_last_line_is_cut_off_and_its_row_computed_again(self, tmp_path):
         plan = read_plan(study_file(tmp_path, SHIFTS))
-        found = run_study(plan, tmp_path / "out", workers=1)
+        found = run_study(plan, tmp_path / "out", Execution(workers=1))
         path, columns = tmp_path / "out" / "rows.csv", Columns(plan.keys, plan.outputs)
         whole = path.read_bytes()
         for cut in range(1, len(whole.splitlines()[-1]) + 1):
             path.write_bytes(whole[:-cut])
             assert len(read_lines(path, columns)) == 3
             assert path.read_bytes().endswith(b"\n")
-        again = run_study(plan, tmp_path / "out", workers=1, resume=True)
+        again = run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
         assert again.computed == 1
         assert [r.values for r in again.rows] == [r.values for r in found.rows]
 
@@ -195,19 +196,19 @@ def die_or_count(row):
 class TestFolder:
     def test_another_study_is_kept_out(self, tmp_path):
         out = tmp_path / "out"
-        run_study(read_plan(study_file(tmp_path, SHIFTS)), out, workers=1)
+        run_study(read_plan(study_file(tmp_path, SHIFTS)), out, Execution(workers=1))
         with pytest.raises(InputError, match="--resume"):
-            run_study(read_plan(study_file(tmp_path, SHIFTS)), out, workers=1)
+            run_study(read_plan(study_file(tmp_path, SHIFTS)), out, Execution(workers=1))
         other = read_plan(study_file(tmp_path, SHIFTS.replace("0.4", "0.5")))
         with pytest.raises(InputError, match="another study"):
-            run_study(other, out, workers=1, resume=True)
+            run_study(other, out, Execution(workers=1, resume=True))
 
     def test_rows_of_other_code_are_not_mixed_in(self, tmp_path, monkeypatch):
         plan = read_plan(study_file(tmp_path, SHIFTS))
-        run_study(plan, tmp_path / "out", workers=1)
+        run_study(plan, tmp_path / "out", Execution(workers=1))
         monkeypatch.setattr("flankfilm.study.kept.code_digest", lambda packages: "other")
         with pytest.raises(InputError, match="other code"):
-            run_study(plan, tmp_path / "out", workers=1, resume=True)
+            run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
 
     def test_two_at_once_do_not_share_a_folder(self, tmp_path):
         with locked(tmp_path), pytest.raises(InputError, match="at work"), locked(tmp_path):
@@ -216,7 +217,7 @@ class TestFolder:
     def test_killed_at_any_moment_it_goes_on_to_the_same_numbers(self, tmp_path):
         vary = '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4, steps = 60 }'
         path = study_file(tmp_path, vary)
-        whole = run_study(read_plan(path), tmp_path / "whole", workers=1)
+        whole = run_study(read_plan(path), tmp_path / "whole", Execution(workers=1))
         rows = tmp_path / "out" / "rows.csv"
         for lines in (1, 15, 40):
             busy = subprocess.Popen(
@@ -257,8 +258,8 @@ class TestCommand:
     @pytest.mark.filterwarnings("ignore")  # of the cluster's own start and end
     def test_a_cluster_gives_the_same_rows_to_the_last_digit(self, tmp_path):
         plan = read_plan(study_file(tmp_path, SHIFTS))
-        here = run_study(plan, tmp_path / "here", workers=1)
-        there = run_study(plan, tmp_path / "there", workers=1, kind="dask")
+        here = run_study(plan, tmp_path / "here", Execution(workers=1))
+        there = run_study(plan, tmp_path / "there", Execution("dask", workers=1))
         assert [row.values for row in here.rows] == [row.values for row in there.rows]
 
     @pytest.mark.parametrize("kind", ["dask", "mpi"])
