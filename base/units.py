@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["FACTORS", "factor", "suffix"]
+__all__ = ["FACTORS", "factor", "suffix", "unit_of"]
 
 FACTORS = {
     "1": 1.0,
@@ -76,3 +76,15 @@ def suffix(unit: str) -> str:
         return ""
     text = unit.replace("%", "percent").replace("N m", "Nm").replace("(", "").replace(")", "")
     return text.removeprefix("1").replace("/", "_per_").strip("_").replace(" ", "_")
+
+
+def unit_of(name: str) -> str:
+    """Unit in which a name ends, ``1`` for none: the reverse of `suffix`.
+
+    Examples
+    --------
+    >>> [unit_of(name) for name in ("module_mm", "density_per_mm2", "mean_N_per_m", "teeth")]
+    ['mm', '1/mm2', 'N/m', '1']
+    """
+    fitting = [unit for unit in FACTORS if (end := suffix(unit)) and name.endswith(f"_{end}")]
+    return max(fitting, key=lambda unit: len(suffix(unit)), default="1")

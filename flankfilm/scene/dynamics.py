@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from base import Limit
 from dynamics.limits import OSCILLATOR
 from flankfilm.scene.key import key
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.section import Limits, Section, refused
 
 Positive = Annotated[float, Field(gt=0)]
 TwoNumbers = Annotated[tuple[float, float], Field(strict=False)]
@@ -20,30 +20,27 @@ Several = Annotated[tuple[Positive, ...], Field(strict=False)]
 FASTEST = 1e7
 """Upper end of a range of speeds [rpm], or of frequencies."""
 
-# bounds that catch a number with a unit among the dimensionless ones
 _NUMBER = Limit(0.0, 1e6)
+"""Of a dimensionless quantity, to catch a number with a unit."""
+
 _INERTIA = Limit(0.0, 1e9, "kg m2")
-_TURN = Limit(-2.0 * math.pi, 2.0 * math.pi, "rad")
 
 
 class ExtraInertia(Section):
     """Moments of inertia that turn with the gears."""
 
-    pinion: float = key("of what turns with the pinion, in kg m2", 0.0, limit=_INERTIA, example=0.0)
-    wheel: float = key("of what turns with the wheel, in kg m2", 0.0, limit=_INERTIA, example=0.0)
+    ground: ClassVar[Limits] = {"pinion": _INERTIA, "wheel": _INERTIA}
+
+    pinion: float = key("of what turns with the pinion, in kg m2", 0.0, shown=True)
+    wheel: float = key("of what turns with the wheel, in kg m2", 0.0, shown=True)
 
 
 class SpeedRange(Section):
     """Range of pinion speed, or of the dimensionless mesh frequency."""
 
-    speed_rpm: TwoNumbers | None = key(
-        "from and to, speed of the pinion", None, unit="rpm", example=(500, 30000), commented=True
-    )
+    speed_rpm: TwoNumbers | None = key("from and to, speed of the pinion", None, such_as=(500, 30000))
     frequency: TwoNumbers | None = key(
-        "from and to, mesh frequency over the natural one, instead of the speed",
-        None,
-        example=(0.1, 2.1),
-        commented=True,
+        "from and to, mesh frequency over the natural one, instead of the speed", None, such_as=(0.1, 2.1)
     )
 
     @model_validator(mode="after")
@@ -75,56 +72,47 @@ class DiagramSection(SpeedRange):
 class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
+    ground: ClassVar[Limits] = {
+        "damping_ratio": replace(OSCILLATOR["damping_ratio"], high=5.0),
+        "transmission_error": Limit(0.0, 0.01, "m"),
+        "error_phase": Limit(-2.0 * math.pi, 2.0 * math.pi, "rad"),
+        "length": Limit(0.0, 1.0, "m", low_open=True),
+        "mean_force": _NUMBER,
+        "error_amplitude": _NUMBER,
+        "half_backlash": _NUMBER,
+    }
+
     fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = key(
-        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows',
-        1,
-        example=1,
+        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows', 1, shown=True
     )
     stiffness: Literal["secant", "tangent"] = key(
-        "force over deflection, or the slope for small vibration", "secant", example="secant"
+        "force over deflection, or the slope for small vibration", "secant", shown=True
     )
-    damping_ratio: float = key(
-        "damping of the mesh over the critical one",
-        0.05,
-        limit=replace(OSCILLATOR["damping_ratio"], high=5.0),
-        example=0.05,
-    )
+    damping_ratio: float = key("damping of the mesh over the critical one", 0.05, shown=True)
     error_amplitude_um: float | None = key(
-        "unloaded transmission error, without the deflection; 0 if left out",
+        "unloaded transmission error; the deflection is in the stiffness; 0 if left out",
         None,
-        unit="um",
-        limit=Limit(0.0, 0.01, "m"),
+        of="transmission_error",
         example=10,
     )
-    error_phase_deg: float = key(
-        "phase of this error when a pair is at A", 0.0, unit="deg", limit=_TURN, example=0
-    )
+    error_phase_deg: float = key("phase of this error when a pair is at A", 0.0, example=0)
     extra_inertia_kg_m2: ExtraInertia = key(
         "moments of inertia that turn with the gears", ExtraInertia(), example={"pinion": 0.0, "wheel": 0.0}
     )
     length_scale_um: float | None = key(
         "length of the dimensionless form; if left out such that the mean force is 0.1",
         None,
-        unit="um",
         of="length",
-        limit=Limit(0.0, 1.0, "m", low_open=True),
-        example=200,
-        commented=True,
+        such_as=200,
     )
     mean_force: float | None = key(
-        "dimensionless, with the next two instead of the physical keys",
-        None,
-        limit=_NUMBER,
-        example=0.1,
-        commented=True,
+        "dimensionless, with the next two instead of the physical keys", None, such_as=0.1
     )
     error_amplitude: float | None = key(
-        "dimensionless amplitude of the transmission error", None, limit=_NUMBER, example=0.2, commented=True
+        "dimensionless amplitude of the transmission error", None, such_as=0.2
     )
-    half_backlash: float | None = key(
-        "dimensionless half of the backlash", None, limit=_NUMBER, example=0.2, commented=True
-    )
-    one_sided: bool = key("whether there is no second flank, as with much backlash", False, example=False)
+    half_backlash: float | None = key("dimensionless half of the backlash", None, such_as=0.2)
+    one_sided: bool = key("whether there is no second flank, as with much backlash", False, shown=True)
     sweep: SweepSection | None = key(
         "range of the wanted sweep up and down", None, example={"speed_rpm": (500, 30000), "points": 400}
     )
@@ -134,19 +122,10 @@ class DynamicsSection(Section):
         example={"speed_rpm": (500, 30000), "max_period": 4, "searches": 9},
     )
     portraits_rpm: Several = key(
-        "speeds of phase portraits; chosen from the sweep if left out",
-        (),
-        unit="rpm",
-        example=(9000,),
-        commented=True,
-        max_length=12,
+        "speeds of phase portraits; chosen from the sweep if left out", (), such_as=(9000,), max_length=12
     )
     portraits_frequency: Several = key(
-        "mesh frequencies of phase portraits, of the dimensionless form",
-        (),
-        example=(0.6,),
-        commented=True,
-        max_length=12,
+        "mesh frequencies of phase portraits, of the dimensionless form", (), such_as=(0.6,), max_length=12
     )
 
     @property

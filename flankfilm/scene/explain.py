@@ -83,7 +83,7 @@ def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Fault]:
         yield _unknown_key(where, location, model)
     else:
         field = _field_at(location, model)
-        about = Key() if field is None else key_of(field)
+        about = Key("") if field is None else key_of(field)
         allowed = about.allowed if item["type"] in _OF_NUMBERS else ""
         allowed = allowed or _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
         value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])

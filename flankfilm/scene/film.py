@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -12,14 +12,13 @@ from ehl.grades import LIMITS as GRADE
 from ehl.lubricant import LIMITS as OIL
 from ehl.supply import LIMITS as SUPPLY
 from flankfilm.scene.key import key
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.section import Limits, Section, refused
 
 BY_NUMBERS = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3", "roelands_z")
 BY_GRADE = ("iso_vg", "temperature_C", "viscosity_index", "base", "density_15_kg_per_m3")
 SUPPLIES = {"meniscus": ("meniscus_mm", "meniscus_half_widths"), "oil-layer": ("oil_layer_um",)}
 """Keys of which one gives the value of a supply."""
 
-ZERO_CELSIUS = 273.15
 # the solver takes any viscosity, for contacts that are given by Moes' numbers; an oil's is within these
 _VISCOSITY = Limit(1e-5, 1e3, "Pa s")
 
@@ -27,79 +26,38 @@ _VISCOSITY = Limit(1e-5, 1e3, "Pa s")
 class LubricantSection(Section):
     """Oil at the temperature of the contact's inlet: by its numbers, or by its ISO grade and temperature."""
 
+    ground = OIL | GRADE | {"viscosity": _VISCOSITY}
+
     viscosity_Pa_s: float | None = key(
-        "viscosity at the inlet's temperature and ambient pressure",
-        None,
-        unit="Pa s",
-        limit=_VISCOSITY,
-        example=0.075,
+        "viscosity at the inlet's temperature and ambient pressure", None, example=0.075
     )
     pressure_viscosity_per_GPa: float | None = key(
-        "pressure-viscosity coefficient at ambient pressure",
-        None,
-        unit="1/GPa",
-        limit=OIL["pressure_viscosity"],
-        example=19.6,
+        "pressure-viscosity coefficient at ambient pressure", None, example=19.6
     )
-    density_kg_per_m3: float | None = key(
-        "density at ambient pressure; 870 if left out",
-        None,
-        unit="kg/m3",
-        limit=OIL["density"],
-        example=910,
-    )
+    density_kg_per_m3: float | None = key("density at ambient pressure; 870 if left out", None, example=910)
     roelands_z: float | None = key(
-        "Roelands' index; follows from the two numbers above if left out",
-        None,
-        limit=OIL["roelands_z"],
-        example=0.54,
-        commented=True,
+        "Roelands' index; follows from the two numbers above if left out", None, such_as=0.54
     )
     viscosity_law: Literal["roelands", "barus", "constant"] = key(
-        "growth of the viscosity with pressure",
-        "roelands",
-        of=None,
+        "growth of the viscosity with pressure", "roelands", of=None
     )
     compressible: bool = key("whether the density grows with pressure (Dowson and Higginson)", True)
     iso_vg: float | None = key(
-        "grade instead of the numbers above: viscosity at 40 degC in mm2/s",
-        None,
-        of="vg",
-        limit=GRADE["vg"],
-        example=100,
-        commented=True,
+        "grade instead of the numbers above: viscosity at 40 degC in mm2/s", None, of="vg", such_as=100
     )
     temperature_C: float | None = key(
-        "temperature of a graded oil at the contact's inlet",
-        None,
-        unit="degC",
-        scale=1.0,
-        of="temperature",
-        offset=ZERO_CELSIUS,
-        limit=GRADE["temperature"],
-        example=60,
-        commented=True,
+        "temperature of a graded oil at the contact's inlet", None, celsius="temperature", such_as=60
     )
     viscosity_index: float | None = key(
-        "of a graded oil, mineral about 95, synthetic 140 to 250; 95 if left out",
-        None,
-        limit=GRADE["viscosity_index"],
-        example=95,
-        commented=True,
+        "viscosity index of a graded oil, 140 to 250 of synthetic ones; 95 if left out", None, such_as=95
     )
     base: Literal["mineral", "pao", "ester", "pag"] | None = key(
         "kind of a graded oil, for density and pressure-viscosity; mineral if left out",
         None,
-        example="mineral",
-        commented=True,
+        such_as="mineral",
     )
     density_15_kg_per_m3: float | None = key(
-        "density of a graded oil at 15 degC; typical of the base if left out",
-        None,
-        unit="kg/m3",
-        limit=GRADE["density_15"],
-        example=880,
-        commented=True,
+        "density of a graded oil at 15 degC; typical of the base if left out", None, such_as=880
     )
 
     @property
@@ -144,35 +102,29 @@ class LubricantSection(Section):
 class RoughnessSection(Section):
     """Roughness of both flanks together: makes the film mixed."""
 
-    sigma_um: float = key(
-        "standard deviation of heights, both flanks together",
-        unit="um",
-        of="deviation",
-        limit=ROUGHNESS["deviation"],
-        example=0.3,
-    )
-    density_per_mm2: float = key(
-        "asperities per area", unit="1/mm2", limit=ROUGHNESS["density"], example=25000
-    )
-    tip_radius_um: float = key(
-        "radius of the asperities' tips", unit="um", limit=ROUGHNESS["tip_radius"], example=10
-    )
+    ground = ROUGHNESS
+
+    sigma_um: float = key("standard deviation of heights, both flanks together", of="deviation", example=0.3)
+    density_per_mm2: float = key("asperities per area", example=25000)
+    tip_radius_um: float = key("radius of the asperities' tips", example=10)
     law: Literal["greenwood-tripp", "greenwood-williamson"] = key(
-        "two rough flanks, or one", "greenwood-tripp"
+        "law of the asperities, for two rough flanks or for one", "greenwood-tripp"
     )
     mean_plane_offset: float = key(
-        "from the mean plane of heights to that of the asperities, times sigma",
-        1.15,
-        of="offset",
-        limit=ROUGHNESS["offset"],
+        "from the mean plane of heights to that of the asperities, times sigma", 1.15, of="offset"
     )
 
 
 class FilmSection(Section):
     """The oil film."""
 
+    ground: ClassVar[Limits] = SUPPLY | {
+        "meniscus": Limit(0.0, 1.0, "m", low_open=True),
+        "meniscus_half_widths": Limit(1.00001, 1e6),
+    }
+
     model: Literal["ehl", "dowson", "none", "auto"] = key(
-        "solved, by Dowson's formulas, none, or auto: the cheapest within the tolerance, none included",
+        "by the film's equations, by formulas, left out, or left out where it changes less than the tolerance",
         "auto",
         example="ehl",
     )
@@ -182,36 +134,19 @@ class FilmSection(Section):
         example="approach",
     )
     supply: Literal["flooded", "meniscus", "oil-layer"] = key(
-        "of oil at the inlet, held as the load changes", "flooded", example="flooded"
+        "oil at the inlet, what stays as the load changes", "flooded", shown=True
     )
     meniscus_mm: float | None = key(
-        "where the gap fills, ahead of the contact's middle, for a supply by meniscus",
-        None,
-        unit="mm",
-        of=None,
-        limit=Limit(0.0, 1.0, "m", low_open=True),
-        example=0.3,
-        commented=True,
+        "where the gap fills, ahead of the contact's middle, for a supply by meniscus", None, such_as=0.3
     )
     meniscus_half_widths: float | None = key(
-        "the same in half-widths of each contact at its load",
-        None,
-        of=None,
-        limit=Limit(1.00001, 1e6),
-        example=1.5,
-        commented=True,
+        "the same in half-widths of each contact at its load", None, such_as=1.5
     )
     oil_layer_um: float | None = key(
-        "thickness on both flanks together, for a supply by oil layer",
-        None,
-        unit="um",
-        of="thickness",
-        limit=SUPPLY["thickness"],
-        example=0.4,
-        commented=True,
+        "thickness on both flanks together, for a supply by oil layer", None, of="thickness", such_as=0.4
     )
     grid: Literal["graded", "article"] = key(
-        "of the solver; article: 130 equal nodes on [-4, 1.2] half-widths", "graded"
+        "grid of the solver; article: 130 equal nodes on [-4, 1.2] half-widths", "graded"
     )
 
     @property

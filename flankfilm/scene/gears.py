@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from base import Limit
 from flankfilm.scene.key import key
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.section import Limits, Section, refused
 from gears.gear import LIMITS as GEAR
 from gears.gear import RELIEF_LIMITS as RELIEF
 from gears.material import LIMITS as MATERIAL
@@ -18,28 +18,26 @@ from gears.pair import LIMITS as PAIR
 from gears.rack import LIMITS as RACK
 
 Numbers = Annotated[tuple[float, ...], Field(strict=False)]
-_STIFFNESS = Limit(0.0, 1e15, "N/m", low_open=True)
 
 
 class RackSection(Section):
     """Basic rack in modules, for racks outside ISO 53."""
 
-    h_aP: float = key("addendum, times the module", limit=RACK["h_aP"], example=1.0)
-    h_fP: float = key("dedendum, times the module", limit=RACK["h_fP"], example=1.25)
-    rho_fP: float = key("radius of the fillet, times the module", limit=RACK["rho_fP"], example=0.38)
-    alpha_deg: float = key("pressure angle", 20.0, unit="deg", limit=RACK["alpha"])
+    ground = RACK
+
+    h_aP: float = key("addendum, times the module", example=1.0)
+    h_fP: float = key("dedendum, times the module", example=1.25)
+    rho_fP: float = key("radius of the fillet, times the module", example=0.38)
+    alpha_deg: float = key("pressure angle", 20.0)
 
 
 class ReliefSection(Section):
     """Tip relief: material removed normal to the flank."""
 
-    amount_um: float = key("material removed at the tip", unit="um", limit=RELIEF["amount"], example=20)
-    length_mm: float = key(
-        "length along the path of contact, from the tip",
-        unit="mm",
-        limit=RELIEF["length"],
-        example=2.0,
-    )
+    ground = RELIEF
+
+    amount_um: float = key("material removed at the tip", example=20)
+    length_mm: float = key("length along the path of contact, from the tip", example=2.0)
     form: Literal["linear", "parabolic"] = key("how the relief grows towards the tip", "linear")
 
 
@@ -48,7 +46,6 @@ class ProfileSection(Section):
 
     roll_deg: Numbers = key(
         "roll angles of the points, rising",
-        unit="deg",
         of="roll_angle",
         example=(10.0, 20.0, 28.0),
         min_length=2,
@@ -56,7 +53,6 @@ class ProfileSection(Section):
     )
     material_um: Numbers = key(
         "deviation at each point, normal to the flank; positive: too much material",
-        unit="um",
         example=(0.0, 0.0, -10.0),
         min_length=2,
         max_length=10_000,
@@ -79,18 +75,14 @@ class DeviationsSection(Section):
     single_pitch_um: Numbers | None = key(
         "single pitch deviations, one for each tooth in the order of meshing",
         None,
-        unit="um",
         of="single",
-        example=(2.0, -3.0, 1.0),
-        commented=True,
+        such_as=(2.0, -3.0, 1.0),
     )
     cumulative_pitch_um: Numbers | None = key(
         "cumulative pitch deviations instead of the single ones",
         None,
-        unit="um",
         of="cumulative",
-        example=(2.0, -1.0, 0.0),
-        commented=True,
+        such_as=(2.0, -1.0, 0.0),
     )
 
     @model_validator(mode="after")
@@ -103,85 +95,55 @@ class DeviationsSection(Section):
 class HubSection(Section):
     """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
 
+    ground: ClassVar[Limits] = {
+        "radial_stiffness": Limit(0.0, 1e15, "N/m", low_open=True),
+        "torsional_stiffness": Limit(0.0, 1e15, "N m/rad", low_open=True),
+        "hub_radius": GEAR["bore_radius"],
+    }
+
     radial_stiffness_N_per_m: float | None = key(
-        "stiffness of bearings and shaft along the line of action; rigid if left out",
-        None,
-        unit="N/m",
-        limit=_STIFFNESS,
-        example=5e8,
-        commented=True,
+        "stiffness of bearings and shaft along the line of action; rigid if left out", None, such_as=5e8
     )
     torsional_stiffness_Nm_per_rad: float | None = key(
-        "stiffness of the shaft against turning; rigid if left out",
-        None,
-        unit="N m/rad",
-        limit=Limit(0.0, 1e15, "N m/rad", low_open=True),
-        example=1e6,
-        commented=True,
+        "stiffness of the shaft against turning; rigid if left out", None, such_as=1e6
     )
     hub_mm: float | None = key(
         "diameter of the rigid hub, larger than the bore; the bore's if left out",
         None,
-        unit="mm",
-        of="hub_radius",
-        scale=0.5e-3,
-        limit=GEAR["bore_radius"],
-        note="a diameter",
-        example=40.0,
-        commented=True,
+        diameter="hub_radius",
+        such_as=40.0,
     )
 
 
 class GearSection(Section):
     """One gear."""
 
-    teeth: int = key("number of teeth", limit=GEAR["teeth"], example=36)
-    profile_shift: float = key(
-        "profile shift, times the module", 0.0, limit=GEAR["profile_shift"], commented=True
-    )
+    ground = GEAR
+
+    teeth: int = key("number of teeth", example=36)
+    profile_shift: float = key("profile shift, times the module", 0.0)
     bore_mm: float | None = key(
-        "diameter of the bore; half the root diameter if left out",
-        None,
-        unit="mm",
-        of="bore_radius",
-        scale=0.5e-3,
-        limit=GEAR["bore_radius"],
-        note="a diameter",
-        example=33.5,
-        commented=True,
+        "diameter of the bore; half the root diameter if left out", None, diameter="bore_radius", such_as=33.5
     )
-    tip_alteration: float = key("moves the tip outwards, times the module", 0.0, limit=GEAR["tip_alteration"])
-    thickness_allowance_um: float = key(
-        "thins each tooth, arc at the reference circle",
-        0.0,
-        unit="um",
-        limit=GEAR["thickness_allowance"],
-    )
+    tip_alteration: float = key("moves the tip outwards, times the module", 0.0)
+    thickness_allowance_um: float = key("thins each tooth, arc at the reference circle", 0.0)
     tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
-    tip_chamfer_mm: float = key(
-        "height of a chamfer of 45 degrees at the tip's edges",
-        0.0,
-        unit="mm",
-        limit=GEAR["tip_chamfer"],
-    )
+    tip_chamfer_mm: float = key("height of a chamfer of 45 degrees at the tip's edges", 0.0)
     tip_rounding_um: float = key(
         "radius of the tip's edges, where they touch; the finite elements' own if left out",
         0.0,
-        unit="um",
         of=None,
         limit=Limit(0.0, 0.05, "m"),
     )
     deviations: DeviationsSection | None = key(
         "deviations of the flanks as made; none if left out",
         None,
-        example={"profile": {"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)}},
-        commented=True,
+        such_as={"profile": {"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)}},
     )
     hub: HubSection | None = key(
         "rigid hub on a shaft and bearings that yield; a rigid shaft in the bore if left out",
         None,
-        example={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
-        commented=True,
+        such_as={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
     )
 
     @model_validator(mode="after")
@@ -201,12 +163,12 @@ class GearSection(Section):
 class PairSection(Section):
     """Geometry of the pair."""
 
-    module_mm: float = key("module of both gears", unit="mm", limit=PAIR["module"], example=2.0)
-    face_width_mm: float = key(
-        "width of the teeth in contact", unit="mm", limit=PAIR["face_width"], example=40.0
-    )
+    ground = PAIR
+
+    module_mm: float = key("module of both gears", example=2.0)
+    face_width_mm: float = key("width of the teeth in contact", example=40.0)
     rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = key(
-        "basic rack of both gears, or a table of its own dimensions", "ISO 53 A", of=None, example="ISO 53 A"
+        "basic rack of both gears, or a table of its own dimensions", "ISO 53 A", of=None, shown=True
     )
     pinion: GearSection = key(
         "the driving gear", example={"teeth": 36, "profile_shift": 0.0, "bore_mm": 33.5}
@@ -217,57 +179,33 @@ class PairSection(Section):
     backlash_um: float | None = key(
         "normal backlash, along the line of action; none if left out",
         None,
-        unit="um",
         of=None,
         limit=BACKLASH,
         example=50,
     )
     centre_distance_mm: float | None = key(
-        "distance of the axes instead of the backlash, which then follows",
-        None,
-        unit="mm",
-        limit=PAIR["centre_distance"],
-        example=76.0,
-        commented=True,
+        "distance of the axes instead of the backlash, which then follows", None, such_as=76.0
     )
 
 
 class ElasticSection(Section):
     """Elastic constants and density of one material."""
 
-    youngs_modulus_GPa: float = key(
-        "Young's modulus", unit="GPa", limit=MATERIAL["youngs_modulus"], example=206
-    )
-    poisson_ratio: float = key("Poisson's ratio", limit=MATERIAL["poisson_ratio"], example=0.3)
-    density_kg_per_m3: float = key(
-        "density, for the moments of inertia",
-        7850.0,
-        unit="kg/m3",
-        limit=MATERIAL["density"],
-        example=7850,
-    )
+    ground = MATERIAL
+
+    youngs_modulus_GPa: float = key("Young's modulus", example=206)
+    poisson_ratio: float = key("Poisson's ratio", example=0.3)
+    density_kg_per_m3: float = key("density, for the moments of inertia", 7850.0, example=7850)
 
 
 class MaterialSection(Section):
     """One material for both gears, or one each in `pinion` and `wheel`."""
 
-    youngs_modulus_GPa: float | None = key(
-        "Young's modulus of both gears",
-        None,
-        unit="GPa",
-        limit=MATERIAL["youngs_modulus"],
-        example=206,
-    )
-    poisson_ratio: float | None = key(
-        "Poisson's ratio of both gears", None, limit=MATERIAL["poisson_ratio"], example=0.3
-    )
-    density_kg_per_m3: float | None = key(
-        "density of both gears; 7850 if left out",
-        None,
-        unit="kg/m3",
-        limit=MATERIAL["density"],
-        example=7850,
-    )
+    ground = MATERIAL
+
+    youngs_modulus_GPa: float | None = key("Young's modulus of both gears", None, example=206)
+    poisson_ratio: float | None = key("Poisson's ratio of both gears", None, example=0.3)
+    density_kg_per_m3: float | None = key("density of both gears; 7850 if left out", None, example=7850)
     pinion: ElasticSection | None = key("material of the pinion alone, instead of the keys above", None)
     wheel: ElasticSection | None = key("material of the wheel alone, beside that of the pinion", None)
 

@@ -14,7 +14,7 @@ from flankfilm.scene.section import Section
 __all__ = ["in_keys", "under_keys"]
 
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-_LENGTH = Key("mm", scale=1e-3)
+_LENGTH = Key("", unit="mm", scale=1e-3)
 """How lengths are shown that have no key of their own."""
 
 
@@ -48,10 +48,10 @@ def in_keys(fault: Fault, section: Section | None, path: str) -> Fault:
         return replace(
             fault, where=where, value=value, allowed=allowed, remedy=_in_unit(fault.remedy, _LENGTH, "m")
         )
-    ground = about.ground
-    if ground is not None and fault.allowed == str(ground):
+    limit = about.limit
+    if limit is not None and fault.allowed == str(limit):
         return Fault(where, _shown(given, fault.value, about), about.allowed)
-    unit = "" if ground is None else ground.unit
+    unit = "" if limit is None else limit.unit
     allowed = _in_unit(fault.allowed, about, unit)
     if allowed != fault.allowed:
         allowed += about.remark
@@ -64,7 +64,7 @@ def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[st
         return list(attributes), None, None
     for name, field in type(section).model_fields.items():
         about, value = key_of(field), getattr(section, name)
-        if attributes[0] in (name, about.attribute(name)):
+        if attributes[0] in (name, about.of):
             if isinstance(value, Section):
                 names, about_inner, inner = _key_at(attributes[1:], value)
                 return [name, *names], about_inner, inner

@@ -6,60 +6,82 @@ Reading, conversion to SI, faults in the user's unit, the template and the docum
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pydantic import Field
 from pydantic.fields import FieldInfo
 
 from base import Limit
-from base.units import factor, suffix
+from base.units import factor, suffix, unit_of
 
 __all__ = ["Key", "key", "key_of", "within"]
 
 
 @dataclass(frozen=True)
 class Key:
-    """What a field says of its key beyond pydantic's own.
+    """What a field says of its key; written by `key`, completed with the name under which it stands in a section.
 
     Attributes
     ----------
+    meaning : str
+        In an engineer's words, with what holds where the key is left out.
+    default : Any
+        What stands there if it is left out; an ellipsis makes it required.
     unit : str
-        As users write it: ``mm``.
+        As users write it: ``mm``; empty for the one in which the key's name ends.
     of : str or None
         The ground's name of the quantity; empty for the key's name without its unit, None where the ground has none.
     scale, offset : float
         SI value of a number x: scale x + offset.
-    ground : Limit or None
-        What the ground allows, in SI.
+    limit : Limit or None
+        What the ground allows, in SI; None for what the section's `ground` says of the quantity.
     note : str
         Said beside bounds: "a diameter".
     example : Any
         Value in the template; None shows the default.
     commented : bool
         Whether the template shows the key behind a comment sign.
+    constraints : mapping
+        Of pydantic: lengths.
     """
 
+    meaning: str
+    default: Any = ...
     unit: str = "1"
     of: str | None = ""
     scale: float = 1.0
     offset: float = 0.0
-    ground: Limit | None = None
+    limit: Limit | None = None
     note: str = ""
     example: Any = None
     commented: bool = False
+    constraints: Mapping[str, Any] = field(default_factory=dict)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        """Take unit, name and bounds in the ground from where the key stands, and become pydantic's field."""
+        unit = self.unit or unit_of(name)
+        end = suffix(unit)
+        of = (name.removesuffix(f"_{end}") if end else name) if self.of == "" else self.of
+        scale = self.scale if self.unit else self.scale * factor(unit)
+        limit = self.limit or getattr(owner, "ground", {}).get(of)
+        about = replace(self, unit=unit, of=of, scale=scale, limit=limit)
+        setattr(owner, name, about.field())
+
+    def field(self) -> Any:
+        """Field of pydantic, with the bounds in the user's unit."""
+        return Field(
+            default=self.default,
+            description=self.meaning,
+            json_schema_extra=self,
+            **_bounds(self.bounds),
+            **self.constraints,
+        )
 
     def __call__(self, schema: dict[str, Any]) -> None:
         """Add the unit to the key's JSON schema; pydantic calls this."""
         if self.unit != "1":
             schema["unit"] = self.unit
-
-    def attribute(self, name: str) -> str | None:
-        """Name of the quantity in the ground for the key `name`."""
-        if self.of != "":
-            return self.of
-        end = suffix(self.unit)
-        return name.removesuffix(f"_{end}") if end else name
 
     def si(self, value: Any) -> Any:
         """Value in SI; what is no number, or needs no conversion, as it is."""
@@ -76,12 +98,11 @@ class Key:
     @property
     def bounds(self) -> Limit | None:
         """What is allowed, in the user's unit."""
-        if self.ground is None:
+        if self.limit is None:
             return None
-        unit = self.ground.unit if self.unit == "1" else self.unit
-        return replace(
-            self.ground, low=self.user(self.ground.low), high=self.user(self.ground.high), unit=unit
-        )
+        unit = self.limit.unit if self.unit == "1" else self.unit
+        low, high = self.user(self.limit.low), self.user(self.limit.high)
+        return replace(self.limit, low=low, high=high, unit=unit)
 
     @property
     def allowed(self) -> str:
@@ -98,46 +119,49 @@ def key(
     meaning: str,
     default: Any = ...,
     *,
-    unit: str = "1",
-    limit: Limit | None = None,
-    of: str | None = "",
-    scale: float | None = None,
-    offset: float = 0.0,
-    note: str = "",
     example: Any = None,
-    commented: bool | None = None,
+    such_as: Any = None,
+    shown: bool = False,
+    of: str | None = "",
+    diameter: str = "",
+    celsius: str = "",
+    limit: Limit | None = None,
     **constraints: Any,
 ) -> Any:
-    """Field of a section.
+    """Key of a section; its unit is the one in which its name ends, its bounds are the ground's.
 
     Parameters
     ----------
-    meaning : str
-        In an engineer's words, with what holds where the key is left out.
-    default : Any
-        What stands there if it is left out; none makes it required.
-    unit : str
-        Unit of the user's number, of `base.units`; the key's name ends in it.
+    meaning, default : str, Any
+        See `Key`.
+    example, such_as : Any
+        Value in the template; `such_as` behind a comment sign, as is a key with a default and no example.
+    shown : bool
+        Shows the default in the template without a comment sign.
+    of, diameter, celsius : str, optional
+        The ground's name where it is another: of the same quantity, of the radius, of the absolute temperature.
     limit : Limit, optional
-        What the ground allows, in SI; of a list's entries see `within`.
-    of, scale, offset, note, example, commented
-        See `Key`; `scale` follows from the unit unless given, and a key with a default and no example of its own is
-        commented unless said otherwise.
+        Bounds that the section's `ground` does not hold, in SI; of a list's entries see `within`.
     **constraints
-        Of pydantic: lengths, strictness.
+        Of pydantic: lengths.
     """
-    if scale is None:
-        scale = factor(unit)
-    if commented is None:
-        commented = default is not ... and example is None
-    about = Key(unit, of, scale, offset, limit, note, example, commented)
-    return Field(
-        default=default,
-        description=meaning,
-        json_schema_extra=about,
-        **_bounds(about.bounds),
-        **constraints,
+    commented = such_as is not None or not (default is ... or shown or example is not None)
+    written = Key(
+        meaning,
+        default,
+        unit="",
+        of=of,
+        limit=limit,
+        example=such_as if example is None else example,
+        commented=commented,
+        constraints=constraints,
     )
+    if diameter:
+        return replace(written, of=diameter, scale=0.5, note="a diameter")
+    return replace(written, of=celsius, unit="degC", offset=ZERO_CELSIUS) if celsius else written
+
+
+ZERO_CELSIUS = 273.15
 
 
 def within(limit: Limit) -> FieldInfo:
@@ -147,9 +171,9 @@ def within(limit: Limit) -> FieldInfo:
 
 
 def key_of(field: FieldInfo) -> Key:
-    """What a field says of its key."""
+    """What a field says of its key; nothing for one that was not written by `key`."""
     about = field.json_schema_extra
-    return about if isinstance(about, Key) else Key()
+    return about if isinstance(about, Key) else Key(field.description or "")
 
 
 def _bounds(limit: Limit | None) -> Mapping[str, Any]:

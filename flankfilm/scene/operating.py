@@ -2,53 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from base import Limit
 from base.units import factor
 from flankfilm.scene.key import key, within
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.section import Limits, Section, refused
 
 TORQUE = Limit(1e-9, 1e9, "N m")
-SPEED = Limit(1e-6 * factor("rpm"), 1e6 * factor("rpm"), "rad/s")
 
 
 class OperatingSection(Section):
     """Load and speed; the pinion drives, anticlockwise."""
 
-    pinion_torque_Nm: float = key(
-        "torque on the pinion, which drives anticlockwise", unit="N m", limit=TORQUE, example=600
-    )
-    pinion_speed_rpm: float | None = key(
-        "speed of the pinion, which the film needs",
-        None,
-        unit="rpm",
-        limit=SPEED,
-        example=2000,
-    )
+    ground: ClassVar[Limits] = {
+        "pinion_torque": TORQUE,
+        "pinion_speed": Limit(1e-6 * factor("rpm"), 1e6 * factor("rpm"), "rad/s"),
+        "friction": Limit(0.0, 0.5),
+        "pitches": Limit(1, 100_000, whole=True),
+    }
+
+    pinion_torque_Nm: float = key("torque on the pinion, which drives anticlockwise", example=600)
+    pinion_speed_rpm: float | None = key("speed of the pinion, which the film needs", None, example=2000)
     friction: float = key(
-        "coefficient of friction, which tilts the forces against the sliding",
-        0.0,
-        limit=Limit(0.0, 0.5),
-        example=0.05,
-        commented=True,
+        "coefficient of friction, which tilts the forces against the sliding", 0.0, such_as=0.05
     )
     torques_Nm: Annotated[tuple[Annotated[float, within(TORQUE)], ...], Field(strict=False)] = key(
         "torques on the pinion, of the wanted torques; none if left out",
         (),
-        unit="N m",
-        example=(100, 300, 600),
-        commented=True,
+        such_as=(100, 300, 600),
         max_length=1000,
     )
     pitches: int | None = key(
-        "base pitches of the wanted revolution; one turn of the pinion if left out",
-        None,
-        limit=Limit(1, 100_000, whole=True),
-        example=36,
-        commented=True,
+        "base pitches of the wanted revolution; one turn of the pinion if left out", None, such_as=36
     )
     first_teeth: Annotated[tuple[int, int], Field(strict=False)] = key(
         "numbers of the teeth of pinion and wheel that meet at A first", (0, 0)
@@ -59,43 +47,27 @@ class StiffnessSection(Section):
     """Where the mesh stiffness comes from."""
 
     model: Literal["fem", "ishikawa", "weber-banaschek", "potential-energy", "given", "auto"] = key(
-        "finite elements, a closed form, a given series, or auto: the cheapest within the tolerance",
+        "finite elements, a closed form, a series of its own, or the cheapest within the tolerance",
         "fem",
-        example="fem",
+        shown=True,
     )
     pairs: Literal["coupled", "independent"] = key(
-        "pairs of teeth that share their bodies, or stiffnesses of single pairs added",
-        "coupled",
-        example="coupled",
+        "pairs of teeth that share their bodies, or stiffnesses of single pairs added", "coupled", shown=True
     )
     plane: Literal["strain", "stress"] = key(
-        "of the finite elements, in their plane", "strain", example="strain"
+        "plane strain or plane stress of the finite elements", "strain", shown=True
     )
     contact_beyond_path: bool = key(
-        "whether loaded teeth may touch outside A..E with their tip edges", True, example=True
+        "whether loaded teeth may touch outside A..E with their tip edges", True, shown=True
     )
     mean_N_per_m: float | None = key(
-        "mean of a given stiffness; 1 if left out",
-        None,
-        unit="N/m",
-        limit=Limit(1.0, 1e15, "N/m"),
-        example=7.6e8,
-        commented=True,
+        "mean of a given stiffness; 1 if left out", None, limit=Limit(1.0, 1e15, "N/m"), such_as=7.6e8
     )
     amplitudes: Annotated[tuple[float, ...], Field(strict=False)] | None = key(
-        "harmonics of a given stiffness, each over the mean",
-        None,
-        example=(0.18,),
-        commented=True,
-        max_length=50,
+        "harmonics of a given stiffness, each over the mean", None, such_as=(0.18,), max_length=50
     )
     phases_deg: Annotated[tuple[float, ...], Field(strict=False)] | None = key(
-        "phases of these harmonics when a pair is at A; 0 if left out",
-        None,
-        unit="deg",
-        example=(0.0,),
-        commented=True,
-        max_length=50,
+        "phases of these harmonics when a pair is at A; 0 if left out", None, such_as=(0.0,), max_length=50
     )
 
     @model_validator(mode="after")

@@ -85,19 +85,19 @@ class Scene(Section):
         'relative, on the wanted figures, also as "0.5%"; the report says how it was split',
         0.005,
         limit=TOLERANCE,
-        example=0.005,
+        shown=True,
     )
-    pair: PairSection | None = key("Geometry of the pair", None, example={})
+    pair: PairSection | None = key("Geometry of the pair", None, shown=True)
     material: MaterialSection | None = key(
-        "Material of both gears, or of each in material.pinion and material.wheel", None, example={}
+        "Material of both gears, or of each in material.pinion and material.wheel", None, shown=True
     )
-    operating: OperatingSection | None = key("Load and speed", None, example={})
+    operating: OperatingSection | None = key("Load and speed", None, shown=True)
     lubricant: LubricantSection | None = key(
-        "Oil: by its numbers, or by its grade and temperature", None, example={}
+        "Oil: by its numbers, or by its grade and temperature", None, shown=True
     )
     roughness: RoughnessSection | None = key(
         "Rough flanks make the film mixed: asperities carry a share of the load; smooth if left out", None
     )
-    stiffness: StiffnessSection = key("Where the mesh stiffness comes from", StiffnessSection(), example={})
-    film: FilmSection = key("The oil film", FilmSection(model="none"), example={})
-    dynamics: DynamicsSection | None = key("Torsional vibration of the pair", None, example={})
+    stiffness: StiffnessSection = key("Where the mesh stiffness comes from", StiffnessSection(), shown=True)
+    film: FilmSection = key("The oil film", FilmSection(model="none"), shown=True)
+    dynamics: DynamicsSection | None = key("Torsional vibration of the pair", None, shown=True)

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
-from base import Fault, InputError
+from base import Fault, InputError, Limit
 from flankfilm.scene.key import key_of
 
-__all__ = ["Section", "refused"]
+__all__ = ["Limits", "Section", "refused"]
+
+Limits = Mapping[str, Limit]
 
 
 class Section(BaseModel):
     """Common rules: unknown keys refused, no silent conversion, no NaN or infinity, frozen."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    ground: ClassVar[Limits] = {}
+    """What the ground allows for the quantities that the section's keys give, in SI."""
 
     def si(self, *names: str) -> dict[str, Any]:
         """Keyword arguments for the ground: its names, in SI; what was not given is left to the ground's default.
@@ -27,8 +33,8 @@ class Section(BaseModel):
         """
         found = {}
         for name in names or type(self).model_fields:
-            attribute, value = key_of(type(self).model_fields[name]).attribute(name), self.value(name)
-            if attribute is not None and value is not None and not isinstance(value, Section):
+            attribute, value = key_of(type(self).model_fields[name]).of, self.value(name)
+            if attribute and value is not None and not isinstance(value, Section):
                 found[attribute] = value
         return found
 

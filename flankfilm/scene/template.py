@@ -98,7 +98,7 @@ def _key(name: str, field: FieldInfo, sign: str = "") -> Iterator[str]:
 def _example(field: FieldInfo) -> Any:
     """Value that the template shows: the example, the default, or a table of the required keys."""
     about, model = key_of(field), model_in(field.annotation)
-    if about.example is None and model is not None:
+    if about.example is None and model is not None and field.default is None:
         return {name: _example(inner) for name, inner in model.model_fields.items() if inner.is_required()}
     return field.default if about.example is None else about.example
 
