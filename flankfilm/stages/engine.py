@@ -95,7 +95,8 @@ class Engine:
     def inputs(self, name: str) -> dict[str, Any]:
         """Everything that decides a stage's result, down to the scene's keys."""
         stage = self.stages[name]
-        own = {**stage.inputs(self.scene), **stage.settings(self)}
+        # apart: a setting may be called like a section, as the film's tolerance and [film] are
+        own = {"keys": stage.inputs(self.scene), "decided": stage.settings(self)}
         return {name: own, **{n: self.inputs(n) for n in stage.needs}}
 
     def packages(self, name: str) -> tuple[str, ...]:

@@ -59,6 +59,20 @@ def test_a_change_of_lubricant_meshes_nothing_again(tmp_path):
     assert calls == ["oil"]
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {'supply = "flooded"': 'supply = "oil-layer"\noil_layer_um = 0.1'},
+        {'supply = "flooded"': 'supply = "meniscus"\nmeniscus_half_widths = 1.5'},
+        {'stiffness = "approach"': 'stiffness = "tangent"'},
+        {'# grid = "graded"': 'grid = "article"'},
+    ],
+)
+def test_a_change_of_the_films_keys_computes_the_film_again(change):
+    before, after = (Engine(scene(c), STAGES, Cache(None)).inputs("film") for c in ({}, change))
+    assert before != after
+
+
 def test_a_kept_result_needs_nothing_below_it(tmp_path):
     calls: list[str] = []
     stages = counting(calls)
@@ -139,8 +153,8 @@ def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
     for positions in (40, 120):
         monkeypatch.setattr("flankfilm.stages.film.FILM_POSITIONS", positions)
         dowson = {
-            'model = "ehl" ': 'model = "dowson" ',
-            'stiffness = "approach" ': 'stiffness = "dowson-central" ',
+            'model = "ehl"': 'model = "dowson"',
+            'stiffness = "approach"': 'stiffness = "dowson-central"',
         }
         text = scene(dowson)
         film = Engine(text, STAGES, Cache(None))["film"]
