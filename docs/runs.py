@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flankfilm.cache import Cache, keep_compiled_code, user_cache
 from flankfilm.figures.style import styled
@@ -15,24 +15,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from flankfilm.scene import Scene
+    from flankfilm.stages.engine import Stage
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
 IMAGES = HERE / "images"
 
 
-def results(scene: Scene, stages: Sequence[str] = ()) -> xr.Dataset:
-    """Give what ``results.nc`` of a scene holds, of some stages alone where they are named; nothing is written."""
+def results(scene: Scene, stages: Sequence[Stage[Any]] = ()) -> xr.Dataset:
+    """Give what ``results.nc`` of a scene holds, of some stages alone where they are given; nothing is written."""
     keep_compiled_code()
     from flankfilm.outputs import results_dataset
-    from flankfilm.stages.catalogue import STAGES, goals
+    from flankfilm.stages.catalogue import goals
     from flankfilm.stages.engine import Engine
 
-    engine = Engine(scene, STAGES, Cache(user_cache() / "results"))
+    engine = Engine(scene, Cache(user_cache() / "results"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a scene's own run shows them
-        for name in stages or goals(scene):
-            engine[name]
+        for stage in stages or goals(scene):
+            engine[stage]
     return results_dataset(scene, engine.results())
 
 

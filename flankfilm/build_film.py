@@ -11,7 +11,8 @@ from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
 
 if TYPE_CHECKING:
-    from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness
+    from ehl import Lubricant, Meniscus, OilLayer, Roughness
+    from flankfilm.coupling import FilmModel, PlacedMeniscus
 
 
 def lubricant(scene: Scene) -> Lubricant:
@@ -29,34 +30,24 @@ def lubricant(scene: Scene) -> Lubricant:
         return _graded(oil) if oil.graded else _by_numbers(oil)
 
 
-def supply_of(scene: Scene, contact: LineContact) -> Meniscus | OilLayer | None:
-    """Give what a scene holds at a contact's inlet; None for a flooded one.
+def film_model(scene: Scene, name: str) -> FilmModel:
+    """How the films of a scene are computed, by the model of the given name."""
+    from flankfilm.coupling import FilmModel
 
-    A meniscus in half-widths is placed by the contact's own load, and stays in that place when the load
-    changes from there.
+    return FilmModel(name, scene.film.stiffness, _supply(scene), roughness(scene), scene.film.grid)
 
-    Raises
-    ------
-    InputError
-        For a meniscus inside the dry contact.
-    """
+
+def _supply(scene: Scene) -> Meniscus | OilLayer | PlacedMeniscus | None:
+    """Give what a scene holds at the inlet; None for flooded contacts."""
     from ehl import Meniscus, OilLayer
+    from flankfilm.coupling import PlacedMeniscus
 
     film = scene.film
     if film.oil_layer_um is not None:
         return OilLayer(**film.si("oil_layer_um"))
     if film.meniscus_half_widths is not None:
-        return Meniscus(-film.meniscus_half_widths * contact.half_width)
-    if film.meniscus_mm is None:
-        return None
-    ahead = film.value("meniscus_mm")
-    if ahead <= contact.half_width:
-        allowed = (
-            f"must be more than {1e3 * contact.half_width:.4g} mm, the half-width of a contact on the path"
-        )
-        remedy = "Nearer in no film forms; move it out, or give meniscus_half_widths"
-        raise InputError([Fault("film.meniscus_mm", f"{film.meniscus_mm:g}", allowed, remedy)])
-    return Meniscus(-ahead)
+        return PlacedMeniscus(film.meniscus_half_widths)
+    return None if film.meniscus_mm is None else Meniscus(-film.value("meniscus_mm"))
 
 
 def roughness(scene: Scene) -> Roughness | None:

@@ -8,8 +8,7 @@ from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import STAGES, goals
-from flankfilm.stages.decide import Plan
+from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN, goals
 from flankfilm.stages.engine import Engine
 
 
@@ -44,9 +43,9 @@ def check_scene(scene: Scene) -> list[str]:
             f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
         told += [f"Warning: {warning.message}" for warning in caught]
-    if "dry cycle" in (wanted := goals(scene)) or (scene.stiffness.model != "given" and "fourier" in wanted):
-        plan: Plan = Engine(scene, STAGES, Cache(None))["plan"]  # models and shares, from cheap estimates
+    if DRY_CYCLE in (wanted := goals(scene)) or (scene.stiffness.model != "given" and FOURIER in wanted):
+        plan = Engine(scene, Cache(None))[PLAN]  # models and shares, from cheap estimates
         told += [decision.line for decision in plan.decisions]
         told.append(plan.line)
-    told.append("A run computes: " + ", ".join(STAGES[name].title for name in wanted) + ".")
+    told.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
     return told

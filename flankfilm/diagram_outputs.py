@@ -6,18 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from base.units import factor
 from flankfilm.dataset import Quantity
 
 if TYPE_CHECKING:
-    from flankfilm.stages.diagram import DiagramStage
+    from flankfilm.coupling import SpeedDiagram
 
 
-def diagram_quantities(stage: DiagramStage) -> dict[str, Quantity]:
+def diagram_quantities(stage: SpeedDiagram) -> dict[str, Quantity]:
     """Variables of the diagram."""
     points = np.asarray(stage.diagram)
     special = stage.diagram.table()
     along, at, jump = ("diagram_point",), ("special_point",), ("jump",)
-    unit = stage.rpm_per_frequency
+    unit = _rpm_per_frequency(stage)
     scale = {} if unit is None else {"rpm_per_frequency": Quantity((), unit, "rpm", "speed of frequency 1")}
     return {
         **scale,
@@ -38,20 +39,24 @@ def diagram_quantities(stage: DiagramStage) -> dict[str, Quantity]:
         "jump_error": Quantity(
             jump, [j.error if j.budget else np.nan for j in stage.jumps], "1", "relative error of its speed"
         ),
-        "force_frequency": Quantity(("force",), stage.factor[:, 0], "1", "mesh over natural frequency"),
+        "force_frequency": Quantity(("force",), stage.force_frequency, "1", "mesh over natural frequency"),
         "force_factor": Quantity(
-            ("force",), stage.factor[:, 1], "1", "greatest force of a stable motion over the mean force"
+            ("force",), stage.force_factor, "1", "greatest force of a stable motion over the mean force"
         ),
         "force_factor_iso6336": Quantity(
-            ("force",), stage.factor[:, 2], "1", "K_v after ISO 6336-1, method B"
+            ("force",), stage.force_factor_iso6336, "1", "K_v after ISO 6336-1, method B"
         ),
     }
 
 
-def diagram_tables(stage: DiagramStage) -> dict[str, dict[str, Any]]:
+def _rpm_per_frequency(stage: SpeedDiagram) -> float | None:
+    return None if stage.speed_of_one is None else stage.speed_of_one / factor("rpm")
+
+
+def diagram_tables(stage: SpeedDiagram) -> dict[str, dict[str, Any]]:
     """Columns of the CSV files."""
     points, special = np.asarray(stage.diagram), stage.diagram.table()
-    unit = stage.rpm_per_frequency
+    unit = _rpm_per_frequency(stage)
 
     def speed(frequency: Any) -> dict[str, Any]:
         return {} if unit is None else {"speed_rpm": unit * np.asarray(frequency, dtype=np.float64)}
@@ -77,7 +82,7 @@ def diagram_tables(stage: DiagramStage) -> dict[str, dict[str, Any]]:
             "from_frequency": [s.low for s in stage.stable],
             "to_frequency": [s.high for s in stage.stable],
         },
-        "force_over_speed": speed(stage.factor[:, 0])
-        | {"frequency": stage.factor[:, 0], "force_over_mean": stage.factor[:, 1]}
-        | {"K_v_iso6336": stage.factor[:, 2]},
+        "force_over_speed": speed(stage.force_frequency)
+        | {"frequency": stage.force_frequency, "force_over_mean": stage.force_factor}
+        | {"K_v_iso6336": stage.force_factor_iso6336},
     }

@@ -12,8 +12,7 @@ from flankfilm.dataset import Quantity
 if TYPE_CHECKING:
     from fem import MeshCycle
     from fem.tooth_root import GearRootStress
-    from flankfilm.stages.loads import TorqueStage
-    from flankfilm.stages.roots import RootStage
+    from flankfilm.coupling import RootStresses, TorqueCurves
 
 Found = tuple[dict[str, Quantity], dict[str, Any]]
 """Variables of the dataset, and tables by the name of their CSV file."""
@@ -72,24 +71,26 @@ def contacts(cycle: MeshCycle, speed: float | None) -> Found:
     return quantities, {"contacts_dry": table}
 
 
-def over_torque(found: TorqueStage) -> Found:
+def over_torque(found: TorqueCurves) -> Found:
     """Mesh stiffness and transmission error over torque."""
     along = ("torque",)
     quantities = {
         "torque": Quantity(along, found.torque, "N m", "torque of the pinion"),
-        "torque_secant_stiffness": Quantity(along, found.secant, "N/m", "mean force over deflection, dry"),
-        "torque_tangent_stiffness": Quantity(along, found.tangent, "N/m", "mean slope, dry"),
+        "torque_secant_stiffness": Quantity(
+            along, found.secant_stiffness, "N/m", "mean force over deflection, dry"
+        ),
+        "torque_tangent_stiffness": Quantity(along, found.stiffness, "N/m", "mean slope, dry"),
         "torque_transmission_error": Quantity(along, found.transmission_error, "m", "peak to peak, dry"),
         "torque_harmonic_1": Quantity(
-            along, found.harmonic, "1", "first harmonic of the secant over its mean"
+            along, found.harmonic_1, "1", "first harmonic of the secant over its mean"
         ),
     }
     table = {
         "pinion_torque_Nm": found.torque,
-        "mean_secant_N_per_m": found.secant,
-        "mean_tangent_N_per_m": found.tangent,
+        "mean_secant_N_per_m": found.secant_stiffness,
+        "mean_tangent_N_per_m": found.stiffness,
         "transmission_error_um": 1e6 * found.transmission_error,
-        "harmonic_1": found.harmonic,
+        "harmonic_1": found.harmonic_1,
     }
     return quantities, {"torques": table}
 
@@ -120,7 +121,7 @@ def revolution(cycle: MeshCycle) -> Found:
     return quantities, {"revolution": table}
 
 
-def root_stress(found: RootStage) -> Found:
+def root_stress(found: RootStresses) -> Found:
     """Largest and least stress along both fillets while a tooth passes through the mesh, and their profiles."""
     quantities: dict[str, Quantity] = {}
     tables: dict[str, dict[str, Any]] = {}

@@ -10,37 +10,36 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from base.units import factor
 from flankfilm.build import pinion_speed
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
 from flankfilm.diagram_outputs import diagram_quantities, diagram_tables
 from flankfilm.load_outputs import load_outputs
-from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.picture_outputs import picture_quantities
 from flankfilm.stages.decisions import decisions
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from flankfilm.coupling import FilmAlongPath, MeshCycle, MeshSeries, SinglePairs, SpeedSweep
     from flankfilm.scene import Scene
-    from flankfilm.stages.closed_forms import SinglePairs
-    from flankfilm.stages.film import FilmStage
-    from flankfilm.stages.motion import FourierStage
-    from flankfilm.stages.sweep import SweepStage
 
 Array = NDArray[np.float64]
 
 
-def cycle_quantities(cycle: MeshStiffness, prefix: str) -> dict[str, Quantity]:
+def cycle_quantities(cycle: MeshCycle, prefix: str) -> dict[str, Quantity]:
     """Variables of a mesh cycle; `prefix` tells dry from lubricated."""
     along, each = (f"{prefix}_position",), (f"{prefix}_position", f"{prefix}_pair")
     said = "with the oil film" if prefix == "lubricated" else "without film"
     return {
         f"{prefix}_phase": Quantity(
-            along, cycle.phase, "1", "travel after a pair is at A, over the base pitch"
+            along, cycle.position, "1", "travel after a pair is at A, over the base pitch"
         ),
-        f"{prefix}_secant_stiffness": Quantity(along, cycle.secant, "N/m", f"force over deflection, {said}"),
+        f"{prefix}_secant_stiffness": Quantity(
+            along, cycle.secant_stiffness, "N/m", f"force over deflection, {said}"
+        ),
         f"{prefix}_tangent_stiffness": Quantity(
-            along, cycle.tangent, "N/m", f"slope of force over deflection, {said}"
+            along, cycle.stiffness, "N/m", f"slope of force over deflection, {said}"
         ),
         f"{prefix}_transmission_error": Quantity(along, cycle.transmission_error, "m", f"deflection, {said}"),
         f"{prefix}_rho1": Quantity(
@@ -63,7 +62,7 @@ def single_pair_quantities(single: SinglePairs) -> dict[str, Quantity]:
     }
 
 
-def film_quantities(film: FilmStage) -> dict[str, Quantity]:
+def film_quantities(film: FilmAlongPath) -> dict[str, Quantity]:
     """Variables of the film along the path."""
     along = ("film_point",)
     stiffness = {
@@ -75,15 +74,15 @@ def film_quantities(film: FilmStage) -> dict[str, Quantity]:
     return {
         "film_rho1": Quantity(along, film.rho1, "m", "curvature radius of the pinion's flank at the film"),
         "film_load": Quantity(along, film.load, "N/m", "force per length of face"),
-        "film_central_thickness": Quantity(along, film.central, "m", "film on the line of centres"),
-        "film_minimum_thickness": Quantity(along, film.minimum, "m", "least film"),
+        "film_central_thickness": Quantity(along, film.central_thickness, "m", "film on the line of centres"),
+        "film_minimum_thickness": Quantity(along, film.minimum_thickness, "m", "least film"),
         "film_hertz_pressure": Quantity(along, film.hertz_pressure, "Pa", "peak pressure of the dry contact"),
         **stiffness,
         **{name: Quantity(along, values, unit, told) for name, values, unit, told in _held(film)},
     }
 
 
-def _held(film: FilmStage) -> list[tuple[str, Array, str, str]]:
+def _held(film: FilmAlongPath) -> list[tuple[str, Array, str, str]]:
     """Name, values, unit and meaning of what only solved, starved or mixed films have."""
     share = "share of the load that the asperities carry"
     every = (
@@ -96,14 +95,14 @@ def _held(film: FilmStage) -> list[tuple[str, Array, str, str]]:
     return [(name, values, unit, told) for name, values, unit, told in every if values is not None]
 
 
-def sweep_quantities(sweep: SweepStage) -> dict[str, Quantity]:
+def sweep_quantities(sweep: SpeedSweep) -> dict[str, Quantity]:
     """Variables of the sweeps; labels are text."""
     found = {"sweep_frequency": Quantity(("sweep",), sweep.frequency, "1", "mesh over natural frequency")}
     found["contact_grazing_frequency"] = Quantity(
         ("grazing",), sweep.grazings, "1", "where the orbit that never leaves contact touches the backlash"
     )
-    if sweep.speed_rpm is not None:
-        found["sweep_speed_rpm"] = Quantity(("sweep",), sweep.speed_rpm, "rpm", "pinion speed")
+    if sweep.speed is not None:
+        found["sweep_speed_rpm"] = Quantity(("sweep",), sweep.speed / factor("rpm"), "rpm", "pinion speed")
     for direction, states in sweep.states.items():
         dims = ("sweep", "kept", "state")
         found[f"sweep_{direction}"] = Quantity(
@@ -114,7 +113,7 @@ def sweep_quantities(sweep: SweepStage) -> dict[str, Quantity]:
     return found
 
 
-def fourier_quantities(fourier: FourierStage) -> dict[str, Quantity]:
+def fourier_quantities(fourier: MeshSeries) -> dict[str, Quantity]:
     """Variables of the Fourier series."""
     series = fourier.stiffness
     along = ("harmonic",)
@@ -144,7 +143,7 @@ def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
     if (dry := values.get("dry cycle")) is not None:
         quantities |= cycle_quantities(dry, "dry")
     if (film := values.get("film")) is not None:
-        quantities |= cycle_quantities(film.cycle, "lubricated") | film_quantities(film)
+        quantities |= cycle_quantities(film, "lubricated") | film_quantities(film.film)
     for found, _ in load_outputs(values, speed=_speed(scene)):
         quantities |= found
     if (fourier := values.get("fourier")) is not None:
@@ -162,7 +161,7 @@ def results_tables(scene: Scene, values: Mapping[str, Any]) -> dict[str, dict[st
     """Columns of the CSV files by name: one table for each curve."""
     tables: dict[str, dict[str, Any]] = {}
     if (single := values.get("closed forms")) is not None:
-        tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.position} | {
+        tables["single_pair_stiffness"] = {"travel_from_A_mm": 1e3 * single.travel} | {
             f"{name}_N_per_m": k
             for name, k in zip(_identifiers(single.curves), single.curves.values(), strict=True)
         }
@@ -171,8 +170,8 @@ def results_tables(scene: Scene, values: Mapping[str, Any]) -> dict[str, dict[st
     for _, more in load_outputs(values, speed=_speed(scene)):
         tables |= more
     if (film := values.get("film")) is not None:
-        tables["mesh_cycle_lubricated"] = _cycle_columns(film.cycle)
-        tables["film_along_path"] = _film_columns(film)
+        tables["mesh_cycle_lubricated"] = _cycle_columns(film)
+        tables["film_along_path"] = _film_columns(film.film)
     if (sweep := values.get("sweep")) is not None:
         for direction, states in sweep.states.items():
             tables[f"sweep_{direction}"] = _sweep_columns(sweep, direction, states)
@@ -189,12 +188,12 @@ def write_data(folder: Path, dataset: xr.Dataset, tables: Mapping[str, Mapping[s
     return [folder / "results.nc", *(folder / "csv" / f"{name}.csv" for name in tables)]
 
 
-def _film_columns(film: FilmStage) -> dict[str, Any]:
+def _film_columns(film: FilmAlongPath) -> dict[str, Any]:
     return {
         "rho1_mm": 1e3 * film.rho1,
         "load_N_per_mm": 1e-3 * film.load,
-        "central_film_um": 1e6 * film.central,
-        "minimum_film_um": 1e6 * film.minimum,
+        "central_film_um": 1e6 * film.central_thickness,
+        "minimum_film_um": 1e6 * film.minimum_thickness,
         "hertz_pressure_GPa": 1e-9 * film.hertz_pressure,
         **{f"stiffness_{n.replace('-', '_')}_N_per_m": k for n, k in film.stiffness.items()},
         **{_column(name, unit): values for name, values, unit, _ in _held(film)},
@@ -214,20 +213,20 @@ def _speed(scene: Scene) -> float | None:
     return pinion_speed(scene)
 
 
-def _cycle_columns(cycle: MeshStiffness) -> dict[str, Any]:
+def _cycle_columns(cycle: MeshCycle) -> dict[str, Any]:
     shares = {f"load_share_pair_{j + 1}": cycle.load_share[:, j] for j in range(cycle.forces.shape[1])}
     return {
-        "phase": cycle.phase,
-        "secant_stiffness_N_per_m": cycle.secant,
-        "tangent_stiffness_N_per_m": cycle.tangent,
+        "phase": cycle.position,
+        "secant_stiffness_N_per_m": cycle.secant_stiffness,
+        "tangent_stiffness_N_per_m": cycle.stiffness,
         "transmission_error_um": 1e6 * cycle.transmission_error,
         **shares,
     }
 
 
-def _sweep_columns(sweep: SweepStage, direction: str, states: Any) -> dict[str, Any]:
+def _sweep_columns(sweep: SpeedSweep, direction: str, states: Any) -> dict[str, Any]:
     kept = states.shape[1]
-    speed = {} if sweep.speed_rpm is None else {"speed_rpm": np.repeat(sweep.speed_rpm, kept)}
+    speed = {} if sweep.speed is None else {"speed_rpm": np.repeat(sweep.speed / factor("rpm"), kept)}
     return {
         **speed,
         "frequency": np.repeat(sweep.frequency, kept),

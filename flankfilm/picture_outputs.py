@@ -10,14 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flankfilm.dataset import Quantity
-from flankfilm.mesh_stiffness import MeshStiffness
 
 if TYPE_CHECKING:
     from fem.fields import GearField
-    from flankfilm.stages.fields import FieldsStage
-    from flankfilm.stages.film import FilmStage
-    from flankfilm.stages.motion import FourierStage
-    from flankfilm.stages.sweep import SweepStage
+    from flankfilm.coupling import (
+        FilmAlongPath,
+        LoadedFields,
+        LubricatedCycle,
+        MeshCycle,
+        MeshSeries,
+        SpeedSweep,
+    )
     from gears import GearPair
 
 OUTLINE = 12
@@ -48,8 +51,8 @@ def picture_quantities(values: Mapping[str, Any], speed: float | None) -> dict[s
     if others := values.get("other cycles"):
         found |= _compared(others, "other", "by the other models")
     if (film := values.get("film")) is not None:
-        found["lubricated_model"] = Quantity((), film.cycle.label, "1", "model of the mesh cycle with film")
-        found |= _profiles(film)
+        found["lubricated_model"] = Quantity((), film.label, "1", "model of the mesh cycle with film")
+        found |= _profiles(film.film)
         if film.otherwise:
             found |= _compared(_starved_cycles(film), "held", "with films that differ in what is held")
     if (fourier := values.get("fourier")) is not None and fourier.fit is not None:
@@ -124,19 +127,19 @@ def _outlines(pair: GearPair) -> dict[str, Quantity]:
     return found
 
 
-def _compared(cycles: Sequence[MeshStiffness], prefix: str, told: str) -> dict[str, Quantity]:
+def _compared(cycles: Sequence[MeshCycle], prefix: str, told: str) -> dict[str, Quantity]:
     """Mesh cycles of several models beside each other; all have the same positions."""
     each = (prefix, f"{prefix}_position")
     return {
         f"{prefix}_model": Quantity(each[:1], np.array([c.label for c in cycles]), "1", f"mesh cycle {told}"),
         f"{prefix}_phase": Quantity(
-            each, [c.phase for c in cycles], "1", "travel after a pair is at A, over the base pitch"
+            each, [c.position for c in cycles], "1", "travel after a pair is at A, over the base pitch"
         ),
         f"{prefix}_secant_stiffness": Quantity(
-            each, [c.secant for c in cycles], "N/m", f"force over deflection, {told}"
+            each, [c.secant_stiffness for c in cycles], "N/m", f"force over deflection, {told}"
         ),
         f"{prefix}_tangent_stiffness": Quantity(
-            each, [c.tangent for c in cycles], "N/m", f"slope of force over deflection, {told}"
+            each, [c.stiffness for c in cycles], "N/m", f"slope of force over deflection, {told}"
         ),
         f"{prefix}_transmission_error": Quantity(
             each, [c.transmission_error for c in cycles], "m", f"deflection, {told}"
@@ -144,13 +147,13 @@ def _compared(cycles: Sequence[MeshStiffness], prefix: str, told: str) -> dict[s
     }
 
 
-def _starved_cycles(film: FilmStage) -> tuple[MeshStiffness, ...]:
+def _starved_cycles(film: LubricatedCycle) -> tuple[MeshCycle, ...]:
     """Mesh with a starved film as it is, flooded, and with the other of meniscus and layer held."""
-    label = f"this film, {film.supply.replace('-', ' ')} held"
-    return (replace(film.cycle, label=label), *film.otherwise.values())
+    label = f"this film, {film.film.supply.replace('-', ' ')} held"
+    return (replace(film, label=label), *film.otherwise.values())
 
 
-def _profiles(film: FilmStage) -> dict[str, Quantity]:
+def _profiles(film: FilmAlongPath) -> dict[str, Quantity]:
     """Pressure and film through the contacts at points of the path, each on its own grid."""
     found: dict[str, Quantity] = {}
     for name, solved in film.profiles.items():
@@ -167,7 +170,7 @@ def _profiles(film: FilmStage) -> dict[str, Quantity]:
     return found
 
 
-def _series(fourier: FourierStage) -> dict[str, Quantity]:
+def _series(fourier: MeshSeries) -> dict[str, Quantity]:
     """Which stiffness the series is of, the series of the other one, and all harmonics of the samples."""
     assert fourier.fit is not None
     found = {
@@ -192,7 +195,7 @@ def _series(fourier: FourierStage) -> dict[str, Quantity]:
     return found
 
 
-def _portraits(sweep: SweepStage) -> dict[str, Quantity]:
+def _portraits(sweep: SpeedSweep) -> dict[str, Quantity]:
     """Settled motions one after another; ``portrait_of_...`` says which one a sample belongs to."""
     found = {"half_backlash": Quantity((), sweep.half_backlash, "1", "half the backlash D")}
     motions = sweep.portraits
@@ -226,7 +229,7 @@ def _portraits(sweep: SweepStage) -> dict[str, Quantity]:
     }
 
 
-def _fields(stage: FieldsStage, pair: GearPair) -> dict[str, Quantity]:
+def _fields(stage: LoadedFields, pair: GearPair) -> dict[str, Quantity]:
     """Von Mises stress of both gears around C as linear triangles: what a picture of the mesh needs."""
     focus = pair.placement(pair.points.C).contact_point
     reach = PICTURED * np.pi * pair.module

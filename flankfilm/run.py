@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from flankfilm.cache import Cache, user_cache
 from flankfilm.folder import claim
@@ -12,9 +13,9 @@ from flankfilm.outputs import results_dataset, results_tables, write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.catalogue import goals
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.stages.fields import write_vtk
+from flankfilm.stages.vtk import write_fields
 
 
 def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:
@@ -48,13 +49,13 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
     wanted = goals(scene)
     done: list[str] = []
 
-    def announce(stage: Stage) -> None:
+    def announce(stage: Stage[Any]) -> None:
         done.append(stage.name)
         progress(stage.title, len(done) - 1, max(len(done), len(wanted) + 2))
 
-    engine = Engine(scene, STAGES, Cache(user_cache() / "results" if use_cache else None), announce)
-    for name in wanted:
-        engine[name]
+    engine = Engine(scene, Cache(user_cache() / "results" if use_cache else None), announce)
+    for stage in wanted:
+        engine[stage]
     values = engine.results()
     dataset = results_dataset(scene, values)
     files = engine.timed(
@@ -63,7 +64,9 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         lambda: write_data(folder, dataset, results_tables(scene, values)),
     )
     if "vtk" in scene.wants:
-        files += engine.timed("vtk files", "fields for ParaView", lambda: write_vtk(folder, engine, progress))
+        files += engine.timed(
+            "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
+        )
     results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start, dataset)
     if "report" in scene.wants:
         from flankfilm.report.contents import write_report

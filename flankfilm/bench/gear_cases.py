@@ -42,7 +42,7 @@ def independent_pairs(pair: GearPair, form: str, positions: int) -> Array:
 
 def closed_forms(quick: bool) -> tuple[Case, ...]:
     """Mean of each closed form's mesh stiffness by the number of positions."""
-    from flankfilm.mesh_stiffness import sampling_error
+    from flankfilm.coupling.cycle import sampling_error
 
     pair = example_pair()
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384, 768)

@@ -146,7 +146,7 @@ def _given(pair: GearPair) -> dict[str, Any]:
 def contact(quick: bool) -> tuple[Case, ...]:
     """Loaded contact with a compliance at hand, by the number of positions."""
     import fem
-    from flankfilm.mesh_stiffness import peak_to_peak_error, sampling_error
+    from flankfilm.coupling.cycle import peak_to_peak_error, sampling_error
 
     pair = example_pair()
     bodies = fem.compliance(pair)

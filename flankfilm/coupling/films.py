@@ -107,12 +107,9 @@ class FilmModel:
         if isinstance(held, PlacedMeniscus):
             return Meniscus(-held.half_widths * contact.half_width)
         if isinstance(held, Meniscus) and -held.position <= contact.half_width:
-            edge = 1e3 * contact.half_width
-            allowed = f"must be more than {edge:.4g} mm ahead, the half-width of a contact on the path"
+            allowed = f"must be more than {contact.half_width:.4g} m, the half-width of a contact on the path"
             remedy = "nearer in no film forms; move it out, or give its place in half-widths"
-            raise InputError(
-                [Fault("supply.position", f"{-1e3 * held.position:g} mm ahead", allowed, remedy)]
-            )
+            raise InputError([Fault("meniscus", f"{-held.position:g}", allowed, remedy)])
         return held
 
 

@@ -140,21 +140,21 @@ def export_mesh(
     from flankfilm.cache import Cache, user_cache
     from flankfilm.folder import claim
     from flankfilm.reproduce import scene_in
-    from flankfilm.stages.catalogue import STAGES
+    from flankfilm.stages.catalogue import COMPLIANCE, PAIR
     from flankfilm.stages.engine import Engine
 
     wanted, _ = scene_in(scene)
     claim(out)
     if not 0 <= refinements <= 4:
         raise InputError([Fault("--refinements", str(refinements), "must be 0 to 4", "1 suits most checks")])
-    engine = Engine(wanted, STAGES, Cache(user_cache() / "results"))
+    engine = Engine(wanted, Cache(user_cache() / "results"))
     files = export_position(
         out,
-        engine["pair"],
+        engine[PAIR],
         pinion_torque(wanted),
         position,
         format,
-        engine["compliance"],
+        engine[COMPLIANCE],
         wanted.stiffness.plane,
         refinements,
     )

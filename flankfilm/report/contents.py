@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flankfilm.coupling.cycle import MeshCycle, sampling_error
 from flankfilm.dataset import provenance, write_text
-from flankfilm.mesh_stiffness import MeshStiffness, sampling_error
 from flankfilm.report import diagram_parts, film_parts, load_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Fact, Headline, Part, render
 from flankfilm.report.run_parts import CostRow
@@ -62,10 +62,9 @@ def summary(results: Results) -> list[str]:
     return [*told, f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s"]
 
 
-def final_cycle(results: Results) -> MeshStiffness | None:
+def final_cycle(results: Results) -> MeshCycle | None:
     """Return the mesh cycle with the film where there is one, else the dry one."""
-    film = results.values.get("film")
-    return film.cycle if film is not None else results.values.get("dry cycle")
+    return results.values.get("film") or results.values.get("dry cycle")
 
 
 def write_report(results: Results) -> Path:
@@ -112,12 +111,14 @@ def _result_parts(results: Results) -> list[Part | None]:
         if film is not None:
             cycles.append(values["dry cycle"])
         cycles += values.get("other cycles", ())
-        changes = {} if film is None else {"secant": film.change_secant, "tangent": film.change_tangent}
+        changes = (
+            {} if film is None else {"secant": film.secant_stiffness_change, "tangent": film.stiffness_change}
+        )
         parts.append(
             mesh_parts.stiffness(values.get("closed forms"), cycles, changes, _model_note(results), data)
         )
         if film is not None:
-            parts.append(film_parts.film(film, values["dry cycle"], data, scene.tolerance))
+            parts.append(film_parts.film(film, data, scene.tolerance))
     if pair is not None and (torques := values.get("torques")) is not None:
         parts.append(load_parts.over_torque(torques, pair.face_width, data))
     if (whole := values.get("revolution")) is not None:
@@ -164,28 +165,32 @@ def _cost_rows(results: Results) -> list[CostRow]:
         value: Any = results.values.get(name)
         figure, allowed, error, note = "", None, None, ""
         if name == "bodies":
-            figure, allowed, error = "tooth compliance", results.values["plan"].compliance, value.error
+            figure, allowed, error = (
+                "tooth compliance",
+                results.values["plan"].resolution.compliance,
+                value.error,
+            )
             note = f"{value.cost.unknowns:,} unknowns"
         elif name == "dry cycle":
             figure, allowed, error = (
                 "mean stiffness, from sampling",
-                results.values["plan"].sampling,
-                sampling_error(value.secant),
+                results.values["plan"].resolution.sampling,
+                sampling_error(value.secant_stiffness),
             )
-            note = f"{value.phase.size} positions"
+            note = f"{value.position.size} positions"
         elif name == "fillets":
             figure, allowed, error = "greatest root stress per load", scene_tolerance, value.error
             note = f"{value.cost.unknowns:,} unknowns"
-        elif name == "film" and value.model == "ehl":
-            figure, allowed, error = "film thickness", results.values["plan"].film_tolerance, value.error
-            note = f"{value.rho1.size} films of up to {value.unknowns} unknowns, {value.rounds} rounds"
+        elif name == "film" and value.film.model == "ehl":
+            figure, allowed, error = "film thickness", results.values["plan"].film_tolerance, value.film.error
+            note = f"{value.film.rho1.size} films of up to {value.film.cost.unknowns} unknowns, {value.rounds} rounds"
         elif name == "fourier" and value.fit is not None:
             figure, error = "what the series leaves out", value.fit.remainder_rms
             allowed = None if plan is None else plan.series
             note = f"order {len(value.stiffness.amplitudes)}"
         elif name == "sweep":
             figure, error = "settled motions", value.error
-            note = f"{value.periods:,} periods"
+            note = f"{value.cost.periods:,} periods"
         elif name == "diagram":
             figure, error = "special points", value.diagram.error
             note = f"{len(value.diagram.branches)} branches"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.units import factor
 from flankfilm import figures
 from flankfilm.report.page import Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
@@ -14,17 +15,17 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from dynamics.labelling import Stretch
-    from flankfilm.stages.diagram import DiagramStage
+    from flankfilm.coupling import SpeedDiagram
 
 LONGEST = 40
 """Stable ranges listed; the data files hold all."""
 
 
-def headline(stage: DiagramStage) -> Headline:
+def headline(stage: SpeedDiagram) -> Headline:
     """Jump speeds."""
     if not stage.jumps:
         return Headline("jump speeds", "none in range", "")
-    unit = "rpm" if stage.rpm_per_frequency else ""
+    unit = "rpm" if stage.speed_of_one else ""
     at = [f"{_speed(stage, j.frequency)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6]]
     more = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
     errors = [j.error for j in stage.jumps if j.budget]
@@ -36,9 +37,9 @@ def headline(stage: DiagramStage) -> Headline:
     )
 
 
-def diagram(stage: DiagramStage, results: xr.Dataset) -> Part:
+def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
     """Draw the diagram and list ranges, jumps and what they depend on."""
-    found, unit = stage.diagram, "rpm" if stage.rpm_per_frequency else "-"
+    found, unit = stage.diagram, "rpm" if stage.speed_of_one else "-"
     tables = [
         Table(
             ("stable motion", f"from [{unit}]", f"to [{unit}]", "begins", "ends"),
@@ -77,14 +78,18 @@ def diagram(stage: DiagramStage, results: xr.Dataset) -> Part:
     )
 
 
-def _notes(stage: DiagramStage) -> list[str]:
+def _notes(stage: SpeedDiagram) -> list[str]:
     notes = [
         f"Contact is lost by a stable motion {_ranges(stage, stage.separated)}; the back flank is touched "
         f"{_ranges(stage, stage.back_contact)}. {'' if stage.jumps else 'Jump speeds: none in range.'}"
     ]
-    if len(stage.factor):
-        i = int(np.argmax(stage.factor[:, 1]))
-        value, force, standard = stage.factor[i]
+    if stage.force_factor.size:
+        i = int(np.argmax(stage.force_factor))
+        value, force, standard = (
+            stage.force_frequency[i],
+            stage.force_factor[i],
+            stage.force_factor_iso6336[i],
+        )
         beside = (
             f"; ISO 6336-1, method B, has K_v = {standard:.3g} there (pitch deviation: the error's peak-to-peak "
             "value, profile deviation 0)"
@@ -111,14 +116,14 @@ def _notes(stage: DiagramStage) -> list[str]:
     return [*notes, *ended]
 
 
-def _speed(stage: DiagramStage, frequency: float) -> str:
-    return number(frequency * (stage.rpm_per_frequency or 1.0), 6)
+def _speed(stage: SpeedDiagram, frequency: float) -> str:
+    return number(frequency * (stage.speed_of_one / factor("rpm") if stage.speed_of_one else 1.0), 6)
 
 
-def _ranges(stage: DiagramStage, ranges: tuple[tuple[float, float], ...]) -> str:
+def _ranges(stage: SpeedDiagram, ranges: tuple[tuple[float, float], ...]) -> str:
     if not ranges:
         return "nowhere in range"
-    unit = " rpm" if stage.rpm_per_frequency else ""
+    unit = " rpm" if stage.speed_of_one else ""
     return "at " + ", ".join(f"{_speed(stage, a)} to {_speed(stage, b)}" for a, b in ranges) + unit
 
 

@@ -13,18 +13,17 @@ from flankfilm.report.text import number, percent
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.mesh_stiffness import MeshStiffness
-    from flankfilm.stages.film import FilmStage
+    from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
-def film(stage: FilmStage, dry: MeshStiffness, results: xr.Dataset, tolerance: float) -> Part:
+def film(stage: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
     verdict = (
         f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
-        f"{100 * stage.change_secant:+.3f} % and the mean tangent stiffness by "
-        f"{100 * stage.change_tangent:+.3f} %."
+        f"{100 * stage.secant_stiffness_change:+.3f} % and the mean tangent stiffness by "
+        f"{100 * stage.stiffness_change:+.3f} %."
     )
-    if abs(stage.change_secant) < tolerance:
+    if abs(stage.secant_stiffness_change) < tolerance:
         verdict += (
             f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be "
             "left out."
@@ -33,26 +32,29 @@ def film(stage: FilmStage, dry: MeshStiffness, results: xr.Dataset, tolerance: f
         f"Films and load share agree after {stage.rounds} rounds; the last changed a pair's force by "
         f"{stage.mismatch:.1e} of the whole."
     )
-    tables = [_definitions(stage)]
+    tables = [_definitions(stage.film)]
     if stage.otherwise:
-        tables.insert(0, _otherwise(stage, dry))
+        tables.insert(0, _otherwise(stage))
     return Part(
         "film",
         "Oil film",
-        (verdict, *_supply(stage), *_mixed(stage)),
+        (verdict, *_supply(stage.film), *_mixed(stage.film)),
         tuple(_figures(stage, results)),
         tuple(tables),
-        (rounds, "Steady, isothermal, " + {"flooded": "fully flooded."}.get(stage.supply, "starved.")),
+        (rounds, "Steady, isothermal, " + {"flooded": "fully flooded."}.get(stage.film.supply, "starved.")),
     )
 
 
-def _figures(stage: FilmStage, results: xr.Dataset) -> list[Drawing]:
+def _figures(stage: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
     told = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
     drawn = [picture(figures.film_along_path, results, told)]
-    if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
+    if any(
+        known is not None
+        for known in (stage.film.starvation, stage.film.film_ratio, stage.film.asperity_share)
+    ):
         told = "How far the contact is starved and how much its asperities carry, along the path of contact."
         drawn.append(picture(figures.film_shares, results, told))
-    if stage.profiles:
+    if stage.film.profiles:
         told = (
             "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
             "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
@@ -67,7 +69,7 @@ def _figures(stage: FilmStage, results: xr.Dataset) -> list[Drawing]:
     return drawn
 
 
-def _definitions(stage: FilmStage) -> Table:
+def _definitions(stage: FilmAlongPath) -> Table:
     """Film stiffness by every definition: at C with what it costs, and its range along the path."""
     if not stage.at_pitch:
         known = ("film stiffness by", "least [N/m]", "largest [N/m]")
@@ -92,9 +94,10 @@ def _definitions(stage: FilmStage) -> Table:
     return Table(heads, tuple(rows), note)
 
 
-def _otherwise(stage: FilmStage, dry: MeshStiffness) -> Table:
+def _otherwise(stage: LubricatedCycle) -> Table:
     """The mesh without film, flooded, and starved with either held."""
-    cycles = {"no film": dry, _as_it_is(stage): stage.cycle, **stage.otherwise}
+    dry = stage.dry
+    cycles = {"no film": dry, _as_it_is(stage.film): stage, **stage.otherwise}
     heads = (
         "mesh stiffness with",
         "mean secant",
@@ -106,22 +109,22 @@ def _otherwise(stage: FilmStage, dry: MeshStiffness) -> Table:
     rows = tuple(
         (
             name,
-            number(cycle.secant.mean()),
-            f"{100 * (cycle.secant.mean() / dry.secant.mean() - 1):+.3f} %",
-            number(cycle.tangent.mean()),
-            f"{100 * (cycle.tangent.mean() / dry.tangent.mean() - 1):+.3f} %",
-            f"{2 * abs(np.fft.rfft(cycle.tangent)[1]) / cycle.tangent.sum():.4f}",
+            number(cycle.mean_secant_stiffness),
+            f"{100 * (cycle.mean_secant_stiffness / dry.mean_secant_stiffness - 1):+.3f} %",
+            number(cycle.mean_stiffness),
+            f"{100 * (cycle.mean_stiffness / dry.mean_stiffness - 1):+.3f} %",
+            f"{2 * abs(np.fft.rfft(cycle.stiffness)[1]) / cycle.stiffness.sum():.4f}",
         )
         for name, cycle in cycles.items()
     )
     return Table(heads, rows, "Stiffness in N/m at the whole face.")
 
 
-def _as_it_is(stage: FilmStage) -> str:
+def _as_it_is(stage: FilmAlongPath) -> str:
     return f"this film, {stage.supply.replace('-', ' ')} held"
 
 
-def _supply(stage: FilmStage) -> tuple[str, ...]:
+def _supply(stage: FilmAlongPath) -> tuple[str, ...]:
     if stage.starvation is None or stage.inlet is None or stage.flow is None:
         return ()
     held = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}[stage.supply]
@@ -133,7 +136,7 @@ def _supply(stage: FilmStage) -> tuple[str, ...]:
     )
 
 
-def _mixed(stage: FilmStage) -> tuple[str, ...]:
+def _mixed(stage: FilmAlongPath) -> tuple[str, ...]:
     if stage.film_ratio is None or stage.asperity_share is None:
         return ()
     return (
@@ -143,14 +146,17 @@ def _mixed(stage: FilmStage) -> tuple[str, ...]:
     )
 
 
-def headlines(stage: FilmStage) -> list[Headline]:
+def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
-    thinnest = int(np.argmin(stage.minimum))
+    stage = cycle.film
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
     told = [
-        Headline("least film on the path", f"{1e6 * stage.minimum[thinnest]:.3g}", note, "µm"),
+        Headline("least film on the path", f"{1e6 * stage.least_film:.3g}", note, "µm"),
         Headline(
-            "what the film changes", f"{100 * stage.change_secant:+.2f}", "of the mean secant stiffness", "%"
+            "what the film changes",
+            f"{100 * cycle.secant_stiffness_change:+.2f}",
+            "of the mean secant stiffness",
+            "%",
         ),
     ]
     if stage.starvation is not None:

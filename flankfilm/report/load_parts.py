@@ -15,11 +15,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fem import MeshCycle
-    from flankfilm.stages.loads import TorqueStage
-    from flankfilm.stages.roots import RootStage
+    from flankfilm.coupling import RootStresses, TorqueCurves
 
 
-def root_stress(stage: RootStage, results: xr.Dataset) -> Part:
+def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     """Stress at the roots by finite elements, beside ISO 6336-3."""
     gears = {"pinion": stage.stress.pinion, "wheel": stage.stress.wheel}
     rows: list[tuple[str, ...]] = []
@@ -69,7 +68,7 @@ def _iso(iso: Any) -> Table:
     return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), tuple(rows))
 
 
-def over_torque(stage: TorqueStage, face_width: float, results: xr.Dataset) -> Part:
+def over_torque(stage: TorqueCurves, face_width: float, results: xr.Dataset) -> Part:
     """Stiffness and transmission error over torque."""
     scale = 1e-9 / face_width
     rows = tuple(
@@ -79,10 +78,10 @@ def over_torque(stage: TorqueStage, face_width: float, results: xr.Dataset) -> P
                 column.tolist()
                 for column in (
                     stage.torque,
-                    stage.secant,
-                    stage.tangent,
+                    stage.secant_stiffness,
+                    stage.stiffness,
                     stage.transmission_error,
-                    stage.harmonic,
+                    stage.harmonic_1,
                 )
             ),
             strict=True,

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm import figures
-from flankfilm.mesh_stiffness import MeshStiffness
 from flankfilm.report.page import Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from flankfilm.stages.closed_forms import SinglePairs
-    from flankfilm.stages.fields import FieldsStage
+    from flankfilm.coupling import LoadedFields, MeshCycle, SinglePairs
     from gears import GearPair
 
 
@@ -74,7 +72,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
 
 def stiffness(
     single: SinglePairs | None,
-    cycles: list[MeshStiffness],
+    cycles: list[MeshCycle],
     changes: Mapping[str, float],
     note: str,
     results: xr.Dataset,
@@ -95,10 +93,10 @@ def stiffness(
     rows = tuple(
         (
             cycle.label,
-            number(scale * cycle.secant.mean(), 5),
-            number(scale * cycle.tangent.mean(), 5),
-            f"{scale * cycle.secant.min():.4g} to {scale * cycle.secant.max():.4g}",
-            number(1e6 * float(np.ptp(cycle.transmission_error)), 4),
+            number(scale * cycle.mean_secant_stiffness, 5),
+            number(scale * cycle.mean_stiffness, 5),
+            f"{scale * cycle.secant_stiffness.min():.4g} to {scale * cycle.secant_stiffness.max():.4g}",
+            number(1e6 * cycle.transmission_error_range, 4),
             percent(cycle.mean_error),
         )
         for cycle in cycles
@@ -136,7 +134,7 @@ def iso_table(iso: Any) -> Table:
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 
 
-def fields(stage: FieldsStage, results: xr.Dataset) -> Part:
+def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
     return Part(
@@ -157,22 +155,23 @@ def fields(stage: FieldsStage, results: xr.Dataset) -> Part:
     )
 
 
-def headlines(cycle: MeshStiffness, face_width: float) -> list[Headline]:
+def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
     scale = 1e-9 / face_width
-    te = float(np.ptp(cycle.transmission_error))
     return [
         Headline(
             "mean mesh stiffness (secant)",
-            f"{scale * cycle.secant.mean():.4g}",
+            f"{scale * cycle.mean_secant_stiffness:.4g}",
             f"error {percent(cycle.mean_error)}, {cycle.label}",
             "N/(mm µm)",
         ),
         Headline(
             "mean mesh stiffness (tangent)",
-            f"{scale * cycle.tangent.mean():.4g}",
+            f"{scale * cycle.mean_stiffness:.4g}",
             "for small vibration",
             "N/(mm µm)",
         ),
-        Headline("loaded transmission error", f"{1e6 * te:.3g}", "peak to peak", "µm"),
+        Headline(
+            "loaded transmission error", f"{1e6 * cycle.transmission_error_range:.3g}", "peak to peak", "µm"
+        ),
     ]

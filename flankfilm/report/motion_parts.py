@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.units import factor
 from flankfilm import figures
 from flankfilm.report.page import Drawing, Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
@@ -13,11 +14,10 @@ from flankfilm.report.text import number, percent
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.stages.motion import FourierStage, ScalingStage
-    from flankfilm.stages.sweep import SweepStage
+    from flankfilm.coupling import MeshSeries, PairOscillator, SpeedSweep
 
 
-def fourier(stage: FourierStage, results: xr.Dataset) -> Part:
+def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     """Fourier stiffness with its remainder."""
     series = stage.stiffness
     unit = "N/m" if stage.fit is not None or series.mean != 1.0 else "-"
@@ -52,7 +52,7 @@ def fourier(stage: FourierStage, results: xr.Dataset) -> Part:
     )
 
 
-def scaling(stage: ScalingStage) -> Part:
+def scaling(stage: PairOscillator) -> Part:
     """Physical and dimensionless quantities side by side."""
     if stage.scales is None:
         rows = tuple((name, value) for name, _, value in stage.rows())
@@ -61,7 +61,7 @@ def scaling(stage: ScalingStage) -> Part:
     return Part("scaling", "Physical and dimensionless", tables=(Table(heads, stage.rows()),))
 
 
-def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
+def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
     caption = (
         "States at tau = 0, swept up and down; where the two differ, motions coexist. "
@@ -73,14 +73,14 @@ def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
         drawn.append(picture(figures.portraits, results, caption))
     notes = [
         f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a "
-        f"period; {stage.periods:,} periods were followed.",
+        f"period; {stage.cost.periods:,} periods were followed.",
         "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
         *stage.messages,
     ]
     if stage.grazings.size:
         at = ", ".join(f"{g:.6g}" for g in stage.grazings)
-        if stage.speed_rpm is not None:
-            rpm = stage.grazings * stage.speed_rpm[0] / stage.frequency[0]
+        if stage.speed is not None:
+            rpm = stage.grazings * stage.speed[0] / stage.frequency[0] / factor("rpm")
             at += " (" + ", ".join(f"{n:.0f}" for n in rpm) + " rpm)"
         notes.insert(
             0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
@@ -88,17 +88,17 @@ def sweep(stage: SweepStage, results: xr.Dataset) -> Part:
     return Part("motion", "Motion", figures=tuple(drawn), notes=tuple(notes))
 
 
-def headline(stage: SweepStage) -> Headline:
+def headline(stage: SpeedSweep) -> Headline:
     """Lowest speed at which the orbit that keeps contact touches the edge of the backlash."""
     note = f"by the orbit that never leaves contact; error {stage.error:.0e} a period"
     if not stage.grazings.size:
         return Headline("edge of the backlash touched at", "none in range", note)
     first = float(np.min(stage.grazings))
-    if stage.speed_rpm is None:
+    if stage.speed is None:
         return Headline("edge of the backlash touched at ω", number(first, 6), note)
     return Headline(
         "edge of the backlash touched at",
-        number(first * stage.speed_rpm[0] / stage.frequency[0], 5),
+        number(first * stage.speed[0] / stage.frequency[0] / factor("rpm"), 5),
         note,
         "rpm",
     )

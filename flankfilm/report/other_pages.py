@@ -22,9 +22,9 @@ from flankfilm.report.text import number, percent, seconds
 if TYPE_CHECKING:
     import xarray as xr
 
+    from flankfilm.coupling import Verification
     from flankfilm.optimise.run import Optimum
     from flankfilm.study.run import StudyResults
-    from flankfilm.verify.compare import Verification
 
 MOST_ROWS = 100
 """Rows that a page shows; the files hold all."""
@@ -150,8 +150,8 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
                 )
             )
     tables = tuple(_differences(found, reference.label) for reference in (whole, like))
-    cost = "; ".join(f"{c.label} {seconds(c.seconds)}" for c in (*found.references, *found.models))
-    shared = f"Finite elements {seconds(found.compliance_seconds)} once; then each model: {cost}."
+    cost = "; ".join(f"{c.label} {seconds(c.cost.seconds)}" for c in (*found.references, *found.models))
+    shared = f"Finite elements {seconds(found.cost.seconds)} once; then each model: {cost}."
     caption = (
         "Closed forms beside finite elements (black: with all parts; dashed: without what closed forms lack). Grey: "
         "the numerical error of the latter."
@@ -162,7 +162,7 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
         ),
         Fact(f"pinion: {found.torque:g} N m"),
         Fact(
-            f"{seconds(found.compliance_seconds + sum(c.seconds for c in found.references))} of work", "costs"
+            f"{seconds(found.cost.seconds + sum(c.cost.seconds for c in found.references))} of work", "costs"
         ),
     ]
     parts = [

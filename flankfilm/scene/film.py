@@ -181,7 +181,3 @@ class FilmSection(Section):
         if wanted and len(given) != 1:
             raise refused(f'supply = "{self.supply}" needs {" or ".join(wanted)}, one of them')
         return self
-
-    def definition(self, model: str) -> str:
-        """Definition of the film stiffness for a film computed by `model`."""
-        return self.stiffness or ("dowson-central" if model == "dowson" else "approach")

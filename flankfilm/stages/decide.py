@@ -2,7 +2,8 @@
 
 The error of the mean stiffness is at most the sum of what the models' simplifications change and of what meshes,
 positions, films and a cut series leave. Each pair of a stiffness and a film model leaves another part of the
-tolerance to the stages it has, which split it for the least cost (`flankfilm.tolerance`); the cheapest pair is taken.
+tolerance to the stages it has, which split it for the least cost (`flankfilm.coupling.tolerance`); the
+cheapest pair is taken.
 """
 
 from __future__ import annotations
@@ -12,15 +13,16 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from base import SolverError
+from flankfilm.coupling.resolution import COARSEST_FILMS, Resolution, film_tolerance
+from flankfilm.coupling.tolerance import CostLaw, Shares, split
 from flankfilm.stages import film_choice, stiffness_choice
 from flankfilm.stages.decisions import Candidate, Decision, per_cent, signed
-from flankfilm.tolerance import CostLaw, Shares, split, step_below
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from flankfilm.scene import Scene
-    from flankfilm.stages.engine import Engine
+    from gears import GearPair
 
 SERIES = CostLaw("Fourier series", coarsest=0.05, seconds=0.1, power=2 / 3)
 """Root mean square that a series of order n leaves, about n^-3/2, against the time of a sweep, about n."""
@@ -53,26 +55,14 @@ class Plan:
     film_tolerance: float
 
     @property
-    def compliance(self) -> float:
-        """Tolerance of the compliance by finite elements."""
-        name = stiffness_choice.COMPLIANCE.name
-        # figures beside the mesh stiffness, such as fields, have it by finite elements all the same
-        return step_below(min(self.shares.get(name, self.tolerance), stiffness_choice.COMPLIANCE.coarsest))
-
-    @property
-    def sampling(self) -> float:
-        """Tolerance of the mean over the mesh cycle, from the number of positions."""
-        return step_below(self.shares[stiffness_choice.CLOSED_SAMPLING.name])
+    def resolution(self) -> Resolution:
+        """What meshes, positions and films may err by."""
+        return Resolution.from_shares(self.tolerance, self.shares, self.film_tolerance)
 
     @property
     def series(self) -> float | None:
         """What a Fourier series may leave out; None unless its order is to be found."""
         return self.shares.get(SERIES.name)
-
-    @property
-    def coupling(self) -> float:
-        """Of the load share when film and teeth are iterated."""
-        return 0.02 * self.tolerance
 
     @property
     def decisions(self) -> tuple[Decision, ...]:
@@ -91,11 +81,18 @@ class Plan:
         return f"tolerance of {per_cent(self.tolerance)}, split by cost: {', '.join(parts)}"
 
 
-def plan(engine: Engine) -> Plan:
-    """Choose the models and split the tolerance."""
-    scene = engine.scene
-    teeth, why = stiffness_choice.options(scene, engine["pair"])
-    oil = film_choice.foresee(engine)
+def decide(scene: Scene, pair: GearPair, foreseen: Callable[[], film_choice.FilmChange | None]) -> Plan:
+    """Choose the models and split the tolerance.
+
+    Parameters
+    ----------
+    scene : Scene
+    pair : gears.GearPair
+    foreseen : callable
+        What the cheapest models foresee of the film's change; called where it decides.
+    """
+    teeth, why = stiffness_choice.options(scene, pair)
+    oil = film_choice.foresee(scene, foreseen)
     further = (SERIES,) if _series_to_find(scene) else ()
     weighed = [
         w
@@ -105,13 +102,12 @@ def plan(engine: Engine) -> Plan:
     if not weighed:
         raise SolverError(f"no resolution meets a tolerance of {scene.tolerance:g}; raise it")
     best = min(weighed, key=lambda w: w.seconds)
-    change = best.film.change if best.film.law is not None else 0.0
     return Plan(
         scene.tolerance,
         _stiffness_decision(scene, best, weighed, teeth, why),
         _film_decision(scene, best, weighed, oil),
         best.shares,
-        change,
+        best.film.change if best.film.law is not None else 0.0,
         _film_tolerance(scene, best),
     )
 
@@ -143,9 +139,9 @@ def _weigh(
 
 def _film_tolerance(scene: Scene, best: _Weighed) -> float:
     if best.film.law is None:
-        return film_choice.COARSEST
-    wanted = scene.tolerance if "film" in scene.wants else film_choice.COARSEST
-    return min(wanted, step_below(best.shares[best.film.law.name] / best.film.change))
+        return COARSEST_FILMS
+    wanted = scene.tolerance if "film" in scene.wants else COARSEST_FILMS
+    return film_tolerance(best.shares, best.film.change, wanted)
 
 
 def _stiffness_decision(

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from flankfilm.coupling.series import MOST_HARMONICS
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.series import LeftOut, MeshSeries
 
 
 @dataclass(frozen=True)
@@ -75,13 +80,42 @@ def per_cent(value: float) -> str:
     return f"{float(f'{100 * value:.2g}'):g} %"
 
 
-def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
-    """Decisions among the results of stages, in the order in which they were made."""
-    plan, fourier = values.get("plan"), values.get("fourier")
-    series = None if fourier is None else fourier.decision
-    return (*(() if plan is None else plan.decisions), *(() if series is None else (series,)))
-
-
 def signed(value: float) -> str:
     """Write a relative change in per cent with its sign."""
     return f"{'-' if value < 0 else '+'}{per_cent(abs(value))}"
+
+
+def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
+    """Decisions among the results of stages, in the order in which they were made."""
+    plan, series = values.get("plan"), values.get("fourier")
+    order = None if series is None else order_decision(series)
+    return (*(() if plan is None else plan.decisions), *(() if order is None else (order,)))
+
+
+def order_decision(series: MeshSeries) -> Decision | None:
+    """Order of a Fourier series and what it leaves out; None for a given series."""
+    if (found := series.left_out) is None:
+        return None
+    order, share = series.order, series.share
+    effect = float(found.largest[order])
+    if share is None:
+        why = f"{order}, as the scene asks; leaves out {_left_out(found, order)}"
+        return Decision("Fourier order", str(order), True, why, effect)
+    most = min(MOST_HARMONICS, found.curve.size - 1)
+    why = f"{order}, leaves out {_left_out(found, order)}"
+    if effect > share:
+        why += f": above its share of {per_cent(share)}, which no series of up to {most} harmonics meets"
+    else:
+        why += f", below its share of {per_cent(share)}"
+        if order > 1:
+            why += f"; order {order - 1} would leave {_left_out(found, order - 1)}"
+    tried = tuple(
+        Candidate(str(n), float(found.largest[n]), None)
+        for n in range(max(1, order - 1), min(order + 1, most) + 1)
+    )
+    return Decision("Fourier order", str(order), False, why, effect, share, None, tried)
+
+
+def _left_out(found: LeftOut, order: int) -> str:
+    text = f"{per_cent(found.curve[order])} of the curve"
+    return text if found.motion is None else f"{text} and up to {per_cent(found.motion[order])} of the motion"

@@ -7,23 +7,25 @@ import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
 
 T = TypeVar("T")
-Compute = Callable[["Engine"], Any]
+
+Inputs = Callable[[Scene], Mapping[str, Any]]
+Settings = Callable[["Engine"], Mapping[str, Any]]
 
 
-@dataclass(frozen=True)
-class Stage:
-    """One step from the scene to a result.
+@dataclass(frozen=True, eq=False)
+class Stage(Generic[T]):
+    """One step from the scene to a result of type T.
 
     Attributes
     ----------
     name : str
-        Name under which other stages ask for the result.
+        Of the stage among all.
     title : str
         What a person reads while it runs.
     compute : callable
@@ -31,26 +33,39 @@ class Stage:
     inputs : callable
         The part of the scene that the result depends on, as plain values; with the inputs of
         the stages in `needs` it makes the cache's key.
-    needs : tuple of str
-        Names of the stages that `compute` may ask for.
+    needs : tuple of Stage
+        Stages that `compute` may ask for.
     packages : tuple of str
         Packages whose code decides the result.
     kept : bool
         Whether the result is worth a place in the cache.
     settings : callable
-        What decisions of other stages tell this one, as plain values; in the cache's key like `inputs`. Of a
+        What decisions of other stages hand to this one, as plain values; in the cache's key like `inputs`. Of a
         stage that is decided on it has no more than what was decided, so that a change elsewhere in the scene
         which leaves the decision as it was leaves the result in the cache.
     """
 
     name: str
     title: str
-    compute: Compute
-    inputs: Callable[[Scene], Mapping[str, Any]]
-    needs: tuple[str, ...] = ()
+    compute: Callable[[Engine], T]
+    inputs: Inputs
+    needs: tuple[Stage[Any], ...] = ()
     packages: tuple[str, ...] = ()
     kept: bool = False
-    settings: Callable[[Engine], Mapping[str, Any]] = lambda engine: {}
+    settings: Settings = lambda engine: {}
+
+
+def stage(
+    name: str,
+    title: str,
+    inputs: Inputs,
+    *needs: Stage[Any],
+    packages: tuple[str, ...] = (),
+    kept: bool = False,
+    settings: Settings = lambda engine: {},
+) -> Callable[[Callable[[Engine], T]], Stage[T]]:
+    """Make a stage of the function that computes it; arguments as of `Stage`."""
+    return lambda compute: Stage(name, title, compute, inputs, needs, packages, kept, settings)
 
 
 @dataclass(frozen=True)
@@ -79,33 +94,27 @@ class Engine:
     """Holds the results of one run; the only thing here that changes."""
 
     scene: Scene
-    stages: Mapping[str, Stage]
     cache: Cache
-    on_start: Callable[[Stage], None] = lambda stage: None
+    on_start: Callable[[Stage[Any]], None] = lambda stage: None
     runs: dict[str, StageRun] = field(default_factory=dict)
     _values: dict[str, Any] = field(default_factory=dict)
     _elsewhere: list[float] = field(default_factory=list)
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, stage: Stage[T]) -> T:
         """Return the result of a stage, computed when first asked for."""
-        if name not in self._values:
-            self._values[name] = self._obtain(self.stages[name])
-        return self._values[name]
+        if stage.name not in self._values:
+            self._values[stage.name] = self._obtain(stage)
+        found: T = self._values[stage.name]
+        return found
 
-    def inputs(self, name: str) -> dict[str, Any]:
+    def inputs(self, stage: Stage[Any]) -> dict[str, Any]:
         """Everything that decides a stage's result, down to the scene's keys."""
-        stage = self.stages[name]
         # apart: a setting may be called like a section, as the film's tolerance and [film] are
         own = {"keys": stage.inputs(self.scene), "decided": stage.settings(self)}
-        return {name: own, **{n: self.inputs(n) for n in stage.needs}}
-
-    def packages(self, name: str) -> tuple[str, ...]:
-        """Packages whose code decides a stage's result."""
-        stage = self.stages[name]
-        return tuple(sorted({*stage.packages, *(p for n in stage.needs for p in self.packages(n))}))
+        return {stage.name: own, **{need.name: self.inputs(need) for need in stage.needs}}
 
     def results(self) -> dict[str, Any]:
-        """Results that have been asked for so far."""
+        """Results that have been asked for so far, by the names of their stages."""
         return dict(self._values)
 
     def timed(self, name: str, title: str, work: Callable[[], T]) -> T:
@@ -115,18 +124,14 @@ class Engine:
         self.runs[name] = StageRun(name, title, time.perf_counter() - start, cached=False)
         return done
 
-    def _obtain(self, stage: Stage) -> Any:
+    def _obtain(self, stage: Stage[T]) -> T:
         start = time.perf_counter()
         self._elsewhere.append(0.0)
-        key = (
-            self.cache.key(stage.name, self.inputs(stage.name), self.packages(stage.name))
-            if stage.kept
-            else ""
-        )
-        value = self.cache.get(key) if stage.kept else None
+        key = self.cache.key(stage.name, self.inputs(stage), packages_of(stage)) if stage.kept else ""
+        value: T | None = self.cache.get(key) if stage.kept else None
         cached = value is not None
         caught: list[warnings.WarningMessage] = []
-        if not cached:
+        if value is None:
             self.on_start(stage)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
@@ -137,9 +142,14 @@ class Engine:
         own = whole - self._elsewhere.pop()
         if self._elsewhere:
             self._elsewhere[-1] += whole
-        told = _once_each(str(w.message) for w in caught)
-        self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, told)
+        heard = _once_each(str(w.message) for w in caught)
+        self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, heard)
         return value
+
+
+def packages_of(stage: Stage[Any]) -> tuple[str, ...]:
+    """Packages whose code decides a stage's result: its own, those of what it needs, and the ground of all."""
+    return tuple(sorted({"base", *stage.packages, *(p for need in stage.needs for p in packages_of(need))}))
 
 
 def _once_each(messages: Iterable[str]) -> tuple[str, ...]:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from flankfilm.build import pinion_torque
+from flankfilm.coupling.resolution import stiffness_laws
+from flankfilm.coupling.tolerance import CostLaw
 from flankfilm.scene.needs import needs_of_finite_elements
-from flankfilm.tolerance import CostLaw
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
@@ -39,17 +40,6 @@ RANGES = {
 }
 """Where the comparison holds: gears of one material, cut by the rack ISO 53 A, with plain tips, in plane strain."""
 
-COMPLIANCE = CostLaw("tooth compliance", coarsest=5e-4, seconds=0.3, power=1.0, finest=3e-6)
-"""Meshing, factors and loads of both gears by finite elements."""
-
-SAMPLING = {
-    ("fem", "coupled"): CostLaw("sampling of the mesh cycle", coarsest=4e-4, seconds=0.03, power=2 / 3),
-    ("fem", "independent"): CostLaw("sampling of the mesh cycle", coarsest=2e-3, seconds=0.03, power=1.0),
-}
-"""From 120 positions on; independent pairs make the curve step."""
-
-CLOSED_SAMPLING = CostLaw("sampling of the mesh cycle", coarsest=2e-3, seconds=0.02, power=1.0)
-
 
 @dataclass(frozen=True)
 class Option:
@@ -64,18 +54,18 @@ class Option:
 def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
     """Models that a scene may have, and why there are no more of them; the last is what all are compared with."""
     asked, pairs = scene.stiffness.model, scene.stiffness.pairs
-    elements = Option("fem", 0.0, (COMPLIANCE, SAMPLING["fem", pairs]), "finite elements")
+    elements = Option("fem", 0.0, stiffness_laws("fem", pairs), "finite elements")
     if asked == "fem":
         return (elements,), 'the scene asks for stiffness.model = "fem"'
     if asked != "auto":
         told = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
-        return (Option(asked, None, (CLOSED_SAMPLING,), asked),), told
+        return (Option(asked, None, stiffness_laws(asked, pairs), asked),), told
     if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
         return (elements,), f"finite elements, which {' and '.join(needed)} needs"
     if outside := _outside(scene, pair):
         return (elements,), f"finite elements; closed forms were not compared where {outside}"
     closed = tuple(
-        Option(model, effect, (CLOSED_SAMPLING,), f"closed form ({model})")
+        Option(model, effect, stiffness_laws(model, pairs), f"closed form ({model})")
         for (model, kind), effect in LARGEST_DIFFERENCE.items()
         if kind == pairs
     )

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.build import pinion_speed
+from flankfilm.stages.catalogue import FILM, MESH, PAIR, ROOT_STRESS, VERIFICATION
+from flankfilm.stages.engine import Engine
 
 if TYPE_CHECKING:
-    from flankfilm.mesh_stiffness import MeshStiffness
-    from flankfilm.stages.engine import Engine
+    from flankfilm.coupling import MeshCycle
 
 
 @dataclass(frozen=True)
@@ -34,38 +35,35 @@ class Output:
     value: Callable[[Engine], float]
 
 
-def _stiffness(unit: str, meaning: str, value: Callable[[MeshStiffness, float], Any]) -> Output:
+def _stiffness(unit: str, meaning: str, value: Callable[[MeshCycle, float], Any]) -> Output:
     """Figure of the mesh cycle, with the film where the scene has one; the scale is to N/(mm um)."""
 
     def of(engine: Engine) -> float:
-        return float(value(engine["mesh"], 1e-9 / engine["pair"].face_width))
+        return float(value(engine[MESH], 1e-9 / engine[PAIR].face_width))
 
     return Output(unit, meaning, ("stiffness",), of)
 
 
 def _harmonic(order: int) -> Output:
-    def share(cycle: MeshStiffness, scale: float) -> float:
-        return float(2 * np.abs(np.fft.rfft(cycle.secant)[order]) / cycle.secant.sum())
+    def share(cycle: MeshCycle, scale: float) -> float:
+        return cycle.harmonic(order)
 
     return _stiffness("1", f"amplitude of harmonic {order} of the secant stiffness over its mean", share)
 
 
 def _geometry(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
-    return Output(unit, meaning, ("geometry",), lambda engine: float(value(engine["pair"])))
+    return Output(unit, meaning, ("geometry",), lambda engine: float(value(engine[PAIR])))
 
 
 def _film(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
-    return Output(unit, meaning, ("film",), lambda engine: float(value(engine["film"])))
+    return Output(unit, meaning, ("film",), lambda engine: float(value(engine[FILM].film)))
 
 
 def _difference(model: str, reference: str) -> Output:
     """Difference of a closed form's mean mesh stiffness from finite elements held to the path."""
 
     def of(engine: Engine) -> float:
-        for found in engine["verification"].differences:
-            if (found.model, found.reference, found.figure) == (model, reference, "mesh, mean"):
-                return 100.0 * float(found.difference)
-        raise LookupError(f"no comparison of {model} with finite elements {reference}")
+        return 100.0 * engine[VERIFICATION].difference(model, reference)
 
     told = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
     return Output("%", told, ("closed-forms",), of)
@@ -77,7 +75,7 @@ def _sliding(pair: Any) -> float:
 
 
 def _sliding_speed(engine: Engine) -> float:
-    pair = engine["pair"]
+    pair = engine[PAIR]
     ends = pair.path_at(np.array([pair.points.A, pair.points.E]))
     return float(np.abs(ends.sliding(pinion_speed(engine.scene))).max())
 
@@ -89,7 +87,7 @@ def _at_point(point: str, name: str) -> Callable[[Engine], float]:
     """
 
     def of(engine: Engine) -> float:
-        film, points = engine["film"], engine["pair"].points
+        film, points = engine[FILM].film, engine[PAIR].points
         inside = {"B": 1e-6, "D": -1e-6}.get(point, 0.0)
         towards = film.rho1 - (getattr(points, point) + inside)
         nearest = np.abs(towards) if not inside else np.where(towards * inside > 0, np.abs(towards), np.inf)
@@ -107,7 +105,7 @@ def _through(value: Callable[[Any], float | None]) -> Callable[[Engine], float]:
     """Figure of the pressure and film through the contact nearest to C; nan where it has none."""
 
     def of(engine: Engine) -> float:
-        film = engine["film"].profiles.get("C")
+        film = engine[FILM].film.profiles.get("C")
         found = None if film is None else value(film)
         return float("nan") if found is None else float(found)
 
@@ -128,12 +126,12 @@ def _mixed(name: str, worst: Callable[[Any], Any]) -> Callable[[Any], float]:
 
 
 def _at_pitch_point(film: Any, pair: Any) -> float:
-    return float(np.interp(pair.points.C, film.rho1, film.central))
+    return float(np.interp(pair.points.C, film.rho1, film.central_thickness))
 
 
 def _root(meaning: str, peak: str, gear: str) -> Output:
     def of(engine: Engine) -> float:
-        found = getattr(engine["root stress"].stress, gear)
+        found = getattr(engine[ROOT_STRESS].stress, gear)
         return 1e-6 * float(getattr(found, peak).stress_Pa)
 
     return Output("MPa", f"{meaning} of the {gear}", ("root-stress",), of)
@@ -159,21 +157,27 @@ OUTPUTS: Mapping[str, Output] = {
     "specific_sliding": _geometry("1", "largest specific sliding of both flanks, A to E", _sliding),
     "sliding_speed_m_per_s": Output("m/s", "largest sliding speed, A to E", ("geometry",), _sliding_speed),
     "mean_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)", "mean secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.mean()
+        "N/(mm um)",
+        "mean secant stiffness of the mesh",
+        lambda cycle, scale: scale * cycle.mean_secant_stiffness,
     ),
     "mean_tangent_N_per_mm_um": _stiffness(
-        "N/(mm um)", "mean tangent stiffness of the mesh", lambda cycle, scale: scale * cycle.tangent.mean()
+        "N/(mm um)", "mean tangent stiffness of the mesh", lambda cycle, scale: scale * cycle.mean_stiffness
     ),
     "least_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)", "least secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.min()
+        "N/(mm um)",
+        "least secant stiffness of the mesh",
+        lambda cycle, scale: scale * cycle.secant_stiffness.min(),
     ),
     "largest_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)", "largest secant stiffness of the mesh", lambda cycle, scale: scale * cycle.secant.max()
+        "N/(mm um)",
+        "largest secant stiffness of the mesh",
+        lambda cycle, scale: scale * cycle.secant_stiffness.max(),
     ),
     "transmission_error_um": _stiffness(
         "um",
         "loaded transmission error, peak to peak",
-        lambda cycle, _: 1e6 * np.ptp(cycle.transmission_error),
+        lambda cycle, _: 1e6 * cycle.transmission_error_range,
     ),
     **{f"harmonic_{order}": _harmonic(order) for order in range(1, 6)},
     "stiffness_error": _stiffness(
@@ -194,28 +198,33 @@ OUTPUTS: Mapping[str, Output] = {
         "power out over power in, sliding of the dry contacts alone",
         lambda cycle, _: np.nan if cycle.contact is None else cycle.contact.efficiency,
     ),
-    "least_film_um": _film("um", "least film along the path", lambda film: 1e6 * film.minimum.min()),
+    "least_film_um": _film("um", "least film along the path", lambda film: 1e6 * film.least_film),
     "least_central_film_um": _film(
-        "um", "least film on the line of centres along the path", lambda film: 1e6 * film.central.min()
+        "um",
+        "least film on the line of centres along the path",
+        lambda film: 1e6 * film.central_thickness.min(),
     ),
     "film_at_C_um": Output(
         "um",
         "film on the line of centres at the pitch point",
         ("film",),
-        lambda engine: 1e6 * _at_pitch_point(engine["film"], engine["pair"]),
+        lambda engine: 1e6 * _at_pitch_point(engine[FILM].film, engine[PAIR]),
     ),
     "hertz_pressure_GPa": _film(
-        "GPa", "largest Hertz pressure along the path", lambda film: 1e-9 * film.hertz_pressure.max()
+        "GPa", "largest Hertz pressure along the path", lambda film: 1e-9 * film.greatest_pressure
     ),
-    "film_change_percent": _film(
-        "%", "what the film changes the mean secant stiffness by", lambda film: 100 * film.change_secant
+    "film_change_percent": Output(
+        "%",
+        "what the film changes the mean secant stiffness by",
+        ("film",),
+        lambda engine: 100 * engine[FILM].secant_stiffness_change,
     ),
     **{
         f"{kind}_at_{point}_{unit}": Output(
             unit, f"{meaning} at {point}", ("film",), _film_at(point, name, scale)
         )
         for kind, name, unit, scale, meaning in (
-            ("least_film", "minimum", "um", 1e6, "least film in the contact"),
+            ("least_film", "minimum_thickness", "um", 1e6, "least film in the contact"),
             ("hertz_pressure", "hertz_pressure", "GPa", 1e-9, "Hertz pressure"),
         )
         for point in "ABCDE"

@@ -63,7 +63,6 @@ def compute_row(row: Row) -> RowResult:
 
     keep_compiled_code()
     from flankfilm.scene.reader import validated
-    from flankfilm.stages.catalogue import STAGES
     from flankfilm.stages.engine import Engine
     from flankfilm.study.outputs import OUTPUTS
 
@@ -72,7 +71,7 @@ def compute_row(row: Row) -> RowResult:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a scene's own run shows them
             cache = Cache(user_cache() / "results" if row.use_cache else None)
-            engine = Engine(validated(dict(row.scene)), STAGES, cache)
+            engine = Engine(validated(dict(row.scene)), cache)
             values = tuple(OUTPUTS[name].value(engine) for name in row.outputs)
     except (InputError, SolverError) as fault:
         return failed(row, str(fault), time.perf_counter() - start)

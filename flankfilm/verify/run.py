@@ -6,12 +6,12 @@ from pathlib import Path
 
 from base import Fault, InputError
 from flankfilm.cache import Cache, user_cache
+from flankfilm.coupling import Verification
 from flankfilm.folder import claim
 from flankfilm.progress import Progress, silent
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import VERIFICATION
 from flankfilm.stages.engine import Engine
-from flankfilm.verify.compare import Verification
 
 
 def verify_scene(
@@ -54,6 +54,4 @@ def verify_scene(
         done.append(title)
         progress(title, len(done) - 1, 3)
 
-    engine = Engine(scene, STAGES, cache, lambda stage: announce(stage.title))
-    found: Verification = engine["verification"]
-    return found
+    return Engine(scene, cache, lambda stage: announce(stage.title))[VERIFICATION]

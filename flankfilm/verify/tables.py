@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.coupling.verification import UNITS, Curves, Difference, Verification
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
 from flankfilm.picture_outputs import geometry_quantities
-from flankfilm.verify.compare import UNITS, Difference, Verification
-from flankfilm.verify.models import Curves
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,8 +57,10 @@ def _cell(difference: Difference | None) -> str:
 
 def costs(found: Verification) -> str:
     """Tell what each model cost."""
-    told = [f"finite elements {found.compliance_seconds:.2f} s once, then"]
-    told.append(", ".join(f"{c.label} {1e3 * c.seconds:.1f} ms" for c in (*found.references, *found.models)))
+    told = [f"finite elements {found.cost.seconds:.2f} s once, then"]
+    told.append(
+        ", ".join(f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*found.references, *found.models))
+    )
     return " ".join(told)
 
 
@@ -72,11 +73,11 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     scene : Scene
         That was verified.
     """
-    models = [model for model in found.models if model.single.size]
+    models = [model for model in found.models if model.single_stiffness.size]
     quantities = geometry_quantities(found.pair) | {
         "path_rho1": Quantity(("path",), found.rho1, "m", "curvature radius of the pinion's flank"),
         "phase": Quantity(
-            ("position",), found.phase, "1", "travel after a pair is at A, over the base pitch"
+            ("position",), found.position, "1", "travel after a pair is at A, over the base pitch"
         ),
         "like_for_like": Quantity(
             (), found.references.index(found.like_for_like), "1", "reference without what closed forms lack"
@@ -88,8 +89,12 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     for kind, curves in (("reference", found.references), ("model", models)):
         quantities |= {
             kind: Quantity((kind,), np.array([c.label for c in curves]), "1", kind),
-            f"{kind}_single": Quantity((kind, "path"), [c.single for c in curves], "N/m", "one pair, secant"),
-            f"{kind}_secant": Quantity((kind, "position"), [c.secant for c in curves], "N/m", "mesh, secant"),
+            f"{kind}_single": Quantity(
+                (kind, "path"), [c.single_stiffness for c in curves], "N/m", "one pair, secant"
+            ),
+            f"{kind}_secant": Quantity(
+                (kind, "position"), [c.secant_stiffness for c in curves], "N/m", "mesh, secant"
+            ),
             f"{kind}_transmission_error": Quantity(
                 (kind, "position"), [c.transmission_error for c in curves], "m", "deflection"
             ),
@@ -117,16 +122,16 @@ def _write_tables(found: Verification, folder: Path) -> list[Path]:
     columns["reference_error_percent"] = [100 * d.reference_error for d in found.differences]
     columns["difference_percent"] = [100 * d.difference for d in found.differences]
     ordered = {name: columns[name] for name in (*names, "difference_percent")}
-    all_curves = [c for c in (*found.references, *found.models) if c.single.size]
+    all_curves = [c for c in (*found.references, *found.models) if c.single_stiffness.size]
     files = {
         "verify": ordered,
         "verify_one_pair": {
             "travel_from_A_mm": 1e3 * (found.rho1 - found.pair.points.A),
-            **{f"{_identifier(c.label)}_N_per_m": c.single for c in all_curves},
+            **{f"{_identifier(c.label)}_N_per_m": c.single_stiffness for c in all_curves},
         },
         "verify_mesh": {
-            "phase": found.phase,
-            **{f"{_identifier(c.label)}_N_per_m": c.secant for c in all_curves},
+            "phase": found.position,
+            **{f"{_identifier(c.label)}_N_per_m": c.secant_stiffness for c in all_curves},
             **{
                 f"{_identifier(c.label)}_transmission_error_um": 1e6 * np.asarray(c.transmission_error)
                 for c in all_curves

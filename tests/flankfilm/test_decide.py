@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
@@ -13,18 +12,21 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
-from base import SolverError
+from base import Cost, SolverError
+from dynamics import FourierStiffness
+from flankfilm.build import gear_pair
 from flankfilm.cache import Cache
 from flankfilm.check import check_scene
+from flankfilm.coupling.series import LeftOut, MeshSeries, least_order, left_out
 from flankfilm.report.contents import summary
 from flankfilm.run import run_scene
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import STAGES
-from flankfilm.stages.decide import Plan
+from flankfilm.stages.catalogue import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN
+from flankfilm.stages.decide import Plan, decide
+from flankfilm.stages.decisions import Decision, order_decision
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
-from flankfilm.stages.series_choice import choose_order, left_out
 from flankfilm.stages.stiffness_choice import LARGEST_DIFFERENCE
 
 TOLERANCES = (0.4, 0.2, 0.05, 0.01, 0.005, 0.001, 1e-4)
@@ -52,9 +54,7 @@ def scene(tolerance: float = 0.005, **changes) -> Scene:
 
 def plan(of: Scene, film_change: float = -0.003) -> Plan:
     """Plan of a scene whose film is foreseen to change the stiffness by so much."""
-    foreseen = replace(STAGES["film foreseen"], compute=lambda engine: FilmChange(film_change, 0.02))
-    found: Plan = Engine(of, {**STAGES, "film foreseen": foreseen}, Cache(None))["plan"]
-    return found
+    return decide(of, gear_pair(of), lambda: FilmChange(film_change, 0.02))
 
 
 @pytest.mark.parametrize(
@@ -151,14 +151,14 @@ def test_another_oil_changes_films_and_leaves_the_teeth_as_they_are():
     keys = []
     for viscosity, tolerance in ((0.075, 0.005), (0.03, 0.005), (0.075, 0.0048)):
         oil = {"viscosity_Pa_s": viscosity, "pressure_viscosity_per_GPa": 19.6}
-        engine = Engine(scene(tolerance, lubricant=oil, film={"model": "ehl"}), STAGES, Cache(None))
-        keys.append((json.dumps(engine.inputs("bodies")), json.dumps(engine.inputs("film"), default=str)))
+        engine = Engine(scene(tolerance, lubricant=oil, film={"model": "ehl"}), Cache(None))
+        keys.append((json.dumps(engine.inputs(BODIES)), json.dumps(engine.inputs(FILM), default=str)))
     assert keys[0][0] == keys[1][0] == keys[2][0]
     assert len({film for _, film in keys}) == 3
 
 
 def test_a_finer_tolerance_asks_for_finer_teeth():
-    asked = [plan(scene(t, film={"model": "none"})).compliance for t in (0.005, 0.001, 1e-4, 2e-5)]
+    asked = [plan(scene(t, film={"model": "none"})).resolution.compliance for t in (0.005, 0.001, 1e-4, 2e-5)]
     assert asked == sorted(asked, reverse=True)
     assert asked[-1] < 0.1 * asked[0]
 
@@ -170,10 +170,10 @@ def test_the_closed_form_taken_is_as_near_as_was_said():
         exclude_none=True
     )
     raw["pair"]["pinion"] |= {"teeth": 23, "profile_shift": 0.3, "bore_mm": 20.0}
-    rough = Engine(validated(raw), STAGES, Cache(None))
-    fine = Engine(validated(raw | {"tolerance": 0.01}), STAGES, Cache(None))
-    assert (rough["plan"].stiffness.choice, fine["plan"].stiffness.choice) == ("potential-energy", "fem")
-    off = rough["dry cycle"].secant.mean() / fine["dry cycle"].secant.mean() - 1
+    rough = Engine(validated(raw), Cache(None))
+    fine = Engine(validated(raw | {"tolerance": 0.01}), Cache(None))
+    assert (rough[PLAN].stiffness.choice, fine[PLAN].stiffness.choice) == ("potential-energy", "fem")
+    off = rough[DRY_CYCLE].mean_secant_stiffness / fine[DRY_CYCLE].mean_secant_stiffness - 1
     assert 0.001 < abs(off) < 0.2
 
 
@@ -209,15 +209,24 @@ def test_what_a_dropped_harmonic_does_to_the_motion(frequency):
     assert told[2] == pytest.approx(true, rel=0.2)
 
 
+def chosen(found: LeftOut, share: float) -> tuple[int, Decision]:
+    order = least_order(found, share)
+    stiffness = FourierStiffness(1.0, (0.0,) * order, (0.0,) * order)
+    series = MeshSeries("secant", "", stiffness, None, None, None, found, share, Cost(0.0))
+    decision = order_decision(series)
+    assert decision is not None
+    return order, decision
+
+
 def test_the_least_order_is_found_and_said():
     kappa = 0.1 / np.arange(1, 90) ** 2
     found = left_out(kappa, None, 0.05)
     for share in (0.02, 0.005, 1e-3):
-        order, decision = choose_order(found, share)
+        order, decision = chosen(found, share)
         assert found.curve[order] <= share < found.curve[order - 1]
         assert f"order {order - 1} would leave" in decision.reason
         assert decision.choice == str(order)
-    order, decision = choose_order(found, 1e-6)
+    order, decision = chosen(found, 1e-6)
     assert order == 50
     assert "no series of up to 50" in decision.reason
     assert decision.effect is not None
@@ -252,17 +261,17 @@ def test_a_run_says_what_it_decided(tmp_path):
 def test_check_says_what_a_run_would_decide():
     path = Path(__file__).parents[2] / "examples" / "auto.toml"
     told = check_scene(read_scene(path))
-    found = Engine(read_scene(path), STAGES, Cache(None))["plan"]
+    found = Engine(read_scene(path), Cache(None))[PLAN]
     assert {found.stiffness.line, found.film.line, found.line} <= set(told)
     assert "split by cost" in found.line
 
 
-def test_a_film_whose_part_cannot_be_foreseen_is_solved():
-    def fails(engine: Engine):
+def test_a_film_whose_part_cannot_be_foreseen_is_solved(monkeypatch):
+    def fails(*given, **options):
         raise SolverError("no agreement")
 
-    stages = {**STAGES, "film": replace(STAGES["film"], compute=fails)}
-    found: Plan = Engine(scene(0.05), stages, Cache(None))["plan"]
+    monkeypatch.setattr("flankfilm.coupling.lubricated_cycle", fails)
+    found = Engine(scene(0.05), Cache(None))[PLAN]
     assert found.film.choice == "ehl"
     assert "no answer" in found.film.reason
 
@@ -272,5 +281,5 @@ def test_relief_does_not_hinder_the_foreseeing():
     raw = scene(0.05).model_dump(exclude_none=True)
     raw["pair"]["pinion"] |= {"teeth": 17, "profile_shift": 0.4, "bore_mm": 12.0, "tip_relief": relief}
     raw["pair"]["wheel"] |= {"teeth": 60, "profile_shift": 0.1, "tip_relief": relief}
-    change = Engine(validated(raw), STAGES, Cache(None))["film foreseen"]
+    change = Engine(validated(raw), Cache(None))[FILM_FORESEEN]
     assert -0.05 < change.mean < 0.0

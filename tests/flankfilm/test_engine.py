@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from flankfilm.cache import Cache
-from flankfilm.film_law import FilmLaw
-from flankfilm.mesh_stiffness import peak_to_peak_error, sampling_error
-from flankfilm.scene import parse_scene, template
-from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.coupling.cycle import peak_to_peak_error, sampling_error
+from flankfilm.coupling.film_law import FilmLaw
+from flankfilm.scene import Scene, parse_scene, template
+from flankfilm.stages.catalogue import FILM, STAGES, goals
 from flankfilm.stages.engine import Engine, Stage
 
 
@@ -23,39 +23,37 @@ def scene(changes: dict[str, str] | None = None):
     return parse_scene(text)
 
 
-def counting(calls: list[str], kept: bool = True) -> dict[str, Stage]:
-    def of(name: str, needs: tuple[str, ...], sections: tuple[str, ...]) -> Stage:
-        def compute(engine: Engine) -> str:
+def counting(calls: list[str]) -> Stage[str]:
+    """A stage that stands on another; both note that they were computed."""
+
+    def of(name: str, section: str, *needs: Stage[str]) -> Stage[str]:
+        def compute(run: Engine) -> str:
             calls.append(name)
-            return "+".join([name, *(engine[n] for n in needs)])
+            return "+".join([name, *(run[need] for need in needs)])
 
-        return Stage(
-            name,
-            name,
-            compute,
-            lambda s: {k: getattr(s, k).model_dump() for k in sections},
-            needs,
-            ("gears",),
-            kept,
-        )
+        def inputs(scene: Scene) -> dict[str, object]:
+            return {section: getattr(scene, section).model_dump()}
 
-    return {s.name: s for s in (of("teeth", (), ("pair",)), of("oil", ("teeth",), ("lubricant",)))}
+        return Stage(name, name, compute, inputs, needs, ("gears",), True)
+
+    return of("oil", "lubricant", of("teeth", "pair"))
 
 
 def test_a_stage_runs_once(tmp_path):
     calls: list[str] = []
-    engine = Engine(scene(), counting(calls), Cache(None))
-    assert engine["oil"] == engine["oil"] == "oil+teeth"
+    oil = counting(calls)
+    engine = Engine(scene(), Cache(None))
+    assert engine[oil] == engine[oil] == "oil+teeth"
     assert calls == ["oil", "teeth"]
 
 
 def test_a_change_of_lubricant_meshes_nothing_again(tmp_path):
     calls: list[str] = []
-    stages = counting(calls)
-    Engine(scene(), stages, Cache(tmp_path))["oil"]
+    oil = counting(calls)
+    Engine(scene(), Cache(tmp_path))[oil]
     calls.clear()
     thicker = scene({"viscosity_Pa_s = 0.075": "viscosity_Pa_s = 0.08"})
-    Engine(thicker, stages, Cache(tmp_path))["oil"]
+    Engine(thicker, Cache(tmp_path))[oil]
     assert calls == ["oil"]
 
 
@@ -69,17 +67,17 @@ def test_a_change_of_lubricant_meshes_nothing_again(tmp_path):
     ],
 )
 def test_a_change_of_the_films_keys_computes_the_film_again(change):
-    before, after = (Engine(scene(c), STAGES, Cache(None)).inputs("film") for c in ({}, change))
+    before, after = (Engine(scene(c), Cache(None)).inputs(FILM) for c in ({}, change))
     assert before != after
 
 
 def test_a_kept_result_needs_nothing_below_it(tmp_path):
     calls: list[str] = []
-    stages = counting(calls)
-    Engine(scene(), stages, Cache(tmp_path))["oil"]
+    oil = counting(calls)
+    Engine(scene(), Cache(tmp_path))[oil]
     calls.clear()
-    again = Engine(scene(), stages, Cache(tmp_path))
-    assert again["oil"] == "oil+teeth"
+    again = Engine(scene(), Cache(tmp_path))
+    assert again[oil] == "oil+teeth"
     assert calls == []
     assert again.runs["oil"].cached
 
@@ -87,8 +85,8 @@ def test_a_kept_result_needs_nothing_below_it(tmp_path):
 def test_time_of_a_stage_excludes_those_it_asks_for(monkeypatch):
     clock = iter([0.0, 1.0, 11.0, 12.0])
     monkeypatch.setattr("flankfilm.stages.engine.time.perf_counter", lambda: next(clock))
-    engine = Engine(scene(), counting([]), Cache(None))
-    engine["oil"]
+    engine = Engine(scene(), Cache(None))
+    engine[counting([])]
     assert engine.runs["teeth"].seconds == 10.0
     assert engine.runs["oil"].seconds == 2.0
 
@@ -100,19 +98,15 @@ def test_warnings_are_gathered_once_each():
         return 1
 
     stage = Stage("warns", "warns", warn, lambda s: {})
-    engine = Engine(scene(), {"warns": stage}, Cache(None))
-    engine["warns"]
+    engine = Engine(scene(), Cache(None))
+    engine[stage]
     assert len(engine.runs["warns"].warnings) == 1
 
 
-def test_needs_of_all_stages_exist_and_have_no_cycle():
-    def below(name: str, above: tuple[str, ...]) -> None:
-        assert name not in above
-        for need in STAGES[name].needs:
-            below(need, (*above, name))
-
-    for name in STAGES:
-        below(name, ())
+def test_each_stage_comes_after_what_it_needs_and_has_a_name_of_its_own():
+    assert len({stage.name for stage in STAGES}) == len(STAGES)
+    for number, stage in enumerate(STAGES):
+        assert set(stage.needs) <= set(STAGES[:number])
 
 
 @pytest.mark.parametrize(
@@ -125,7 +119,7 @@ def test_needs_of_all_stages_exist_and_have_no_cycle():
 )
 def test_only_what_is_wanted_is_asked_for(wants: str, asked: set[str]):
     text = '["stiffness", "film", "sweep", "vtk", "report"]'
-    assert set(goals(scene({text: wants}))) == asked
+    assert {stage.name for stage in goals(scene({text: wants}))} == asked
 
 
 def test_the_film_law_meets_value_and_slope_and_stays_positive():
@@ -151,14 +145,12 @@ def test_the_film_law_meets_value_and_slope_and_stays_positive():
 def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
     changes = []
     for positions in (40, 120):
-        monkeypatch.setattr("flankfilm.stages.film.FILM_POSITIONS", positions)
-        dowson = {
-            'model = "ehl"': 'model = "dowson"',
-            'stiffness = "approach"': 'stiffness = "dowson-central"',
-        }
-        text = scene(dowson)
-        film = Engine(text, STAGES, Cache(None))["film"]
-        changes.append((film.change_secant, film.change_tangent))
+        monkeypatch.setattr("flankfilm.coupling.lubricated.FILM_POSITIONS", positions)
+        given = scene()
+        dowson = given.film.model_copy(update={"model": "dowson", "stiffness": "dowson-central"})
+        by_formula = given.model_copy(update={"film": dowson})
+        film = Engine(by_formula, Cache(None))[FILM]
+        changes.append((film.secant_stiffness_change, film.stiffness_change))
     assert np.allclose(*changes, rtol=0.02)
 
 

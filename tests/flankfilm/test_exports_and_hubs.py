@@ -12,7 +12,7 @@ import pytest
 from base import InputError
 from flankfilm.cache import Cache
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import COMPLIANCE
 from flankfilm.stages.engine import Engine
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "article.toml"
@@ -70,7 +70,7 @@ def compliance(**hub):
     text = EXAMPLE.read_text(encoding="utf-8")
     keys = ", ".join(f"{key} = {value}" for key, value in hub.items())
     text = text.replace("bore_mm = 33.5 }", f"bore_mm = 33.5, hub = {{ {keys} }} }}") if hub else text
-    return Engine(parse_scene(text), STAGES, Cache(None))["compliance"]
+    return Engine(parse_scene(text), Cache(None))[COMPLIANCE]
 
 
 def test_a_shaft_that_yields_adds_its_springs():

@@ -7,9 +7,9 @@ import pytest
 
 from ehl import LineContact, Lubricant, Meniscus, solve
 from flankfilm.cache import Cache
-from flankfilm.film_law import FilmLaw, HeldMeniscus
+from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
 
 
@@ -92,7 +92,7 @@ def test_relieved_teeth_with_a_film_share_their_load():
         "stiffness": {"model": "potential-energy"},
         "film": {"model": "dowson"},
     }
-    cycle = Engine(validated(raw), STAGES, Cache(None))["film"].cycle
+    cycle = Engine(validated(raw), Cache(None))[FILM]
     assert cycle.load_share.sum(axis=1) == pytest.approx(1.0, rel=1e-9)
     assert np.all(cycle.forces >= 0)
 

@@ -10,7 +10,7 @@ from base import InputError
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import lubricant, roughness, supply_of
 from flankfilm.scene import parse_scene, template
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import PLAN
 from flankfilm.stages.engine import Engine
 
 _OIL = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3 = 910")
@@ -169,7 +169,7 @@ def test_auto_solves_what_no_formula_knows(film: str, monkeypatch):
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        model = Engine(parse_scene(text), STAGES, Cache(None))["plan"].film.choice
+        model = Engine(parse_scene(text), Cache(None))[PLAN].film.choice
     assert model == ("ehl" if film else "none")
 
 
@@ -178,4 +178,4 @@ def test_a_wanted_film_is_solved_without_a_film_section():
 
     text = template()
     scene = parse_scene(f"{text[: text.index('[film]')]}{text[text.index('[dynamics]') :]}")
-    assert Engine(scene, STAGES, Cache(None))["plan"].film.choice == "ehl"
+    assert Engine(scene, Cache(None))[PLAN].film.choice == "ehl"

@@ -25,7 +25,7 @@ from flankfilm.report.contents import write_report
 from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
 from flankfilm.results import Results
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import STAGES, goals
+from flankfilm.stages.catalogue import FIELDS, VERIFICATION, goals
 from flankfilm.stages.engine import Engine
 from flankfilm.study.files import dataset as study_dataset
 from flankfilm.study.plan import StudyFile, plan_of
@@ -122,15 +122,15 @@ def some_optimum(folder: Path) -> Optimum:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     folder = tmp_path_factory.mktemp("report")
     scene = parse_scene(SCENE)
-    engine = Engine(scene, STAGES, Cache(None))
-    for name in (*goals(scene), "fields"):
-        engine[name]
+    engine = Engine(scene, Cache(None))
+    for stage in (*goals(scene), FIELDS):
+        engine[stage]
     values = engine.results()
     data = results_dataset(scene, values)
     write_data(folder, data, {})
     run = Results(scene, folder, values, engine.runs, (), 1.0, data)
     pages = {"run": write_report(run)}
-    study, verified = some_study(folder), engine["verification"]
+    study, verified = some_study(folder), engine[VERIFICATION]
     others = {"study": study_dataset(study), "verification": verify_dataset(verified, scene)}
     best = some_optimum(folder)
     others["optimum"] = optimum_dataset(best)

@@ -18,7 +18,7 @@ from flankfilm.cache import Cache
 from flankfilm.figures import animate_cycle, animation, tooth_picture
 from flankfilm.outputs import results_dataset, write_data
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from flankfilm.stages.engine import Engine
 
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -46,12 +46,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run's folder with three positions for ParaView."""
     folder = tmp_path_factory.mktemp("run")
     scene = parse_scene(SCENE)
-    engine = Engine(scene, STAGES, Cache(None))
-    for name in ("dry cycle", "mesh", "fields"):
-        engine[name]
+    engine = Engine(scene, Cache(None))
+    for stage in (DRY_CYCLE, MESH, FIELDS):
+        engine[stage]
     write_data(folder, results_dataset(scene, engine.results()), {})
-    cycle: fem.MeshCycle = engine["mesh"].contact
-    write_vtk_series(folder, engine["pair"], cycle, engine["compliance"], (0, 40, 80))
+    cycle: fem.MeshCycle = engine[MESH].contact
+    write_vtk_series(folder, engine[PAIR], cycle, engine[COMPLIANCE], (0, 40, 80))
     return folder
 
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flankfilm.tolerance import CostLaw, split, step_below
+from flankfilm.coupling.tolerance import CostLaw, split, step_below
 
 positive = st.floats(1e-6, 1e-1)
 laws = st.lists(

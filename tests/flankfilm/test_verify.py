@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base import Cost
 from flankfilm.build import gear_pair
+from flankfilm.coupling.verification import POINTS, UNITS, Curves, figure_errors, figures, stations
 from flankfilm.scene import read_scene
-from flankfilm.verify.compare import UNITS, figure_errors, figures
-from flankfilm.verify.models import POINTS, Curves, stations
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -31,7 +31,9 @@ def made_up(pair, n=360, error=1e-3):
     rho1 = stations(pair)
     single = 10 + 2 * (rho1 - pair.points.A) / (pair.points.E - pair.points.A)
     pairs = np.where(np.arange(n) < 0.7 * n, 2, 1)
-    return Curves("made up", unit * single, unit * secant, 1e-6 * np.sin(phase) + 3e-6, pairs, 0.0, error)
+    return Curves(
+        "made up", unit * single, unit * secant, 1e-6 * np.sin(phase) + 3e-6, pairs, Cost(0.0), error
+    )
 
 
 def test_the_path_is_walked_from_A_to_E_with_C(pair):
@@ -75,11 +77,11 @@ def test_errors_bound_what_a_relative_error_of_the_stiffness_can_do(pair):
     ):
         moved = Curves(
             "",
-            curves.single * (1 + 1e-3),
-            curves.secant * (1 + 1e-3 * sign),
+            curves.single_stiffness * (1 + 1e-3),
+            curves.secant_stiffness * (1 + 1e-3 * sign),
             curves.transmission_error * (1 + 1e-3 * sign),
             curves.pairs,
-            0.0,
+            Cost(0.0),
         )
         for name, value in figures(pair, moved).items():
             assert abs(value / values[name] - 1) <= bounds[name] * 1.05, name

@@ -15,10 +15,10 @@ import numpy as np
 
 from base import InputError, SolverError
 from flankfilm.cache import Cache
+from flankfilm.coupling.single_pairs import CLOSED_FORMS
 from flankfilm.scene import Scene
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import STAGES
-from flankfilm.stages.closed_forms import CLOSED_FORMS
+from flankfilm.stages.catalogue import DRY_CYCLE
 from flankfilm.stages.engine import Engine
 
 
@@ -51,9 +51,9 @@ def curve(raw: dict, model: str, pairs: str) -> tuple[np.ndarray, float]:
     """Secant stiffness over the cycle and the CPU time of everything [N/m, s]."""
     scene: Scene = validated(raw | {"stiffness": {"model": model, "pairs": pairs}})
     began = time.process_time()
-    cycle = Engine(scene, STAGES, Cache(None))["dry cycle"]
+    cycle = Engine(scene, Cache(None))[DRY_CYCLE]
     took = time.process_time() - began
-    return cycle.secant.reshape(120, -1).mean(axis=1), took
+    return cycle.secant_stiffness.reshape(120, -1).mean(axis=1), took
 
 
 def main(count: int, seed: int) -> None:

@@ -16,7 +16,7 @@ from closed_form_scatter import ordinary
 from base import InputError, SolverError
 from flankfilm.cache import Cache, keep_compiled_code
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import DRY_CYCLE, FILM
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.film_choice import foreseen_change
 
@@ -36,7 +36,7 @@ def lubricated(random: np.random.Generator) -> dict:
 def engine(raw: dict, film: str) -> Engine:
     """Engine of a scene with a film model, teeth by finite elements."""
     scene = validated(raw | {"film": {"model": film}, "tolerance": 0.01})
-    return Engine(scene, STAGES, Cache(None))
+    return Engine(scene, Cache(None))
 
 
 def main(count: int, seed: int) -> None:
@@ -48,14 +48,19 @@ def main(count: int, seed: int) -> None:
         try:
             solved, formula = engine(raw, "ehl"), engine(raw, "dowson")
             began = time.process_time()
-            foreseen = foreseen_change(solved).mean
+            foreseen = foreseen_change(solved.scene).mean
             middle = time.process_time()
-            solved["dry cycle"], formula["dry cycle"]
+            solved[DRY_CYCLE], formula[DRY_CYCLE]
             start = time.process_time()
-            by_films = solved["film"]
+            by_films = solved[FILM]
             seconds.append((middle - began, time.process_time() - start))
             rows.append(
-                (foreseen, by_films.change_secant, by_films.change_tangent, formula["film"].change_secant)
+                (
+                    foreseen,
+                    by_films.secant_stiffness_change,
+                    by_films.stiffness_change,
+                    formula[FILM].secant_stiffness_change,
+                )
             )
         except (InputError, SolverError, ValueError) as fault:
             print(f"left out: {' '.join(str(fault).split())[:100]}")

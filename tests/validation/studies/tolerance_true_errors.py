@@ -16,7 +16,7 @@ import numpy as np
 
 from flankfilm.cache import Cache, keep_compiled_code
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import STAGES
+from flankfilm.stages.catalogue import FILM, FOURIER, MESH, PLAN
 from flankfilm.stages.engine import Engine
 
 TOLERANCES = (0.05, 0.01, 0.005, 0.001)
@@ -72,9 +72,9 @@ def run(raw: dict, tolerance: float, stiffness: str, film: str, order: object) -
         "film": {"model": film},
         "dynamics": {"fourier_order": order},
     }
-    engine = Engine(validated(raw | models), STAGES, Cache(None))
+    engine = Engine(validated(raw | models), Cache(None))
     began = time.process_time()
-    engine["fourier"]
+    engine[FOURIER]
     return engine, time.process_time() - began
 
 
@@ -96,18 +96,18 @@ def main(part: str) -> None:
         if part not in name:
             continue
         finest, seconds = run(raw, min(TOLERANCES) / 20, "fem", "ehl", 50)
-        true, change = finest["mesh"], finest["film"].change_secant
+        true, change = finest[MESH], finest[FILM].secant_stiffness_change
         print(f"\n{name}: reference {seconds:.1f} s, film {100 * change:+.3f} %", flush=True)
         print("| " + " | ".join(heads) + " |")
         for tolerance in TOLERANCES:
             engine, seconds = run(raw, tolerance, "auto", "auto", "auto")
-            plan, mesh, series = engine["plan"], engine["mesh"], engine["fourier"].stiffness
-            at = 2 * np.pi * true.phase[:, None] * np.arange(1, len(series.amplitudes) + 1)
+            plan, mesh, series = engine[PLAN], engine[MESH], engine[FOURIER].stiffness
+            at = 2 * np.pi * true.position[:, None] * np.arange(1, len(series.amplitudes) + 1)
             curve = series.mean + np.cos(at + np.array(series.phases)) @ np.array(series.amplitudes)
             values = (
-                mesh.secant.mean() / true.secant.mean() - 1,
-                np.sqrt(np.mean((curve - true.secant) ** 2)) / true.secant.mean(),
-                mesh.tangent.mean() / true.tangent.mean() - 1,
+                mesh.mean_secant_stiffness / true.mean_secant_stiffness - 1,
+                np.sqrt(np.mean((curve - true.secant_stiffness) ** 2)) / true.mean_secant_stiffness,
+                mesh.mean_stiffness / true.mean_stiffness - 1,
                 np.ptp(mesh.transmission_error) / np.ptp(true.transmission_error) - 1,
             )
             told = " | ".join(f"{100 * value:+.3f} %" for value in values)
