@@ -28,6 +28,11 @@ def half_width(load: float | Array, radius: float | Array, reduced_modulus: floa
     -------
     array
         a [m].
+
+    Examples
+    --------
+    >>> 1e6 * half_width(4.4e5, radius=6.5e-3, reduced_modulus=226e9)
+    179.5...
     """
     return np.asarray(np.sqrt(8.0 * np.asarray(load) * radius / (math.pi * reduced_modulus)))
 
@@ -48,6 +53,11 @@ def peak_pressure(load: float | Array, radius: float | Array, reduced_modulus: f
     -------
     array
         p_H [Pa], also E' a / (4 R).
+
+    Examples
+    --------
+    >>> 1e-9 * peak_pressure(4.4e5, radius=6.5e-3, reduced_modulus=226e9)
+    1.56...
     """
     return np.asarray(np.sqrt(np.asarray(load) * reduced_modulus / (2.0 * math.pi * np.asarray(radius))))
 

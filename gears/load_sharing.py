@@ -92,6 +92,19 @@ def share_load(
     -----
     Differentiating g_i = 0 over the pairs in contact gives J dF/dD = 1 with J = bulk + diag(hertz' - s'), so
     the tangent is l^T J^-1 1.
+
+    Examples
+    --------
+    Two pairs on springs, the second 2 um away when the first touches:
+
+    >>> class NoHertz:
+    ...     def approach(self, force):
+    ...         return 0.0 * force
+    ...
+    ...     def slope(self, force):
+    ...         return 0.0 * force
+    >>> share_load(1e4, [[2e-9, 0.0], [0.0, 2e-9]], NoHertz(), gaps=[0.0, 2e-6]).forces
+    array([5500., 4500.])
     """
     stiff, clear = np.asarray(bulk, dtype=float), np.asarray(gaps, dtype=float)
     whole = np.asarray(force, dtype=float)
@@ -249,6 +262,12 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     ------
     LoadSharingError
         For negative stiffness, or positions where no pair carries.
+
+    Examples
+    --------
+    >>> independent_pairs(1e4, [[6e8, 4e8], [5e8, 0.0]]).forces
+    array([[ 6000.,  4000.],
+           [10000.,     0.]])
     """
     teeth = np.asarray(stiffness, dtype=float)
     films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)

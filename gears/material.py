@@ -31,6 +31,12 @@ class Material:
         nu [-].
     density : float
         Mass density [kg/m3].
+
+    Examples
+    --------
+    >>> polyamide = Material(youngs_modulus=3e9, poisson_ratio=0.4, density=1140.0)
+    >>> polyamide.shear_modulus / 1e9
+    1.0714285714285714
     """
 
     youngs_modulus: float  # E, Pa
@@ -72,5 +78,10 @@ def reduced_modulus(first: Material, second: Material) -> float:
     -------
     float
         E' [Pa].
+
+    Examples
+    --------
+    >>> reduced_modulus(STEEL, STEEL) / 1e9
+    226.37...
     """
     return 2.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Fault
+from base import Array, Fault, quantity, record
 from gears.errors import GeometryError
 from gears.pair import GearPair
 from gears.placement import mirrored, turned
@@ -19,29 +18,33 @@ _GRID = 33
 _ZOOMS = 9
 
 
-@dataclass(frozen=True)
+@record
 class MeshingCheck:
-    """What was found when the gears were rolled together.
+    """What was found when the gears were rolled together."""
 
-    Parameters
-    ----------
-    angle_deviation : float
-        Largest deviation of the wheel's angle from the constant ratio between A and E, over the wheel's turn
-        in that interval.
-    back_clearance : float
-        Smallest clearance of the unloaded flanks along the line of action over a mesh cycle [m].
-    tip_clearances : (float, float)
-        Smallest distance of the pinion's tip from the wheel's fillets and root circle, and of the wheel's tip
-        from the pinion's [m]; negative inside the material.
-    overlap : float
-        Deepest penetration of the outlines over a mesh cycle, in the direction of the circumference [m];
-        rounding where nothing interferes.
-    """
+    angle_deviation: float = quantity(
+        "1",
+        "largest deviation of the wheel's angle from the constant ratio between A and E, over the wheel's turn there",
+    )
+    back_clearance: float = quantity(
+        "m",
+        "smallest clearance of the unloaded flanks along the line of action over a mesh cycle",
+        shown="um",
+    )
+    tip_clearances: tuple[float, float] = quantity(
+        "m",
+        "smallest distance of each gear's tip from its mate's fillets and root circle, negative inside the material",
+        "gear",
+        shown="um",
+    )
+    overlap: float = quantity(
+        "m",
+        "deepest penetration of the outlines over a mesh cycle along the circumference, "
+        "rounding where nothing interferes",
+        shown="um",
+    )
 
-    angle_deviation: float
-    back_clearance: float  # m
-    tip_clearances: tuple[float, float]  # m
-    overlap: float  # m
+    headline = ("angle_deviation", "back_clearance", "overlap")
 
 
 def check_meshing(pair: GearPair, positions: int = 21) -> MeshingCheck:
@@ -63,6 +66,13 @@ def check_meshing(pair: GearPair, positions: int = 21) -> MeshingCheck:
     -------
     MeshingCheck
         Deviation of the transmitted angle, clearances, overlap.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> check_meshing(pair).angle_deviation < 1e-9
+    True
     """
     if positions < 2:
         raise GeometryError([Fault("positions", str(positions), "must be at least 2", "raise it")])
@@ -81,15 +91,13 @@ def check_meshing(pair: GearPair, positions: int = 21) -> MeshingCheck:
         angle_deviation=deviation,
         back_clearance=min(_back_clearance(pair, *angle) for angle in angles),
         tip_clearances=(
-            min(_tip_clearance(_seen_from_wheel(pair, first, *angle), second) for angle in angles),
-            min(_tip_clearance(_seen_from_pinion(pair, second, *angle), first) for angle in angles),
+            min(_tip_clearance(_seen_by_mate(pair, 0, *angle), second) for angle in angles),
+            min(_tip_clearance(_seen_by_mate(pair, 1, *angle), first) for angle in angles),
         ),
         overlap=max(
-            max(
-                _overlap(_seen_from_wheel(pair, first, *angle, whole=True), second),
-                _overlap(_seen_from_pinion(pair, second, *angle, whole=True), first),
-            )
+            _overlap(_seen_by_mate(pair, gear, *angle, whole=True), mate)
             for angle in angles
+            for gear, mate in enumerate((second, first))
         ),
     )
 
@@ -151,37 +159,28 @@ def _sides(profile: ToothProfile, whole: bool) -> Array:
     return np.stack([turned(both, tooth * profile.pitch_angle) for tooth in _NEIGHBOURS])
 
 
-def _seen_from_wheel(
-    pair: GearPair, profile: ToothProfile, pinion_angle: float, wheel_angle: float, whole: bool = False
+def _seen_by_mate(
+    pair: GearPair, gear: int, pinion_angle: float, wheel_angle: float, whole: bool = False
 ) -> Array:
-    """Teeth of the pinion in the frame of the wheel's tooth."""
-    points = turned(_sides(profile, whole), pinion_angle) - np.array([0.0, pair.working_centre_distance])
-    return turned(points, -wheel_angle - math.pi)
+    """Teeth of a gear, 0 the pinion, near the mesh, in the frame of a tooth of its mate."""
+    angles = pinion_angle, wheel_angle + math.pi
+    axis = np.array([0.0, (-1.0, 1.0)[gear] * pair.working_centre_distance])
+    points = turned(_sides(pair.teeth_profiles[gear], whole), angles[gear]) + axis
+    return turned(points, -angles[1 - gear])
 
 
-def _seen_from_pinion(
-    pair: GearPair, profile: ToothProfile, pinion_angle: float, wheel_angle: float, whole: bool = False
-) -> Array:
-    """Teeth of the wheel in the frame of the pinion's tooth."""
-    points = turned(_sides(profile, whole), wheel_angle + math.pi) + np.array(
-        [0.0, pair.working_centre_distance]
-    )
-    return turned(points, -pinion_angle)
-
-
-def _folded(points: Array, profile: ToothProfile) -> tuple[Array, Array]:
-    """Radius of points and polar angle from the centre line of the nearest tooth."""
+def _near(points: Array, profile: ToothProfile) -> tuple[Array, Array]:
+    """Radius of the points inside the tip circle, and polar angle from the centre line of the nearest tooth."""
     radius = np.hypot(points[..., 0], points[..., 1])
     angle = np.arctan2(points[..., 0], points[..., 1])
     pitch = profile.pitch_angle
-    return radius, np.abs(angle - pitch * np.round(angle / pitch))
+    near = radius < profile.tip_radius
+    return radius[near], np.abs(angle - pitch * np.round(angle / pitch))[near]
 
 
 def _overlap(points: Array, profile: ToothProfile) -> float:
     """Deepest penetration of points into a gear [m]; negative if all stand clear, -inf if none is near."""
-    radius, angle = _folded(points, profile)
-    near = radius < profile.tip_radius
-    radius, angle = radius[near], angle[near]
+    radius, angle = _near(points, profile)
     if radius.size == 0:
         return -math.inf
     along = radius * (profile.boundary_angle(radius) - angle)
@@ -190,9 +189,7 @@ def _overlap(points: Array, profile: ToothProfile) -> float:
 
 def _tip_clearance(points: Array, profile: ToothProfile) -> float:
     """Signed distance of points from the fillets and the root circle of a gear [m]."""
-    radius, angle = _folded(points, profile)
-    near = radius < profile.tip_radius
-    radius, angle = radius[near], angle[near]
+    radius, angle = _near(points, profile)
     if radius.size == 0:
         return math.inf
     place = radius[:, None] * np.stack((np.sin(angle), np.cos(angle)), axis=-1)

@@ -69,6 +69,16 @@ class GearPair:
     -----
     GeometryWarning
         Top land thinner than 0.2 modules; rim thinner than half the tooth depth.
+
+    Examples
+    --------
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> pair
+    GearPair(36:40 teeth, module 2 mm, face width 40 mm, centre distance 76 mm, contact ratio 1.703)
+    >>> 1e3 * pair.base_pitch
+    5.904...
+    >>> 1e6 * pair.with_backlash(50e-6).backlash
+    50.0...
     """
 
     pinion: Gear

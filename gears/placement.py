@@ -3,44 +3,34 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, quantity, record
 
 if TYPE_CHECKING:
     from gears.pair import GearPair
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Placement:
     """A mesh position in the common frame.
 
     The pinion's axis is the origin, the wheel's axis stands above it at (0, a). The pinion drives
     anticlockwise, so on **both** gears the loaded flank is the left-hand one of the tooth's own frame, the
-    mirror image (x -> -x) of the right-hand flank that `ToothProfile` gives. Angles turn anticlockwise.
-
-    Parameters
-    ----------
-    pinion_angle, wheel_angle : float
-        Turn of a tooth's own frame (centre line +y) into the common frame [rad], for the tooth in contact;
-        the next tooth of the pinion to come into contact has pinion_angle - 2 pi / z1, that of the wheel
-        wheel_angle + 2 pi / z2.
-    wheel_centre : (2,) array
-        The wheel's axis [m].
-    contact_point : (2,) array
-        Point of contact [m].
-    normal : (2,) array
-        Unit normal of the contact, outward from the pinion, along the force on the wheel.
+    mirror image (x -> -x) of the right-hand flank that `ToothProfile` gives. Angles turn anticlockwise; they
+    bring a tooth's own frame (centre line +y) into the common frame, for the tooth in contact: the next tooth
+    of the pinion to come into contact has pinion_angle - 2 pi / z1, that of the wheel wheel_angle + 2 pi / z2.
     """
 
-    pinion_angle: float  # rad
-    wheel_angle: float  # rad
-    wheel_centre: Array  # m
-    contact_point: Array  # m
-    normal: Array
+    pinion_angle: float = quantity("rad", "turn of the pinion's tooth", shown="deg")
+    wheel_angle: float = quantity("rad", "turn of the wheel's tooth", shown="deg")
+    wheel_centre: Array = quantity("m", "the wheel's axis", "coordinate", shown="mm")
+    contact_point: Array = quantity("m", "point of contact", "coordinate", shown="mm")
+    normal: Array = quantity(
+        "1", "unit normal of the contact, outward from the pinion, along the force on the wheel", "coordinate"
+    )
 
     def pinion(self, points: Array) -> Array:
         """Points (n, 2) of the pinion's tooth frame in the common frame [m]."""

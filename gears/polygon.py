@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from base import Array, Fault
+from base import Array, Faults
 from gears.errors import GeometryError
 from gears.placement import mirrored, turned
 from gears.profile import ToothProfile
@@ -72,16 +72,22 @@ def outline(
     ------
     GeometryError
         If `teeth` is not between 1 and the gear's, or a part has fewer than two points.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> outline(pair.teeth_profiles[0], teeth=1, points_per_part=8).shape
+    (66, 2)
     """
     count = profile.teeth if teeth is None else teeth
-    faults = []
+    found = Faults()
     if not 1 <= count <= profile.teeth:
         allowed = f"must be at least 1 and at most {profile.teeth}, or None"
-        faults.append(Fault("teeth", str(count), allowed, "draw teeth that the gear has"))
+        found.add("teeth", str(count), allowed, "draw teeth that the gear has")
     if points_per_part < 2:
-        faults.append(Fault("points_per_part", str(points_per_part), "must be at least 2", "raise it"))
-    if faults:
-        raise GeometryError(faults)
+        found.add("points_per_part", str(points_per_part), "must be at least 2", "raise it")
+    found.raise_if_any(GeometryError)
     right = tooth_side(profile, points_per_part, relief_scale)
     # the middle of the land and one of the two gap middles belong to both sides or to the next tooth
     tooth = np.concatenate((right, mirrored(right[-2:0:-1])))

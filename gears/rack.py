@@ -38,6 +38,11 @@ class BasicRack:
         Fillet radius of the profile [modules].
     alpha : float
         Pressure angle [rad].
+
+    Examples
+    --------
+    >>> BasicRack(h_aP=1.0, h_fP=1.4, rho_fP=0.39).full_radius
+    False
     """
 
     h_aP: float = 1.0  # addendum, modules

@@ -13,6 +13,8 @@ PACKAGES: tuple[str, ...] = (
     "base",
     "dynamics.inverse",
     "ehl",
+    "gears",
+    "gears.closed_form",
 )
 """Packages whose public functions all have an example."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array
-from gears.closed_form.contact import constant_contact_compliances, contact_compliances
+from gears.closed_form.contact import constant_contact_compliance, contact_compliances
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
 from gears.closed_form.sainsot import sainsot_body
@@ -87,16 +87,21 @@ def potential_energy(pair: GearPair, path: PathOfContact, force: float | None = 
     ----------
     D. C. H. Yang, Z. S. Sun, A rotary model for spur gear dynamics, Journal of Mechanisms, Transmissions, and
     Automation in Design 107 (1985) 529-535.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> potential_energy(pair, pair.path_of_contact(9))
+    ClosedForm(potential energy, 9 points, stiffness ... N/m, model error unknown)
     """
     teeth = loaded_teeth(pair, path)
-    first, second = (
-        _tooth_parts(tooth, pair.face_width, name)
-        for name, tooth in zip(("the pinion", "the wheel"), teeth, strict=True)
-    )
-    parts = {name: first[name] + second[name] for name in first}
     if force is None:
-        parts["contact"] = np.full_like(parts["body"], sum(constant_contact_compliances(pair)))
+        flanks = tuple(constant_contact_compliance(tooth, pair.face_width) for tooth in teeth)
     else:
         flanks = contact_compliances(pair, path, force, teeth)
-        parts["contact"] = flanks[0] + flanks[1]
-    return ClosedForm("potential energy", parts)
+    parts = (
+        _tooth_parts(tooth, pair.face_width, name) | {"contact": flank}
+        for name, tooth, flank in zip(("the pinion", "the wheel"), teeth, flanks, strict=True)
+    )
+    return ClosedForm.of_both("potential energy", *parts)

@@ -48,6 +48,13 @@ def hertz(pair: GearPair, path: PathOfContact, force: float) -> ClosedForm:
     -----
     RangeWarning
         Where the contact is wider than a quarter of the depth.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> hertz(pair, pair.path_of_contact(3), force=10e3)
+    ClosedForm(Hertz, 3 points, stiffness ... N/m, model error unknown)
     """
     first, second = contact_compliances(pair, path, force, loaded_teeth(pair, path))
     return ClosedForm("Hertz", {"pinion": first, "wheel": second})
@@ -76,10 +83,9 @@ def contact_compliances(
     return first, second
 
 
-def constant_contact_compliances(pair: GearPair) -> tuple[float, float]:
-    """Compliances of the two flanks independent of the force, 2 (1 - nu^2) / (pi E b) each [m/N].
+def constant_contact_compliance(tooth: LoadedTooth, face_width: float) -> Array:
+    """Compliance of a flank independent of the force, 2 (1 - nu^2) / (pi E b), (n,) [m/N].
 
     Half of 4 (1 - nu^2) / (pi E b), which Yang and Sun give for a pair of equal materials.
     """
-    first, second = (2.0 / (math.pi * m.plane_strain_modulus * pair.face_width) for m in pair.materials)
-    return first, second
+    return np.full_like(tooth.rho, 2.0 / (math.pi * tooth.material.plane_strain_modulus * face_width))

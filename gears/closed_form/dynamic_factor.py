@@ -3,44 +3,40 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Fault
+from base import Array, Faults, Limit, quantity, record
+from base.units import factor
 from gears.closed_form.tooth_stiffness import iso6336
 from gears.errors import GeometryError
+from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
 
-_NEWTON_PER_MM_UM = 1e9  # Pa
+_AMOUNT = Limit(0.0, unit="m", remedy="give its amount in metres")
+_LIMITS = {
+    "force": NORMAL_FORCE,
+    "reduced_mass": Limit(0.0, unit="kg", remedy="give the mass in kilograms", low_open=True),
+    "pitch_deviation": _AMOUNT,
+    "profile_deviation": _AMOUNT,
+    "relief": _AMOUNT,
+}
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Iso6336DynamicFactor:
-    """Dynamic factor over speed after ISO 6336-1, method B.
+    """Dynamic factor over speed after ISO 6336-1, method B."""
 
-    Parameters
-    ----------
-    K_v : ndarray, shape of the speeds
-        Dynamic factor.
-    N : ndarray, shape of the speeds
-        Resonance ratio, speed over resonance speed.
-    N_S : float
-        End of the subcritical range.
-    resonance_speed : float
-        Pinion speed at N = 1 [rad/s].
-    B_p, B_f, B_k : float
-        Effects of pitch deviation, profile deviation and tip relief, over the deflection.
-    """
+    K_v: Array = quantity("1", "dynamic factor", "speed")
+    N: Array = quantity("1", "resonance ratio, speed over resonance speed", "speed")
+    N_S: float = quantity("1", "end of the subcritical range")
+    resonance_speed: float = quantity("rad/s", "pinion speed at N = 1", shown="rpm")
+    B_p: float = quantity("1", "effect of the pitch deviation, over the deflection")
+    B_f: float = quantity("1", "effect of the profile deviation, over the deflection")
+    B_k: float = quantity("1", "effect of the tip relief, over the deflection")
 
-    K_v: npt.NDArray[np.float64]
-    N: npt.NDArray[np.float64]
-    N_S: float
-    resonance_speed: float
-    B_p: float
-    B_f: float
-    B_k: float
+    headline = ("resonance_speed", "N_S", "B_p", "B_f", "B_k")
 
 
 def iso6336_dynamic(
@@ -87,35 +83,32 @@ def iso6336_dynamic(
     Notes
     -----
     The constants C_v1 to C_v7 were checked against two public programs that agree, not against the standard's text.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> factor = iso6336_dynamic(pair, force=10e3, reduced_mass=0.38, speed=[100.0, 200.0], relief=10e-6)
+    >>> factor.K_v
+    array([..., ...])
     """
     omega = np.asarray(speed, dtype=np.float64)
-    faults = [
-        Fault(name, f"{value:g}", "must be a finite number, more than 0", "Check the units")
-        for name, value in (("force", force), ("reduced_mass", reduced_mass))
-        if not (math.isfinite(value) and value > 0.0)
-    ]
-    faults += [
-        Fault(name, f"{value:g}", "must be finite and at least 0", "Give its amount")
-        for name, value in (
-            ("pitch_deviation", pitch_deviation), ("profile_deviation", profile_deviation), ("relief", relief),
-        )
-        if not (math.isfinite(value) and value >= 0.0)
-    ]  # fmt: skip
+    found = Faults()
+    given = (force, reduced_mass, pitch_deviation, profile_deviation, relief)
+    for (name, limit), value in zip(_LIMITS.items(), given, strict=True):
+        found.number(name, value, limit)
     if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
-        faults.append(Fault("speed", "an entry", "must be finite and at least 0", "Give rad/s"))
+        found.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
     ratio = pair.contact_ratio
     if not ratio > 1.0:
-        faults.append(
-            Fault("pair", f"{ratio:g}", "must have a contact ratio above 1", "Method B asks for it")
-        )
-    if faults:
-        raise GeometryError(faults)
+        found.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
+    found.raise_if_any(GeometryError)
     stiffness = iso6336(pair, force)
     tangential = force * math.cos(pair.rack.alpha) / pair.face_width  # N/m
     load = tangential / 1e3  # N/mm
     limit = 0.85 if load >= 100.0 else 0.5 + 0.35 * math.sqrt(load / 100.0)
     resonance = math.sqrt(stiffness.mesh_stiffness / reduced_mass) / pair.pinion.teeth
-    prime = stiffness.c_prime * _NEWTON_PER_MM_UM
+    prime = stiffness.c_prime * factor("N/(mm um)")
     b_p, b_f = prime * pitch_deviation / tangential, prime * profile_deviation / tangential
     b_k = abs(1.0 - prime * relief / tangential)
     c1, c2, c3, c4, c5, c6, c7 = _constants(ratio)

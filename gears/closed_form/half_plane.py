@@ -79,14 +79,17 @@ def weber_banaschek(pair: GearPair, path: PathOfContact, force: float) -> Closed
     -----
     RangeWarning
         Where the contact is wider than a quarter of the depth of the Hertz term.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> weber_banaschek(pair, pair.path_of_contact(9), force=10e3)
+    ClosedForm(Weber-Banaschek, 9 points, stiffness ... N/m, model error unknown)
     """
-    teeth = loaded_teeth(pair, path)
-    flanks = contact_compliances(pair, path, force, teeth)
-    return ClosedForm(
-        "Weber-Banaschek",
-        {
-            "tooth": _tooth(teeth[0], pair.face_width) + _tooth(teeth[1], pair.face_width),
-            "body": _body(teeth[0], pair.face_width) + _body(teeth[1], pair.face_width),
-            "contact": flanks[0] + flanks[1],
-        },
+    teeth, b = loaded_teeth(pair, path), pair.face_width
+    parts = (
+        {"tooth": _tooth(tooth, b), "body": _body(tooth, b), "contact": flank}
+        for tooth, flank in zip(teeth, contact_compliances(pair, path, force, teeth), strict=True)
     )
+    return ClosedForm.of_both("Weber-Banaschek", *parts)

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import DTypeLike
 
-from base import Array
+from base import Array, described, record
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class ClosedForm:
     """Single-pair deflection by a closed form, at each point of a path of contact.
 
     ``numpy.asarray(result)`` is the single-pair stiffness.
 
-    Parameters
+    Attributes
     ----------
     model : str
         Name of the formula.
@@ -29,18 +28,25 @@ class ClosedForm:
     model: str
     parts: Mapping[str, Array]
 
+    @classmethod
+    def of_both(cls, model: str, pinion: Mapping[str, Array], wheel: Mapping[str, Array]) -> ClosedForm:
+        """Of the compliances of either gear, the same parts of each [m/N]."""
+        return cls(model, {name: pinion[name] + wheel[name] for name in pinion})
+
     def __post_init__(self) -> None:
         """Keep the parts from being replaced."""
         object.__setattr__(self, "parts", MappingProxyType(dict(self.parts)))
 
     @property
+    @described("m/N", "point")
     def compliance(self) -> Array:
-        """Sum of the parts, (n,) [m/N]."""
+        """Sum of the parts' compliances."""
         return np.asarray(sum(self.parts.values()))
 
     @property
+    @described("N/m", "point")
     def stiffness(self) -> Array:
-        """Secant stiffness of the single pair, (n,) [N/m]."""
+        """Secant stiffness of the single pair."""
         return np.asarray(1.0 / self.compliance)
 
     @property
@@ -56,8 +62,8 @@ class ClosedForm:
         """Pickle by the plain mapping."""
         return ClosedForm, (self.model, dict(self.parts))
 
-    def _repr_html_(self) -> str:
-        """Stiffness and the shares of the parts, for notebooks."""
-        from gears.notebook import closed_form_html
-
-        return closed_form_html(self)
+    def __repr__(self) -> str:
+        """One line: the formula, how many points, the range of the stiffness."""
+        stiffness = np.atleast_1d(self.stiffness)
+        ends = f"{stiffness.min():.4g} to {stiffness.max():.4g}"
+        return f"ClosedForm({self.model}, {stiffness.size} points, stiffness {ends} N/m, model error unknown)"

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
 
-from base import Fault, Faults, RangeWarning
+from base import Fault, Faults, RangeWarning, described, quantity, record
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.involute import involute_function
@@ -20,62 +19,41 @@ _SLOPE = math.pi / 3.0
 _ITERATIONS = 60
 
 
-@dataclass(frozen=True)
+@record
 class RootSection:
-    """Critical section of one gear and its factors after ISO 6336-3, lengths in modules.
+    """Critical section of one gear and its factors after ISO 6336-3, lengths in modules."""
 
-    Parameters
-    ----------
-    theta : float
-        Auxiliary angle of the iteration [rad].
-    s_Fn : float
-        Chord between the points where tangents at 30 degrees touch the fillets [modules].
-    rho_F : float
-        Curvature radius of the fillet there [modules].
-    h_Fe : float
-        Lever of the load [modules].
-    alpha_Fen : float
-        Angle of the load to the normal of the tooth's centre line [rad].
-    Y_F : float
-        Form factor.
-    Y_S : float
-        Stress-correction factor.
-    """
+    theta: float = quantity("rad", "auxiliary angle of the iteration")
+    s_Fn: float = quantity("1", "chord between the points where tangents at 30 degrees touch the fillets")
+    rho_F: float = quantity("1", "curvature radius of the fillet there")
+    h_Fe: float = quantity("1", "lever of the load")
+    alpha_Fen: float = quantity("rad", "angle of the load to the normal of the tooth's centre line")
+    Y_F: float = quantity("1", "form factor")
+    Y_S: float = quantity("1", "stress-correction factor")
 
-    theta: float  # rad
-    s_Fn: float  # modules
-    rho_F: float  # modules
-    h_Fe: float  # modules
-    alpha_Fen: float  # rad
-    Y_F: float
-    Y_S: float
+    headline = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F")
 
     @property
+    @described("1")
     def q_s(self) -> float:
         """Notch parameter s_Fn / (2 rho_F)."""
         return self.s_Fn / (2.0 * self.rho_F)
 
 
-@dataclass(frozen=True)
+@record
 class Iso6336RootStress:
-    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3.
-
-    Parameters
-    ----------
-    sections : (RootSection, RootSection)
-        Of pinion and wheel.
-    Y_B : (float, float)
-        Rim-thickness factors.
-    stresses : (float, float)
-        sigma_F0 [Pa].
-    load_at : {"D", "tip"}
-        Where the load was taken to act.
-    """
+    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3."""
 
     sections: tuple[RootSection, RootSection]
-    Y_B: tuple[float, float]
-    stresses: tuple[float, float]
-    load_at: str
+    Y_B: tuple[float, float] = quantity("1", "rim-thickness factors", "gear")
+    stresses: tuple[float, float] = quantity("Pa", "tooth-root stress sigma_F0", "gear", shown="MPa")
+    load_at: str = quantity("", "where the load was taken to act, D or tip")
+
+    def __repr__(self) -> str:
+        """One line: stresses and rims of both gears."""
+        first, second = (1e-6 * stress for stress in self.stresses)
+        rims = f"Y_B {self.Y_B[0]:.4g} and {self.Y_B[1]:.4g}"
+        return f"Iso6336RootStress({first:.5g} and {second:.5g} MPa, load at {self.load_at}, {rims})"
 
     @property
     def error(self) -> None:
@@ -132,6 +110,13 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     ----------
     ISO 6336-3:2006, Calculation of load capacity of spur and helical gears, part 3: Calculation of tooth
     bending strength, clauses 5 to 9.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> iso6336_3(pair, force=10e3)
+    Iso6336RootStress(... and ... MPa, load at D, Y_B 1 and 1)
     """
     found = Faults()
     found.number("force", force, NORMAL_FORCE)

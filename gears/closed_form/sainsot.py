@@ -62,6 +62,11 @@ def sainsot_body(
     ----------
     P. Sainsot, P. Velex, O. Duverger, Contribution of gear body to tooth deflections - a new bidimensional
     analytical formula, Journal of Mechanical Design 126 (2004) 748-752, doi:10.1115/1.1758252.
+
+    Examples
+    --------
+    >>> sainsot_body(33.5e-3, 16.75e-3, foot_angle=0.06, load_angle=0.35, height=3e-3)
+    array(...)
     """
     h = root_radius / bore_radius
     for symbol, value, (low, high) in (("h", h, RADIUS_RATIO), ("theta_f", foot_angle, FOOT_ANGLE)):
@@ -93,5 +98,10 @@ def ring_wind_up(root_radius: float, bore_radius: float, base_radius: float, she
     -------
     float
         delta b / F [m^2/N].
+
+    Examples
+    --------
+    >>> ring_wind_up(33.5e-3, 16.75e-3, 33.83e-3, shear_modulus=79.2e9)
+    3.0739768...e-12
     """
     return base_radius**2 / (4.0 * math.pi * shear_modulus) * (1.0 / bore_radius**2 - 1.0 / root_radius**2)

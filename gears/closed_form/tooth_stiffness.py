@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
 
-from base import RangeWarning
+from base import RangeWarning, described, quantity, record
+from base.units import factor
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
@@ -18,45 +18,32 @@ LIGHT_LOAD = 100.0
 """Load per face width [N/mm] below which the stiffness falls with the fourth root of the load."""
 
 _STEEL = 206e9  # Pa, for which the polynomial holds
-_NEWTON_PER_MM_UM = 1e9  # Pa
 
 
-@dataclass(frozen=True)
+@record
 class Iso6336Stiffness:
-    """Tooth stiffness per face width after ISO 6336-1.
+    """Tooth stiffness per face width after ISO 6336-1."""
 
-    Parameters
-    ----------
-    c_th : float
-        Theoretical single stiffness c'_th [N/(mm um)].
-    c_prime : float
-        Single stiffness c', the largest of one pair of teeth [N/(mm um)].
-    c_gamma : float
-        Mesh stiffness c_gamma_alpha, mean over the mesh cycle [N/(mm um)].
-    C_R : float
-        Gear blank factor, 1 for a solid disc.
-    C_B : float
-        Basic rack factor.
-    face_width : float
-        b [m].
-    """
+    c_th: float = quantity("N/(mm um)", "theoretical single stiffness c'_th")
+    c_prime: float = quantity("N/(mm um)", "single stiffness c', the largest of one pair of teeth")
+    c_gamma: float = quantity("N/(mm um)", "mesh stiffness c_gamma_alpha, mean over the mesh cycle")
+    C_R: float = quantity("1", "gear blank factor, 1 for a solid disc")
+    C_B: float = quantity("1", "basic rack factor")
+    face_width: float = quantity("m", "face width b", shown="mm")
 
-    c_th: float
-    c_prime: float
-    c_gamma: float
-    C_R: float
-    C_B: float
-    face_width: float
+    headline = ("c_th", "c_prime", "c_gamma", "C_R", "C_B")
 
     @property
+    @described("N/m")
     def single_stiffness(self) -> float:
-        """Single stiffness c' b [N/m]."""
-        return self.c_prime * _NEWTON_PER_MM_UM * self.face_width
+        """Single stiffness c' b."""
+        return self.c_prime * factor("N/(mm um)") * self.face_width
 
     @property
+    @described("N/m")
     def mesh_stiffness(self) -> float:
-        """Mesh stiffness c_gamma b [N/m]."""
-        return self.c_gamma * _NEWTON_PER_MM_UM * self.face_width
+        """Mesh stiffness c_gamma b."""
+        return self.c_gamma * factor("N/(mm um)") * self.face_width
 
 
 def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
@@ -88,6 +75,13 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     -----
     RangeWarning
         Outside x1 >= x2, -0.5 <= x1 + x2 <= 2 and 1.2 <= epsilon_alpha <= 1.9.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> round(iso6336(pair).c_gamma, 2)
+    20.54
     """
     first, second = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift))
     z1, z2, x1, x2 = first.teeth, second.teeth, first.profile_shift, second.profile_shift

@@ -58,13 +58,13 @@ def test_the_check_sees_a_tip_in_the_fillet(article_pair):
     """Teeth moved together by more than the clearance overlap."""
     import gears.meshing as meshing
 
-    first, second = article_pair.teeth_profiles
+    first = article_pair.teeth_profiles[0]
     close = article_pair.placement(article_pair.points.C)
-    seen = meshing._seen_from_pinion(article_pair, second, close.pinion_angle, close.wheel_angle - math.pi)
+    seen = meshing._seen_by_mate(article_pair, 1, close.pinion_angle, close.wheel_angle - math.pi)
     assert meshing._tip_clearance(seen, first) > 0
     assert meshing._tip_clearance(seen - np.array([0.0, 0.6e-3]), first) < 0
-    whole = meshing._seen_from_pinion(
-        article_pair, second, close.pinion_angle, close.wheel_angle - math.pi, whole=True
+    whole = meshing._seen_by_mate(
+        article_pair, 1, close.pinion_angle, close.wheel_angle - math.pi, whole=True
     )
     assert meshing._overlap(whole, first) < 1e-12
     assert meshing._overlap(whole - np.array([0.0, 0.1e-3]), first) > 1e-5
