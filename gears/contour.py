@@ -152,7 +152,7 @@ def contour(
 def _check(profile: ToothProfile, teeth: int | None, tolerance: float) -> None:
     faults = []
     if teeth is not None and not 1 <= teeth <= profile.teeth:
-        allowed = f"must be at least 1 and at most {profile.teeth}, or None"
+        allowed = f"must be 1 to {profile.teeth}, or None"
         faults.append(Fault("teeth", str(teeth), allowed, "take teeth that the gear has"))
     coarsest = 0.1 * profile.module
     if not FINEST <= tolerance <= coarsest:

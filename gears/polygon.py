@@ -83,7 +83,7 @@ def outline(
     count = profile.teeth if teeth is None else teeth
     found = Faults()
     if not 1 <= count <= profile.teeth:
-        allowed = f"must be at least 1 and at most {profile.teeth}, or None"
+        allowed = f"must be 1 to {profile.teeth}, or None"
         found.add("teeth", str(count), allowed, "draw teeth that the gear has")
     if points_per_part < 2:
         found.add("points_per_part", str(points_per_part), "must be at least 2", "raise it")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,30 +35,22 @@ def write_drawing(path: Path, contour: Contour, remarks: tuple[str, ...] = ()) -
     remarks : tuple of str
         Comments at the head of the file.
     """
+    from ezdxf.addons.r12writer import r12writer
+
     vertices = [
-        (point, segment.bulge)
+        (1e3 * x, 1e3 * y, segment.bulge)
         for segment in contour.segments
-        for point in (segment.points[:1] if segment.angle else segment.points[:-1])
+        for x, y in (segment.points[:1] if segment.angle else segment.points[:-1]).tolist()
     ]
     said = ("millimetres", f"chord error at most {1e6 * contour.tolerance:g} um, arcs exact", *remarks)
-    groups: list[tuple[int, str]] = [(999, _ascii(text)) for text in said]
-    groups += [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (0, "ENDSEC")]
-    groups += [(0, "SECTION"), (2, "ENTITIES")]
-    groups += [(0, "POLYLINE"), (8, "CONTOUR"), (66, "1"), *_at(0.0, 0.0), (70, "1")]
-    for (x, y), bulge in vertices:
-        groups += [(0, "VERTEX"), (8, "CONTOUR"), *_at(1e3 * x, 1e3 * y)]
-        if bulge:
-            groups.append((42, f"{bulge:.15g}"))
-    groups += [(0, "SEQEND"), (8, "CONTOUR")]
-    if contour.bore_radius is not None:
-        groups += [(0, "CIRCLE"), (8, "BORE"), *_at(0.0, 0.0), (40, f"{1e3 * contour.bore_radius:.12g}")]
-    groups += [(0, "ENDSEC"), (0, "EOF")]
-    write_text(path, "".join(f"{code:>3}\n{value}\n" for code, value in groups))
+    text = StringIO()
+    text.writelines(f"999\n{_ascii(remark)}\n" for remark in said)
+    with r12writer(text, fixed_tables=True) as drawing:
+        drawing.add_polyline_2d(vertices, format="xyb", closed=True, layer="CONTOUR")
+        if contour.bore_radius is not None:
+            drawing.add_circle((0.0, 0.0), 1e3 * contour.bore_radius, layer="BORE")
+    write_text(path, text.getvalue())
     return len(vertices)
-
-
-def _at(x: float, y: float) -> tuple[tuple[int, str], ...]:
-    return (10, f"{x:.12f}"), (20, f"{y:.12f}"), (30, "0.0")
 
 
 def _ascii(text: str) -> str:

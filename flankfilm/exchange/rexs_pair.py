@@ -8,18 +8,14 @@ named by an ordered_reference of the gear up to 1.1 and by a manufacturing_step 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from base import Fault, InputError, shorten
+from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.draft import OPEN, Draft, GearDraft, MaterialDraft, RackDraft
+from flankfilm.exchange.rexs_attributes import Attribute
 from flankfilm.exchange.rexs_file import Component, Model, Relation
-
-LENGTH = {"mm": 1.0, "mum": 1e-3}  # mm
-ANGLE = {"deg": 1.0, "°": 1.0, "rad": 180.0 / math.pi}  # deg
-PURE = {"": 1.0, "none": 1.0}
-MODULUS = {"N/mm^2": 1e-3, "MPa": 1e-3}  # GPa
-DENSITY = {"kg/dm^3": 1e3}  # kg/m3
 
 SAME = 1e-9
 """Relative difference within which two numbers of a file are one number."""
@@ -108,9 +104,9 @@ class _StageReader:
             return Draft("", self.source, GearDraft(""), GearDraft(""), RackDraft())
         for gear in gears:
             self._refuse_helical(gear)
-        module = self._common("normal_module", LENGTH, gears)
+        module = self._common(rexs.MODULE, gears)
         flanks = [self._flanks(gear) for gear in gears]
-        alpha = self._common("normal_pressure_angle", ANGLE, [f for pair in flanks for f in pair])
+        alpha = self._common(rexs.PRESSURE_ANGLE, [f for pair in flanks for f in pair])
         rack = self._rack(gears, flanks, module, alpha)
         first, second = (self._gear(g, f, module, rack) for g, f in zip(gears, flanks, strict=True))
         self._modifications(gears, flanks)
@@ -122,32 +118,34 @@ class _StageReader:
             rack=rack,
             module_mm=module,
             face_width_mm=self._face_width(stage, gears),
-            centre_distance_mm=self._number(stage, "center_distance", LENGTH),
+            centre_distance_mm=self._number(stage, rexs.CENTRE_DISTANCE),
             materials=self._materials(gears),
             notes=self.notes,
         )
 
-    def _number(self, component: Component, name: str, units: Mapping[str, float]) -> float | None:
+    def _number(self, component: Component, attribute: Attribute) -> float | None:
         """Number of an attribute in the scene's unit, or None where the component lacks it."""
-        if name not in component.attributes:
+        if attribute.name not in component.attributes:
             return None
-        text, unit = component.attributes[name]
-        scale = units.get(unit.replace(" ", ""))
+        text, unit = component.attributes[attribute.name]
+        scale = attribute.unit.scales.get(unit.replace(" ", ""))
         if scale is None:
-            known = " or ".join(u for u in units if u)
-            self._refuse(component, name, f"{text} {unit}", f"must be in {known}")
+            self._refuse(component, attribute, f"{text} {unit}", f"must be in {attribute.unit}")
             return None
         try:
             value = float(text)
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            self._refuse(component, name, text, "must be a finite number")
+            self._refuse(component, attribute, text, "must be a finite number")
             return None
         return float(f"{value * scale:.12g}") if scale != 1.0 else value
 
-    def _refuse(self, component: Component, name: str, value: str, told: str, remedy: str = "") -> None:
-        self.faults.append(Fault(f"{self.source}: {component}: {name}", shorten(value), told, remedy))
+    def _refuse(
+        self, component: Component, attribute: Attribute, value: str, allowed: str, remedy: str = ""
+    ) -> None:
+        where = f"{self.source}: {component}: {attribute.name}"
+        self.faults.append(Fault(where, shorten(value), allowed, remedy))
 
     def _gears(self, stage: Component) -> tuple[Component, Component] | None:
         """Driving gear and driven gear; gear 1 drives where the file does not say."""
@@ -164,7 +162,7 @@ class _StageReader:
         drives = {}
         for relation in self.model.related("stage_gear_data", "stage", stage.id):
             data = self.model.components.get(relation.roles.get("stage_gear_data", ""))
-            told = data.attributes.get("is_driving_gear", ("", ""))[0] if data is not None else ""
+            told = data.attributes.get(rexs.IS_DRIVING.name, ("", ""))[0] if data is not None else ""
             drives[relation.roles.get("gear", "")] = told == "true"
         if drives.get(second.id) and not drives.get(first.id):
             return second, first
@@ -173,32 +171,24 @@ class _StageReader:
         return first, second
 
     def _refuse_helical(self, gear: Component) -> None:
-        helix = self._number(gear, "helix_angle_reference_diameter", ANGLE)
-        if helix is None and "helix_angle_reference_diameter" not in gear.attributes:
+        helix = self._number(gear, rexs.HELIX_ANGLE)
+        if helix is None and rexs.HELIX_ANGLE.name not in gear.attributes:
             self.notes.append(f"{gear} has no helix angle in the file: a spur gear.")
         elif helix:
-            self._refuse(
-                gear,
-                "helix_angle_reference_diameter",
-                f"{helix:g} deg",
-                "must be 0: helical gears are out of scope",
-            )
+            allowed = "must be 0: helical gears are out of scope"
+            self._refuse(gear, rexs.HELIX_ANGLE, f"{helix:g} deg", allowed)
 
-    def _common(
-        self, name: str, units: Mapping[str, float], components: list[Component] | tuple[Component, ...]
-    ) -> float:
+    def _common(self, attribute: Attribute, components: Sequence[Component]) -> float:
         """The one number that all components have that say it."""
-        said = {c.id: v for c in components if (v := self._number(c, name, units)) is not None}
+        said = {c.id: v for c in components if (v := self._number(c, attribute)) is not None}
         values = list(said.values())
         if not values:
             return OPEN
         for key, value in said.items():
             if abs(value - values[0]) > SAME * abs(values[0]):
-                component = self.model.components[key]
-                told = f"must be {values[0]:g}, as in the rest of the pair"
-                self._refuse(
-                    component, name, f"{value:g}", told, "Flanks and gears that differ are out of scope"
-                )
+                allowed = f"must be {values[0]:g}, as in the rest of the pair"
+                remedy = "Flanks and gears that differ are out of scope"
+                self._refuse(self.model.components[key], attribute, f"{value:g}", allowed, remedy)
         return values[0]
 
     def _flanks(self, gear: Component) -> list[Component]:
@@ -207,16 +197,16 @@ class _StageReader:
         return [self.model.components[i] for i in ids if i in self.model.components]
 
     def _gear(self, gear: Component, flanks: list[Component], module: float, rack: RackDraft) -> GearDraft:
-        teeth = self._number(gear, "number_of_teeth", PURE)
-        shift = self._common("addendum_modification_coefficient", PURE, flanks)
+        teeth = self._number(gear, rexs.TEETH)
+        shift = self._common(rexs.PROFILE_SHIFT, flanks)
         if math.isnan(shift):
-            shift = self._common("addendum_modification", LENGTH, flanks) / module
-        tip = self._number(gear, "tip_diameter", LENGTH)
+            shift = self._common(rexs.PROFILE_SHIFT_LENGTH, flanks) / module
+        tip = self._number(gear, rexs.TIP_DIAMETER)
         alteration = None
         if tip is not None and teeth is not None:
             exact = 0.5 * (tip / module - teeth) - rack.h_aP - shift
             alteration = 0.0 if abs(exact) < 1e-9 else float(f"{exact:.12g}")
-        root = self._number(gear, "root_diameter", LENGTH)
+        root = self._number(gear, rexs.ROOT_DIAMETER)
         if root is not None and teeth is not None:
             own = module * (teeth + 2.0 * (shift - rack.h_fP))
             if abs(own - root) > 0.01 * module:
@@ -224,14 +214,13 @@ class _StageReader:
                     f"{gear}: root_diameter {root:g} mm in the file, {own:g} mm by shift and tool: the file's "
                     "machining allowance or tooth thickness is not taken over."
                 )
-        for name in ("machining_allowance", "grinding_allowance"):
-            left = [v for f in flanks if (v := self._number(f, name, LENGTH))]
+        for allowance in rexs.ALLOWANCES:
+            left = [v for f in flanks if (v := self._number(f, allowance))]
             if left:
-                self.notes.append(
-                    f"{gear}: {name} {left[0]:g} mm is not taken over: the tooth is as finished."
-                )
-        bore = self._number(gear, "inner_diameter", LENGTH)
-        chamfer = self._common("tooth_tip_chamfer", LENGTH, flanks)
+                told = f"{left[0]:g} mm is not taken over: the tooth is as finished."
+                self.notes.append(f"{gear}: {allowance.name} {told}")
+        bore = self._number(gear, rexs.BORE_DIAMETER)
+        chamfer = self._common(rexs.TIP_CHAMFER, flanks)
         return GearDraft(
             name=str(gear),
             teeth=OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
@@ -249,20 +238,19 @@ class _StageReader:
         alpha: float,
     ) -> RackDraft:
         every = [f for pair in flanks for f in pair]
-        addendum = self._common("addendum_coefficient_basic_profile", PURE, every)
+        addendum = self._common(rexs.RACK_ADDENDUM, every)
         h_aP = 1.0 if math.isnan(addendum) else addendum  # with a tip diameter only h_aP + k counts
         tools = [self._tool(g, f) for g, f in zip(gears, flanks, strict=True)]
         racks = []
         for tool in tools:
             if tool is None:
                 return RackDraft(h_aP=h_aP, alpha_deg=alpha)
-            for name, units in _PROTUBERANCE:
-                if self._number(tool, name, units):
-                    value = tool.attributes[name][0]
-                    self._refuse(tool, name, value, "must be 0: protuberance is out of scope")
-            depth = self._in_modules(tool, _ADDENDUM, module)
-            radius = self._in_modules(tool, _TIP_RADIUS, module)
-            racks.append((depth, radius))
+            for attribute in rexs.PROTUBERANCE:
+                if self._number(tool, attribute):
+                    value = tool.attributes[attribute.name][0]
+                    self._refuse(tool, attribute, value, "must be 0: protuberance is out of scope")
+            shape = (rexs.TOOL_ADDENDUM, rexs.TOOL_TIP_RADIUS)
+            racks.append([self._in_modules(tool, attributes, module) for attributes in shape])
         first, second = racks
         for name, a, b in zip(("addendum", "tip radius"), first, second, strict=True):
             if abs(a - b) > SAME * abs(a):
@@ -270,14 +258,11 @@ class _StageReader:
                 self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", told))
         return RackDraft(h_aP=h_aP, h_fP=first[0], rho_fP=first[1], alpha_deg=alpha)
 
-    def _in_modules(
-        self, tool: Component, names: tuple[tuple[str, Mapping[str, float]], ...], module: float
-    ) -> float:
-        """First of an attribute's names that the tool has, in modules."""
-        for name, units in names:
-            value = self._number(tool, name, units)
-            if value is not None:
-                return value if units is PURE else float(f"{value / module:.12g}")
+    def _in_modules(self, tool: Component, attributes: tuple[Attribute, ...], module: float) -> float:
+        """First of several attributes with one meaning that the tool has, in modules."""
+        for attribute in attributes:
+            if (value := self._number(tool, attribute)) is not None:
+                return value if attribute.unit is rexs.PURE else float(f"{value / module:.12g}")
         return OPEN
 
     def _tool(self, gear: Component, flanks: list[Component]) -> Component | None:
@@ -297,10 +282,10 @@ class _StageReader:
         return None
 
     def _face_width(self, stage: Component, gears: tuple[Component, Component]) -> float:
-        common = self._number(stage, "common_face_width", LENGTH)
+        common = self._number(stage, rexs.COMMON_FACE_WIDTH)
         if common:
             return common
-        widths = [v for g in gears if (v := self._number(g, "face_width", LENGTH)) is not None]
+        widths = [v for g in gears if (v := self._number(g, rexs.FACE_WIDTH)) is not None]
         if len(widths) == 2 and widths[0] != widths[1]:
             told = " and ".join(f"{w:g}" for w in widths)
             self.notes.append(f"Face widths {told} mm: the smaller one carries and is taken.")
@@ -315,9 +300,9 @@ class _StageReader:
             for material in (self.model.components.get(i) for i in named):
                 if material is None or material.type != "material":
                     continue
-                modulus = self._number(material, "elastic_modulus", MODULUS)
-                ratio = self._number(material, "poisson_ratio", PURE)
-                density = self._number(material, "density", DENSITY)
+                modulus = self._number(material, rexs.YOUNGS_MODULUS)
+                ratio = self._number(material, rexs.POISSON_RATIO)
+                density = self._number(material, rexs.MATERIAL_DENSITY)
                 if modulus is not None and ratio is not None:
                     found.append(MaterialDraft(modulus, ratio, density))
                 break
@@ -332,22 +317,3 @@ class _StageReader:
             for component in (self.model.components.get(i) for i in sorted(members - own)):
                 if component is not None and component.type in MODIFICATIONS:
                     self.notes.append(f"{component} is not taken over; tip_relief is a key of the scene.")
-
-
-_PROTUBERANCE = (
-    ("protuberance_amount", LENGTH),
-    ("protuberance_amount_factor", PURE),
-    ("machining_allowance_din_3972", LENGTH),
-    ("relative_machining_allowance_din_3972", PURE),
-    ("machining_allowance_din_3972_1952", LENGTH),
-    ("relative_machining_allowance_din_3972_1952", PURE),
-)
-
-_ADDENDUM = (("addendum_coefficient_reference_profile", PURE), ("addendum_reference_profile", LENGTH))
-
-_TIP_RADIUS = (
-    ("tip_radius_factor", PURE),
-    ("tip_radius", LENGTH),
-    ("tip_corner_radius_factor_reference_profile", PURE),  # the names of version 2.0
-    ("tip_corner_radius_reference_profile", LENGTH),
-)

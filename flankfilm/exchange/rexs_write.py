@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
+from flankfilm.exchange import rexs_attributes as rexs
+from flankfilm.exchange.rexs_attributes import Attribute
+
 if TYPE_CHECKING:
-    from gears import GearPair, Material
+    from gears import GearPair
 
 VERSION = "1.4"
 
@@ -32,15 +36,15 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
     stage = writer.component(
         "cylindrical_stage",
         title,
-        center_distance=(1e3 * pair.working_centre_distance, "mm"),
-        common_face_width=_mm(pair.face_width),
+        {
+            rexs.CENTRE_DISTANCE: 1e3 * pair.working_centre_distance,
+            rexs.COMMON_FACE_WIDTH: 1e3 * pair.face_width,
+        },
     )
-    gears = []
-    for index, name in enumerate(("Pinion", "Wheel")):
-        gears.append(writer.gear(pair, index, name))
+    gears = [writer.gear(pair, index, name) for index, name in enumerate(("Pinion", "Wheel"))]
     writer.relation("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
     for gear, drives in zip(gears, ("true", "false"), strict=True):
-        data = writer.component("cylindrical_stage_gear_data", "", is_driving_gear=(drives, "none"))
+        data = writer.component("cylindrical_stage_gear_data", "", {rexs.IS_DRIVING: drives})
         writer.relation("stage_gear_data", stage=stage, gear=gear, stage_gear_data=data)
     return writer.text(), _left_out(pair)
 
@@ -72,16 +76,15 @@ class _Writer:
         self._components = ET.SubElement(self._root, "components")
         self._kinds: dict[str, str] = {}
 
-    def component(self, kind: str, name: str, **attributes: tuple[float | str, str]) -> str:
-        """Add a component with attributes (value, unit); return its id."""
+    def component(self, kind: str, name: str, values: Mapping[Attribute, float | str]) -> str:
+        """Add a component with values of attributes in the scene's units; return its id."""
         key = str(len(self._kinds) + 1)
         self._kinds[key] = kind
-        element = ET.SubElement(
-            self._components, "component", {"id": key, "type": kind, "name": _printable(name)}
-        )
-        for attribute, (value, unit) in attributes.items():
-            own = ET.SubElement(element, "attribute", {"id": attribute, "unit": unit})
-            own.text = value if isinstance(value, str) else repr(float(f"{value:.14g}"))
+        marks = {"id": key, "type": kind, "name": _printable(name)}
+        element = ET.SubElement(self._components, "component", marks)
+        for attribute, value in values.items():
+            marks = {"id": attribute.name, "unit": attribute.unit.written}
+            ET.SubElement(element, "attribute", marks).text = attribute.text(value)
         return key
 
     def relation(self, kind: str, order: int | None = None, **roles: str) -> None:
@@ -97,66 +100,56 @@ class _Writer:
         """Add one gear with its flanks, its tool and its material."""
         gear = (pair.pinion, pair.wheel)[index]
         profile = pair.teeth_profiles[index]
+        rack = {rexs.MODULE: 1e3 * pair.module, rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha)}
         key = self.component(
             "cylindrical_gear",
             name,
-            number_of_teeth=(str(profile.teeth), "none"),
-            normal_module=_mm(pair.module),
-            helix_angle_reference_diameter=(0.0, "deg"),
-            face_width=_mm(pair.face_width),
-            tip_diameter=_mm(2.0 * profile.tip_radius),
-            root_diameter=_mm(2.0 * profile.root_radius),
-            inner_diameter=_mm(2.0 * profile.bore_radius),
+            {
+                rexs.TEETH: profile.teeth,
+                rexs.MODULE: 1e3 * pair.module,
+                rexs.HELIX_ANGLE: 0.0,
+                rexs.FACE_WIDTH: 1e3 * pair.face_width,
+                rexs.TIP_DIAMETER: 2e3 * profile.tip_radius,
+                rexs.ROOT_DIAMETER: 2e3 * profile.root_radius,
+                rexs.BORE_DIAMETER: 2e3 * profile.bore_radius,
+            },
         )
-        flanks = [
-            self.component(
-                "cylindrical_gear_flank",
-                f"{name}, {side} flank",
-                normal_pressure_angle=(math.degrees(pair.rack.alpha), "deg"),
-                addendum_modification_coefficient=(gear.profile_shift, "none"),
-                addendum_coefficient_basic_profile=(pair.rack.h_aP, "none"),
-                tooth_tip_chamfer=_mm(gear.tip_chamfer),
-            )
+        shape = {
+            rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha),
+            rexs.PROFILE_SHIFT: float(gear.profile_shift),
+            rexs.RACK_ADDENDUM: float(pair.rack.h_aP),
+            rexs.TIP_CHAMFER: 1e3 * gear.tip_chamfer,
+        }
+        left, right = (
+            self.component("cylindrical_gear_flank", f"{name}, {side} flank", shape)
             for side in ("left", "right")
-        ]
-        self.relation("flank", gear=key, left=flanks[0], right=flanks[1])
-        tool = self.component(
-            "rack_shaped_tool",
-            f"{name}, basic rack",
-            normal_module=_mm(pair.module),
-            normal_pressure_angle=(math.degrees(pair.rack.alpha), "deg"),
-            addendum_coefficient_reference_profile=(pair.rack.h_fP, "none"),
-            tip_radius_factor=(pair.rack.rho_fP, "none"),
         )
-        for flank in flanks:
-            settings = self.component(
-                "cylindrical_gear_manufacturing_settings",
-                "",
-                generated_addendum_modification_coefficient=(gear.profile_shift, "none"),
-            )
+        self.relation("flank", gear=key, left=left, right=right)
+        depth = {
+            rexs.TOOL_ADDENDUM[0]: float(pair.rack.h_fP),
+            rexs.TOOL_TIP_RADIUS[0]: float(pair.rack.rho_fP),
+        }
+        tool = self.component("rack_shaped_tool", f"{name}, basic rack", rack | depth)
+        for flank in (left, right):
+            generated = {rexs.GENERATED_SHIFT: float(gear.profile_shift)}
+            settings = self.component("cylindrical_gear_manufacturing_settings", "", generated)
             self.relation(
                 "manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings
             )
-        self.relation("reference", origin=key, referenced=self._material(pair.materials[index], name))
+        material = pair.materials[index]
+        elastic = {
+            rexs.YOUNGS_MODULUS: 1e-9 * material.youngs_modulus,
+            rexs.POISSON_RATIO: float(material.poisson_ratio),
+            rexs.MATERIAL_DENSITY: float(material.density),
+        }
+        made_of = self.component("material", f"{name}, material", elastic)
+        self.relation("reference", origin=key, referenced=made_of)
         return key
-
-    def _material(self, material: Material, name: str) -> str:
-        return self.component(
-            "material",
-            f"{name}, material",
-            elastic_modulus=(1e-6 * material.youngs_modulus, "N / mm^2"),
-            poisson_ratio=(material.poisson_ratio, "none"),
-            density=(1e-3 * material.density, "kg / dm^3"),
-        )
 
     def text(self) -> str:
         """The file."""
         ET.indent(self._root)
         return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(self._root, encoding="unicode") + "\n"
-
-
-def _mm(length: float) -> tuple[float, str]:
-    return 1e3 * length, "mm"
 
 
 def _printable(text: str) -> str:

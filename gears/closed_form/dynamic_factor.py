@@ -95,8 +95,8 @@ def iso6336_dynamic(
     omega = np.asarray(speed, dtype=np.float64)
     found = Faults()
     given = (force, reduced_mass, pitch_deviation, profile_deviation, relief)
-    for (name, limit), value in zip(_LIMITS.items(), given, strict=True):
-        found.number(name, value, limit)
+    for (name, bound), value in zip(_LIMITS.items(), given, strict=True):
+        found.number(name, value, bound)
     if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
         found.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
     ratio = pair.contact_ratio
