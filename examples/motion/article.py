@@ -15,7 +15,7 @@ from pathlib import Path
 import drawing
 import numpy as np
 from matplotlib.figure import Figure
-from scans import SCANS, Scan
+from scans import SCANS, Scan, shown
 
 import dynamics
 
@@ -52,8 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     folder = given.out / given.scan
     folder.mkdir(parents=True, exist_ok=True)
     files, told = draw(SCANS[given.scan], folder, SMALL if given.small else FULL, given.format)
-    (folder / "summary.txt").write_text("\n".join(told) + "\n", encoding="utf-8")
-    print("\n".join(told))
+    (folder / "summary.txt").write_text("\n".join(shown(told)) + "\n", encoding="utf-8")
     return [*files, folder / "summary.txt"]
 
 
@@ -72,9 +71,8 @@ def draw(scan: Scan, folder: Path, size: Size, ending: str) -> tuple[list[Path],
         met = dynamics.multi_sweep(
             osc, parameter, np.linspace(*bounds, size.values), seeds=2 * size.searches, max_period=16
         )
-        diagram = dynamics.diagram(
-            osc, parameter, bounds, searches=size.searches, swept=min(size.values, 100), max_period=longest
-        )
+        swept = min(size.values, 100)
+        diagram = scan.diagram(bounds, searches=size.searches, swept=swept, max_period=longest)
         keep(drawing.diagram_figure(diagram, met, symbol), "diagram" if k == 0 else f"zoom_{bounds[0]:g}")
         told += [f"{bounds[0]:g} to {bounds[1]:g}: {diagram.message}", met.message, *diagram.left_out]
         if k == 0:
@@ -100,7 +98,7 @@ def exponent_spectra(
         for value, states in zip(sweep.values, sweep.states, strict=True):
             if not np.all(np.abs(states) < 1e6):
                 continue  # motion without bound
-            here = scan.oscillator.with_parameter(scan.parameter, float(value))
+            here = scan.at(float(value))
             found = dynamics.lyapunov_exponents(here, periods, state=states[-1], transient=0)
             rows.append((value, *found.exponents, found.standard_error))
         spectra.append((sweep.direction, np.array(rows)))
@@ -118,10 +116,10 @@ def named_motions(
             missing.append(label)
             continue
         widest = max(found, key=lambda s: s.high - s.low)
-        here = scan.oscillator.with_parameter(scan.parameter, widest.value)
+        here = scan.at(widest.value)
         title = f"{label} at {widest.value:.5g} ({widest.low:.5g} to {widest.high:.5g})"
         motions.append((title, dynamics.trajectory(here, widest.state, widest.periods)))
-    here = scan.oscillator.with_parameter(scan.parameter, scan.chaos)
+    here = scan.at(scan.chaos)
     settled = dynamics.sweep(here, scan.parameter, [scan.chaos], transient=5000)
     motion = dynamics.trajectory(here, settled.states[0, -1], 400)
     motions.append((f"{settled.labels[0]} at {scan.chaos:g}", motion))
@@ -130,7 +128,7 @@ def named_motions(
 
 def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
     """Basins at a value, their boundary's dimension, unstable orbits and the stable manifolds of the saddles."""
-    here = scan.oscillator.with_parameter(scan.parameter, value)
+    here = scan.at(value)
     (x0, x1), (v0, v1) = scan.box
     result = dynamics.basins(here, (x0, x1, size.starts), (v0, v1, size.starts), limit=scan.patience)
     known = [a for a in result.attractors if a.orbit is not None and a.share > 0.0]

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scans import SCANS
+from scans import SCANS, period_of, shown, table_head
 
 import dynamics
 
@@ -75,27 +75,24 @@ def main(arguments: Sequence[str] | None = None) -> list[str]:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--all", choices=("6.1", "6.2", "6.3"), help="every saddle of a scan's diagram")
     given = parser.parse_args(arguments)
-    lines = ["| scan | parameter | saddle | chaos before it | motion after it |", "|---|---|---|---|---|"]
+    lines = table_head("scan", "parameter", "saddle", "chaos before it", "motion after it")
     if given.all:
-        scan = SCANS[given.all]
-        whole = dynamics.diagram(scan.oscillator, scan.parameter, scan.bounds, max_period=4)
+        whole = SCANS[given.all].diagram(max_period=4)
         lines += [
             row(given.all, c) for c in dynamics.boundary_crises(whole, values=100, points=200, periods=60)
         ]
     else:
         lines += [row(place.section, located(place)) for place in CRISES]
-        lines += ["", "| scan | motion | sweep | chaos ends between |", "|---|---|---|---|"]
+        lines += ["", *table_head("scan", "motion", "sweep", "chaos ends between")]
         lines += [ended(end) for end in ENDS]
-    print("\n".join(lines))
-    return lines
+    return shown(lines)
 
 
 def located(place: Crisis) -> dynamics.Crisis:
     """The crisis of a place; its saddle is found by its label."""
     scan = SCANS[place.section]
-    here = scan.oscillator.with_parameter(scan.parameter, place.at)
-    period = int(place.saddle.removeprefix("U").split("-")[0])
-    saddle = next(o for o in dynamics.find_orbits(here, (period,)).orbits if o.label == place.saddle)
+    orbits = dynamics.find_orbits(scan.at(place.at), (period_of(place.saddle),)).orbits
+    saddle = next(orbit for orbit in orbits if orbit.label == place.saddle)
     return dynamics.boundary_crisis(saddle, scan.parameter, place.bounds, points=500, periods=90)
 
 
@@ -111,8 +108,7 @@ def row(section: str, crisis: dynamics.Crisis) -> str:
 def ended(end: End, steps: int = 81, growth: float = 2.5) -> str:
     """Where the motion of a sweep comes to fill `growth` times as many cells as before, or becomes periodic."""
     scan = SCANS[end.section]
-    period = int(end.label.split("-")[0])
-    here = scan.oscillator.with_parameter(scan.parameter, end.first)
+    period, here = period_of(end.label), scan.at(end.first)
     orbits = dynamics.find_orbits(here, (period,)).orbits
     start = [o.state for o in orbits if o.stable and o.periods == period and o.label == end.label]
     if not start:  # already doubled

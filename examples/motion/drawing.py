@@ -34,9 +34,7 @@ def diagram_figure(diagram: Diagram, met: MultiSweep, symbol: str) -> Figure:
         axes.plot([], [], ".", color=colour, label=" and ".join(sorted(wanted, reverse=True)))
     for branch in diagram.branches:
         for wanted_stability, style in ((True, "-"), (False, "--")):
-            keep = branch.stable == wanted_stability
-            keep[1:] |= branch.stable[:-1] == wanted_stability
-            x = np.where(keep, branch.states[:, 0], np.nan)
+            x = where_stable(branch.stable, branch.states[:, 0], wanted_stability)
             axes.plot(branch.values, x, style, color="black", linewidth=0.9 if wanted_stability else 0.5)
         for point in branch.points:
             mark, colour = MARKS[point.kind]
@@ -48,6 +46,13 @@ def diagram_figure(diagram: Diagram, met: MultiSweep, symbol: str) -> Figure:
     axes.set(xlabel=symbol, ylabel="X at tau = 0", xlim=diagram.bounds, ylim=_span(met))
     figure.legend(fontsize=7, ncols=8, loc="outside upper center")
     return figure
+
+
+def where_stable(stable: np.ndarray, values: np.ndarray, wanted: bool) -> np.ndarray:
+    """Values of the stable, or the unstable, part of a branch up to the neighbours beyond; nan elsewhere."""
+    keep = stable == wanted
+    keep[1:] |= stable[:-1] == wanted
+    return np.where(keep, values, np.nan)
 
 
 def _span(met: MultiSweep) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from drawing import where_stable
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -226,13 +227,9 @@ def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
     left.set_title("finite elements (dots), stiffest (solid), softest (dashed)", fontsize=8)
     for one in curves:
         for wanted, style in ((True, "-"), (False, ":")):
-            keep = one.stable == wanted
-            keep[1:] |= one.stable[:-1] == wanted
-            colour = COLOURS[one.name]
+            swing = where_stable(one.stable, one.swing, wanted)
             label = one.name if wanted else None
-            right.plot(
-                one.rpm, np.where(keep, one.swing, np.nan), style, color=colour, linewidth=1.2, label=label
-            )
+            right.plot(one.rpm, swing, style, color=COLOURS[one.name], linewidth=1.2, label=label)
         for speed, swing in one.jumps:
             right.plot(speed, swing, "o", color=COLOURS[one.name], markersize=4)
     right.set(xlabel="pinion speed [rpm]", ylabel="peak to peak [µm]", xlim=SPEEDS, ylim=(0, None))

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from dynamics import FourierStiffness, GearOscillator
+import dynamics
+from dynamics import Diagram, FourierStiffness, GearOscillator
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,31 @@ class Scan:
     max_period: int
     zooms: tuple[tuple[float, float], ...] = ()
     patience: int = 500
+
+    def at(self, value: float) -> GearOscillator:
+        """Oscillator at a value of the parameter."""
+        return self.oscillator.with_parameter(self.parameter, value)
+
+    def diagram(self, bounds: tuple[float, float] | None = None, **options: Any) -> Diagram:
+        """Bifurcation diagram over the scan's range or another one."""
+        options.setdefault("max_period", self.max_period)
+        return dynamics.diagram(self.oscillator, self.parameter, bounds or self.bounds, **options)
+
+
+def period_of(label: str) -> int:
+    """Period n of a label n-p-q or Un-p-q."""
+    return int(label.removeprefix("U").split("-")[0])
+
+
+def shown(lines: list[str]) -> list[str]:
+    """Print lines and return them."""
+    print("\n".join(lines))
+    return lines
+
+
+def table_head(*names: str) -> list[str]:
+    """First two lines of a table."""
+    return [f"| {' | '.join(names)} |", f"|{'---|' * len(names)}"]
 
 
 def _oscillator(

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from crises import CRISES, located
 from events import EVENTS, WINDOWS, Event
-from scans import SCANS
+from scans import SCANS, shown, table_head
 
 import dynamics
 
@@ -19,27 +19,18 @@ import dynamics
 def main(arguments: Sequence[str] | None = None) -> list[str]:
     """Print the tables of the scans named, or of all; return the lines."""
     wanted = list(sys.argv[1:] if arguments is None else arguments) or sorted(SCANS)
-    lines = [
-        "| scan | event | printed | ours | multiplier where printed | verdict |",
-        "|---|---|---|---|---|---|",
-    ]
-    diagrams = {name: _diagram(name) for name in wanted if name != "6.4"}
+    lines = table_head("scan", "event", "printed", "ours", "multiplier where printed", "verdict")
+    diagrams = {name: SCANS[name].diagram() for name in wanted if name != "6.4"}
     for event in EVENTS:
         if event.section in wanted:
             lines.append(row(event, diagrams.get(event.section)))
-    lines += ["", "| scan | stable motion named | where | ours |", "|---|---|---|---|"]
+    lines += ["", *table_head("scan", "stable motion named", "where", "ours")]
     for name, diagram in diagrams.items():
         for label, where in WINDOWS[name]:
             found = [s for s in diagram.stretches(stable=True) if s.label == label]
             ranges = "; ".join(f"{s.low:.6g} to {s.high:.6g}" for s in found) or "not stable anywhere"
             lines.append(f"| {name} | {label} | {where} | {ranges} |")
-    print("\n".join(lines))
-    return lines
-
-
-def _diagram(name: str) -> dynamics.Diagram:
-    scan = SCANS[name]
-    return dynamics.diagram(scan.oscillator, scan.parameter, scan.bounds, max_period=scan.max_period)
+    return shown(lines)
 
 
 def row(event: Event, diagram: dynamics.Diagram | None) -> str:

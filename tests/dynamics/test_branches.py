@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import pickle
 
@@ -207,7 +206,7 @@ def test_branch_that_grows_without_bound_goes_to_the_edge_of_the_linear_resonanc
     assert branch.converged
     assert branch.ended == ("the motion grows without bound",) * 2
     for value in branch.values[[0, -1]]:
-        linear = dataclasses.replace(starved, half_backlash=0.0, frequency=float(value))
+        linear = starved(float(value), half_backlash=0.0)
         least = np.linalg.eigvals(period_map(linear, (0.0, 0.0)).jacobian).real.min()
         assert abs(least + 1.0) < 2e-3
     assert {round(float(v), 3) for v in branch.values[[0, -1]]} == {1.954, 2.045}
