@@ -161,7 +161,7 @@ def diagram(
     steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
     most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     faults.raise_if_any()
-    builder = Gathering(oscillator, parameter, (low, high), longest, most, max_step, progress)
+    builder = Gathering(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
     unsure = []
     for k in range(number):
         value = low + (k + 0.5) / number * (high - low)

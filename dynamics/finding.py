@@ -141,30 +141,18 @@ class _Search:
         self.scale = float(np.max(np.abs(self.region)))
 
     def run(self, n: int, side: int) -> None:
-        """Search for fixed points of the n-period map."""
-        from dynamics.kernels.searching import hunt
-
+        """Search for fixed points of the n-period map from a grid and from long motions."""
         (x0, x1), (v0, v1) = self.region
         grid = np.stack(np.meshgrid(np.linspace(x0, x1, side), np.linspace(v0, v1, side)), axis=-1)
         starts = np.concatenate([self.motion[-RECURRENT:], grid.reshape(-1, 2)])
-        known = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
-        found = np.empty((4096, 2))
-        number = sum(len(p) for p in known)
-        if number:
-            found[:number] = np.concatenate(known)
-        last, used = hunt(self.table.arrays, starts, n, 40, self.scale, found, number)
-        self.periods += int(used)
-        for point in found[number:last]:
-            if not self._knows(point):
-                self._keep(find_orbit(self.oscillator, point, periods=n))
+        deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
+        self._hunt(starts, n, 40, np.concatenate([np.empty((0, 2)), *deflated]))
 
     def twins(self, n: int) -> None:
         """Search beside orbits close to a bifurcation for their partners, which deflation pushes away.
 
         Those are the other orbit of a saddle node and the doubled orbit of a period doubling.
         """
-        from dynamics.kernels.searching import hunt
-
         starts = []
         for orbit in self.orbits:
             critical = {n: 1.0, n / 2: -1.0}.get(orbit.periods)
@@ -173,15 +161,21 @@ class _Search:
             values, vectors = np.linalg.eig(orbit.jacobian)
             k = int(np.argmin(np.abs(values - critical)))
             if abs(values[k] - critical) < 0.5:
-                along = np.real(vectors[:, k])
-                starts += [
-                    orbit.state + sign * self.scale * size * along for size in BESIDE for sign in (1, -1)
-                ]
+                along = self.scale * np.real(vectors[:, k])
+                starts += [orbit.state + sign * size * along for size in BESIDE for sign in (1, -1)]
         if starts:
-            found = np.empty((4096, 2))
-            last, used = hunt(self.table.arrays, np.array(starts), n, 20, self.scale, found, 0)
-            self.periods += int(used)
-            for point in found[:last]:
+            self._hunt(np.array(starts), n, 20, np.empty((0, 2)))
+
+    def _hunt(self, starts: Array, n: int, limit: int, deflated: Array) -> None:
+        """Keep the orbits that Newton's method, pushed away from some points, comes to from starts."""
+        from dynamics.kernels.searching import hunt
+
+        found = np.empty((4096, 2))
+        found[: len(deflated)] = deflated
+        last, used = hunt(self.table.arrays, starts, n, limit, self.scale, found, len(deflated))
+        self.periods += int(used)
+        for point in found[len(deflated) : last]:
+            if not self._knows(point):
                 self._keep(find_orbit(self.oscillator, point, periods=n))
 
     def count(self, n: int) -> IndexCount:

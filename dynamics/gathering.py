@@ -56,8 +56,8 @@ class Gathering:
         Its range.
     longest, most : int
         Longest period and number of branches that are followed.
-    max_step : float
-        Largest step along a branch.
+    max_step, max_points : float, int
+        Largest step along a branch, and its points in each direction.
     progress : callable, optional
         Called with the number of branches and what is done next.
     """
@@ -68,6 +68,7 @@ class Gathering:
     longest: int
     most: int
     max_step: float
+    max_points: int = 5000
     progress: Callable[[int, str], None] | None = None
     branches: list[Branch] = field(default_factory=list)
     origins: list[Origin] = field(default_factory=list)
@@ -89,7 +90,9 @@ class Gathering:
                 continue
             if self.progress is not None:
                 self.progress(len(self.branches), f"{start.label} {source}")
-            branch = continue_branch(start, self.parameter, self.bounds, max_step=self.max_step)
+            branch = continue_branch(
+                start, self.parameter, self.bounds, max_step=self.max_step, max_points=self.max_points
+            )
             self.periods += branch.cost.periods
             self.branches.append(branch)
             self.origins.append(source)

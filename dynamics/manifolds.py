@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -203,15 +205,15 @@ class _Grower:
 
     def grow(self, point: Array, along: Array) -> tuple[Array, int, str, float]:
         """Curve, rounds, why it ended, and the bend of its first stretch."""
-        first = FIRST * self.scale
+
+        def images(share: Array, rounds: int, first: float = FIRST * self.scale) -> Array:
+            return self._carry(point + np.outer(first * self.stretch**share, along), rounds)
+
         share = np.linspace(0.0, 1.0, 9)
-        curves = [point[None]]
-        total, number, count = 0.0, 0, 0
-        at = self._start(point, along, share, first)
-        halved = self._carry(self._start(point, along, share, 0.5 * first), 1)
-        whole = self._carry(at, 1)
-        bend = np.max(np.abs((whole - point) - 2.0 * (halved - point)))
-        error = float(bend) / self.scale
+        at = images(share, 0)
+        halved = images(share, 1, 0.5 * FIRST * self.scale)
+        error = float(np.max(np.abs((self._carry(at, 1) - point) - 2.0 * (halved - point)))) / self.scale
+        curves, total, number, count = [point[None]], 0.0, 0, 0
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
             inside = within(self.region, at)
@@ -228,12 +230,10 @@ class _Grower:
                 ended = next(why for why, holds in reasons.items() if holds)
                 return np.concatenate(curves), number, ended, error
             number += 1
-            share, at = self._refined(point, along, first, number, share, self._carry(at, 1))
+            share, at = self._refined(partial(images, rounds=number), share, self._carry(at, 1))
 
-    def _refined(
-        self, point: Array, along: Array, first: float, number: int, share: Array, at: Array
-    ) -> tuple[Array, Array]:
-        """Starts and points with gaps within the spacing."""
+    def _refined(self, images: Callable[[Array], Array], share: Array, at: Array) -> tuple[Array, Array]:
+        """Starts and their images with gaps within the spacing."""
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
             inside = within(self.region, at)
@@ -242,12 +242,8 @@ class _Grower:
                 return share, at
             where = np.flatnonzero(wide)
             middle = 0.5 * (share[where] + share[where + 1])
-            new = self._carry(self._start(point, along, middle, first), number)
-            share, at = np.insert(share, where + 1, middle), np.insert(at, where + 1, new, axis=0)
-
-    def _start(self, point: Array, along: Array, share: Array, first: float) -> Array:
-        return np.asarray(point + np.outer(first * self.stretch**share, along))
+            share, at = np.insert(share, where + 1, middle), np.insert(at, where + 1, images(middle), axis=0)
 
     def _carry(self, at: Array, rounds: int) -> Array:
         self.periods += len(at) * rounds * self.round
-        return carried(self.table, at, rounds * self.round, self.backwards)
+        return carried(self.table, at, rounds * self.round, self.backwards) if rounds else at

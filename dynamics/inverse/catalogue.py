@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
 from dynamics.finding import find_orbits
-from dynamics.gathering import lies_on
+from dynamics.gathering import Gathering, Origin
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.inverse.refinement import Fit
@@ -19,13 +18,12 @@ from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
 from dynamics.sweeps import rest_state
-from dynamics.switching import doubled_orbit
 from dynamics.tracking import marked
 
 __all__ = ["CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
 
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
-STEP = 0.05  # largest step along a branch
+STEP, MAX_POINTS, MOST = 0.05, 1500, 10**6  # largest step along a branch, its points, and branches at most
 CAPTURE = 0.02  # of the range: a point of the kind and label so near makes a search around the event needless
 BESIDE = (0.002, 0.015)  # of the range: how far beside an event its orbit is searched for
 LONGEST = 4  # period searched for where an event does not say
@@ -67,19 +65,23 @@ class Catalogue:
             upper bound too, and the doubled branches of both that events ask for. EVERY: where an event still has no
             partner near it, also the branches of the orbits of its label that a search around it finds.
         """
-        bounds, events = self.problem.bounds, self.problem.events
-        found = self._new(self._settled(here, bounds[0], 0), [])
+        problem = self.problem
+        asked_for = max((e.periods or LONGEST for e in problem.events), default=1)
+        longest = asked_for if depth >= DOUBLED else 1
+        gathered = Gathering(here, problem.parameter, problem.bounds, longest, MOST, STEP, MAX_POINTS)
+        self._gather(gathered, [self._settled(here, problem.bounds[0], 0)])
         if depth >= DOUBLED:
-            for orbit in self._upper(here, bounds[1]):
-                found += self._new(orbit, found)
-            longest = max((e.periods or LONGEST for e in events), default=1)
-            found += self._doubled(here, found, longest)
-        for event in events if depth == EVERY else ():
-            if not any(self._near(p, event) for branch in found for p in branch.points):
-                found += self._around(here, event, found)
+            self._gather(gathered, self._upper(here, problem.bounds[1]))
+        gathered.longest = (
+            1  # branches that a search around an event finds, but not those that double from them
+        )
+        for event in problem.events if depth == EVERY else ():
+            self._around(gathered, event)
+        self.tally.branches += len(gathered.branches)
+        self.tally.periods += gathered.periods
         lines: list[Line] = []
         known: list[SpecialPoint] = []
-        for branch in found:
+        for branch in gathered.branches:
             new = tuple(p for p in branch.points if not any(_same(p, q, self.problem.width) for q in known))
             lines += [new] if new else []
             known += new
@@ -103,22 +105,14 @@ class Catalogue:
         marks = (None if p is None else marked(here, self.problem.parameter, p) for p in partners)
         return lines, Fit(self.problem, here, tuple(marks))
 
-    def follow(
-        self, orbit: Orbit | None, name: str | None = None, bounds: tuple[float, float] | None = None
-    ) -> Branch | None:
-        """Branch through an orbit, in the parameter of the events if no other is named."""
-        if orbit is None or not orbit.converged:
-            return None
-        branch = continue_branch(
-            orbit,
-            name or self.problem.parameter,
-            bounds or self.problem.bounds,
-            max_step=STEP,
-            max_points=1500,
-        )
+    def values_along(self, orbit: Orbit, name: str, bounds: tuple[float, float], event: Event) -> list[float]:
+        """Values of another parameter at which the branch through an orbit has a point like an event."""
+        if not orbit.converged:
+            return []
+        branch = continue_branch(orbit, name, bounds, max_step=STEP, max_points=MAX_POINTS)
         self.tally.branches += 1
         self.tally.periods += branch.cost.periods
-        return branch
+        return [p.parameter for p in branch.points if event.fits(p)]
 
     def orbits_of(self, here: GearOscillator, event: Event, value: float) -> list[Orbit]:
         """Orbits with the label of an event."""
@@ -128,12 +122,11 @@ class Catalogue:
         self.tally.periods += found.cost.periods
         return [orbit for orbit in found.orbits if event.names(orbit.label)]
 
-    def _new(self, orbit: Orbit, known: list[Branch]) -> list[Branch]:
-        """Branch through an orbit, if it lies on none of those known."""
-        if not orbit.converged or any(lies_on(branch, orbit, self.problem.bounds) for branch in known):
-            return []
-        branch = self.follow(orbit)
-        return [] if branch is None else [branch]
+    def _gather(self, gathered: Gathering, orbits: Iterable[Orbit]) -> None:
+        """Follow orbits that lie on no branch yet."""
+        for orbit in orbits:
+            if orbit.converged:
+                gathered.follow(orbit, Origin(None, orbit.oscillator.get(self.problem.parameter)))
 
     def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
         start = here.with_parameter(self.problem.parameter, value)
@@ -148,33 +141,15 @@ class Catalogue:
         self.tally.periods += found.cost.periods
         return list(found.orbits)
 
-    def _doubled(self, here: GearOscillator, branches: list[Branch], longest: int) -> list[Branch]:
-        waiting, found = list(branches), []
-        seen: list[SpecialPoint] = []
-        while waiting:
-            for point in waiting.pop(0).special("period-doubling"):
-                if 2 * point.periods > longest or any(_same(point, p, self.problem.width) for p in seen):
-                    continue
-                seen.append(point)
-                orbit = doubled_orbit(here, self.problem.parameter, point, self.problem.bounds)
-                branch = self.follow(orbit)
-                if branch is not None:
-                    found.append(branch)
-                    waiting.append(branch)
-        return found
-
-    def _around(self, here: GearOscillator, event: Event, known: list[Branch]) -> list[Branch]:
-        """Branches not yet known of the orbits of an event's label to either side of it, until one has such a point."""
-        low, high = self.problem.bounds
-        found: list[Branch] = []
-        for beside in BESIDE:
-            for value in (event.value - beside * (high - low), event.value + beside * (high - low)):
-                if low < value < high:
-                    for orbit in self.orbits_of(here, event, value):
-                        found += self._new(orbit, [*known, *found])
-            if any(self._near(p, event) for branch in found for p in branch.points):
+    def _around(self, gathered: Gathering, event: Event) -> None:
+        """Follow the orbits of an event's label to either side of it, until one has such a point."""
+        (low, high), width = self.problem.bounds, self.problem.width
+        for beside in (0.0, *BESIDE):
+            if any(self._near(p, event) for branch in gathered.branches for p in branch.points):
                 break
-        return found
+            for value in (event.value - beside * width, event.value + beside * width):
+                if beside and low < value < high:
+                    self._gather(gathered, self.orbits_of(gathered.oscillator, event, value))
 
     def _near(self, point: SpecialPoint, event: Event) -> bool:
         return event.fits(point) and abs(point.parameter - event.value) < CAPTURE * self.problem.width

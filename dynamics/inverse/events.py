@@ -11,7 +11,7 @@ import numpy as np
 
 from base import Array, Faults, Limit
 from dynamics.branch import KINDS
-from dynamics.limits import NUMBER
+from dynamics.limits import NUMBER, ordered
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
 
@@ -216,9 +216,7 @@ def checked(
     """
     faults = Faults()
     oscillator.get(parameter)
-    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
-    if not low < high:
-        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
+    low, high = ordered(faults, "bounds", bounds)
     for i, event in enumerate(events):
         _check_event(faults, f"events[{i}]", event, (low, high))
     for name, unknown in unknowns.items():
@@ -230,12 +228,8 @@ def checked(
         faults.add("unknowns", {}, "must hold at least one", "name a parameter and its range")
     faults.raise_if_any()
     if math.prod(len(u.values) for u in unknowns.values()) > MAX_TRIALS:
-        faults.add(
-            "unknowns",
-            "",
-            f"must have at most {MAX_TRIALS} combinations",
-            "give fewer trial values",
-        )
+        allowed = f"must have at most {MAX_TRIALS} combinations"
+        faults.add("unknowns", "", allowed, "give fewer trial values")
     fitted = sum(e.fitted for e in events)
     blind = "half_backlash" in unknowns and all(e.one_sided for e in events)
     seen = len(unknowns) - blind
@@ -247,16 +241,11 @@ def checked(
 
 
 def _check_event(faults: Faults, where: str, event: Event, bounds: tuple[float, float]) -> None:
-    if event.kind not in KINDS:
-        faults.add(f"{where}.kind", event.kind, f"must be one of {', '.join(KINDS)}", "name one of these")
+    faults.choice(f"{where}.kind", event.kind, KINDS)
     parts = event.label.split("-")
     if len(parts) != 3 or not all(p == "*" or p.isdecimal() for p in parts) or parts[0] == "0":
-        faults.add(
-            f"{where}.label",
-            event.label,
-            "must be n-p-q, with a star for what is not known",
-            'write "1-1-0" or "2-*-*"',
-        )
+        allowed = "must be n-p-q, with a star for what is not known"
+        faults.add(f"{where}.label", event.label, allowed, 'write "1-1-0" or "2-*-*"')
     faults.number(f"{where}.trust", event.trust, Limit(0.0, 1.0, low_open=True, remedy="1 is full trust"))
     faults.whole(f"{where}.digits", event.digits, 0, 15, "give the decimals printed")
     value = faults.number(f"{where}.value", event.value, NUMBER)
@@ -271,10 +260,5 @@ def _check_unknown(faults: Faults, where: str, unknown: Unknown) -> None:
         for i, value in enumerate(unknown.values):
             faults.number(f"{where}.values[{i}]", value, NUMBER)
         return
-    low, high = (
-        faults.number(f"{where}.low", unknown.low, NUMBER),
-        faults.number(f"{where}.high", unknown.high, NUMBER),
-    )
-    if not low < high:
-        faults.add(where, (low, high), "must have the lower value first", "give Ranged(low, high)")
+    ordered(faults, where, (unknown.low, unknown.high), "give Ranged(low, high)")
     faults.whole(f"{where}.trials", unknown.trials, 1, 10_000, "4 is usual")

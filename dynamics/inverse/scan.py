@@ -8,10 +8,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue
-from dynamics.inverse.events import Event, OneOf, Problem, Ranged
+from dynamics.inverse.events import Event, Problem, Ranged
 from dynamics.inverse.reduction import FORCE
 from dynamics.oscillator import GearOscillator
-from dynamics.shooting import Orbit, find_orbit
+from dynamics.shooting import find_orbit
 from dynamics.sweeps import rest_state
 
 __all__ = ["Trial", "anchored", "ranked", "scan", "solved_name"]
@@ -65,21 +65,16 @@ def anchored(catalogue: Catalogue, here: GearOscillator, event: Event, name: str
     span = (unknown.low, unknown.high)
     start = here.with_parameter(problem.parameter, event.value)
     found: list[float] = []
-
-    def along(orbit: Orbit) -> list[float]:
-        branch = catalogue.follow(orbit, name, span)
-        return [] if branch is None else [p.parameter for p in branch.points if event.fits(p)]
-
     if event.periods in (1, None):
         for end in (span[1], span[0]):
             there = start.with_parameter(name, end)
-            found += along(find_orbit(there, rest_state(there)))
+            found += catalogue.values_along(find_orbit(there, rest_state(there)), name, span, event)
             if found:
                 break
     if not found and event.periods != 1:
         for value in Ranged(*span, trials=GRID).values:
             for orbit in catalogue.orbits_of(start.with_parameter(name, value), event, event.value):
-                found += along(orbit)
+                found += catalogue.values_along(orbit, name, span, event)
     distinct: list[float] = []
     for value in found:
         if not any(abs(value - other) <= 1e-9 * (span[1] - span[0]) for other in distinct):
@@ -105,7 +100,7 @@ def scan(
     """
     problem = catalogue.problem
     tried = [n for n in problem.unknowns if n != name]
-    combinations = list(itertools.product(*(_values(problem, n) for n in tried)))
+    combinations = list(itertools.product(*(problem.unknowns[n].values for n in tried)))
     depth, looked_at = _depth(problem, anchor)
     found: list[Trial] = []
     for done, values in enumerate(combinations, start=1):
@@ -118,11 +113,6 @@ def scan(
         if progress is not None:
             progress(done, len(combinations))
     return sorted(found, key=lambda trial: trial.misfit)
-
-
-def _values(problem: Problem, name: str) -> tuple[float, ...]:
-    unknown = problem.unknowns[name]
-    return tuple(unknown.values) if isinstance(unknown, OneOf) else unknown.values
 
 
 def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:
