@@ -2,6 +2,7 @@ from .bodies import Compliance as Compliance
 from .contact import mesh_cycle as mesh_cycle
 from .contact_candidates import unloaded_transmission_error as unloaded_transmission_error
 from .cycle import MeshCycle as MeshCycle
+from .export import write_mesh as write_mesh
 from .fillet_influence import Fillets as Fillets
 from .fillet_influence import fillets as fillets
 from .local_law import Film as Film
@@ -10,3 +11,4 @@ from .single_pair import single_pair_stiffness as single_pair_stiffness
 from .support import Support as Support
 from .tooth_root import RootStress as RootStress
 from .tooth_root import root_stress as root_stress
+from .vtk import field_blocks as field_blocks

@@ -22,6 +22,7 @@ from fem.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.elasticity import PlaneElasticity
 from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
+from fem.loaded_gears import frames
 from fem.near_field import Contact
 from fem.pair_compliance import compliance as _compliance
 from fem.ring import Ring, mesh_and_factor
@@ -154,8 +155,7 @@ def loaded_fields(
     found.raise_if_any()
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     drawn = drawings or draw_gears(pair, bodies)
-    placed = pair.placement(float(pair.points.A + cycle.position[row] * pair.base_pitch))
-    turns = ((placed.pinion_angle, np.zeros(2)), (placed.wheel_angle, placed.wheel_centre))
+    turns = frames(pair, float(pair.points.A + cycle.position[row] * pair.base_pitch))
     fields = []
     for gear, (drawing, (angle, centre)) in enumerate(zip(drawn, turns, strict=True)):
         contacts = _contacts(pair, cycle, row, drawing.ring, gear, bodies)

@@ -26,7 +26,15 @@ from meshes.annulus import turned
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["FlankForce", "LoadedGear", "flank_forces", "loaded_gears", "nodal_forces"]
+__all__ = [
+    "FlankForce",
+    "LoadedGear",
+    "flank_forces",
+    "frames",
+    "loaded_gears",
+    "nodal_forces",
+    "placed_gears",
+]
 
 SPREAD_POINTS = 256
 """Line loads that stand for a Hertz pressure."""
@@ -219,20 +227,42 @@ def loaded_gears(
     """
     start = pair.points.A + cycle.position[row] * pair.base_pitch if 0 <= row < len(cycle.position) else 0.0
     both = flank_forces(pair, cycle, row, spread)
-    placed = pair.placement(float(start))
-    frames = ((placed.pinion_angle, np.zeros(2)), (placed.wheel_angle, placed.wheel_centre))
     gears = []
-    for gear, (name, loads, (angle, axis)) in enumerate(zip(("pinion", "wheel"), both, frames, strict=True)):
+    for gear, loads in enumerate(both):
         profile = pair.teeth_profiles[gear]
         usual = mesh_sector(profile, sizes, refinements)
         fine = mesh_sector(profile, loaded_sizes, refinements) if loaded_sizes else usual
         loaded = {load.tooth: fine for load in loads}
         mesh = gear_mesh(usual, _teeth(profile.teeth, sorted(loaded), neighbours), loaded)
-        forces = turned(nodal_forces(profile, loaded, mesh, loads), angle) * pair.face_width
-        law = PlaneElasticity.of(pair.materials[gear], cycle.plane)
-        here = replace(mesh, points=turned(mesh.points, angle) + axis)
-        gears.append(LoadedGear(name, here, axis, law, pair.face_width, forces))
+        forces = nodal_forces(profile, loaded, mesh, loads) * pair.face_width
+        gears.append(_placed(pair, gear, float(start), cycle.plane, mesh, forces))
     return gears[0], gears[1]
+
+
+def placed_gears(
+    pair: GearPair, plane: str = "strain", sizes: Sizes | None = None, refinements: int = 0
+) -> tuple[LoadedGear, LoadedGear]:
+    """Mesh both gears without loads, as they stand with a pair of teeth at the pitch point."""
+    meshes = [gear_mesh(mesh_sector(profile, sizes, refinements)) for profile in pair.teeth_profiles]
+    first, second = (
+        _placed(pair, gear, pair.points.C, plane, mesh, np.zeros_like(mesh.points))
+        for gear, mesh in enumerate(meshes)
+    )
+    return first, second
+
+
+def frames(pair: GearPair, rho1: float) -> tuple[tuple[float, Array], tuple[float, Array]]:
+    """Angle [rad] and axis [m] of pinion and wheel in the common frame, with a pair of teeth at rho1 [m]."""
+    placed = pair.placement(rho1)
+    return (placed.pinion_angle, np.zeros(2)), (placed.wheel_angle, placed.wheel_centre)
+
+
+def _placed(pair: GearPair, gear: int, rho1: float, plane: str, mesh: GearMesh, forces: Array) -> LoadedGear:
+    """Turn a gear's mesh and its forces to their place."""
+    angle, axis = frames(pair, rho1)[gear]
+    here = replace(mesh, points=turned(mesh.points, angle) + axis)
+    law = PlaneElasticity.of(pair.materials[gear], plane)
+    return LoadedGear(("pinion", "wheel")[gear], here, axis, law, pair.face_width, turned(forces, angle))
 
 
 def _teeth(count: int, loaded: Sequence[int], neighbours: int | None) -> range:

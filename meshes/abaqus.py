@@ -1,4 +1,4 @@
-"""Mesh as the text of an Abaqus or CalculiX input file: nodes, elements, named sets and surfaces.
+"""Meshes as the text of an Abaqus or CalculiX input file: nodes, elements and sets by meshio, surfaces by us.
 
 Both programs number from 1, take the nodes of a six-node triangle as we do (corners anticlockwise, then the
 middles of 12, 23 and 31) and call its edges S1 (12), S2 (23) and S3 (31). CalculiX reads at most 20 characters
@@ -7,7 +7,8 @@ of a number, which leaves 14 significant digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
+from io import StringIO
 
 import numpy as np
 
@@ -16,10 +17,12 @@ from meshes.annulus import GearMesh
 
 __all__ = ["mesh_text", "number", "set_names"]
 
+DIGITS = ".13e"
+
 
 def number(value: float) -> str:
     """Write a number below 1e100 in at most 20 characters, 14 significant digits; below 1e-99 it is zero."""
-    return f"{value if abs(value) >= 1e-99 else 0.0:.13e}"
+    return f"{value if abs(value) >= 1e-99 else 0.0:{DIGITS}}"
 
 
 def set_names(mesh: GearMesh, prefix: str = "") -> dict[str, tuple[str, int | None]]:
@@ -46,20 +49,15 @@ def set_names(mesh: GearMesh, prefix: str = "") -> dict[str, tuple[str, int | No
     return names
 
 
-def mesh_text(
-    mesh: GearMesh, element: str = "CPE6", prefix: str = "", first_node: int = 1, first_element: int = 1
-) -> str:
-    """Nodes, elements, sets and surfaces of a gear.
+def mesh_text(gears: Mapping[str, GearMesh], element: str = "CPE6") -> str:
+    """Nodes, elements, sets and surfaces of gears, numbered one gear after the other.
 
     Parameters
     ----------
-    mesh : GearMesh
+    gears : mapping of str to GearMesh
+        By the prefix of the names of their sets, empty for one gear alone.
     element : str
         ``CPE6`` (plane strain) or ``CPS6`` (plane stress).
-    prefix : str
-        Put before the names of all sets.
-    first_node, first_element : int
-        Numbers of the first node and element.
 
     Returns
     -------
@@ -67,39 +65,45 @@ def mesh_text(
         Sets of nodes and elements ``GEAR``, sets of elements ``TOOTH_0`` and so on; for each name of
         ``set_names`` a set of nodes and, with the same name, a surface of element edges.
     """
-    lines = [f"*NODE, NSET={prefix}GEAR"]
-    for n, (x, y) in enumerate(mesh.points.tolist(), first_node):
-        lines.append(f"{n}, {number(x)}, {number(y)}, 0.")
-    lines.append(f"*ELEMENT, TYPE={element}, ELSET={prefix}GEAR")
-    for n, nodes in enumerate((mesh.triangles + first_node).tolist(), first_element):
-        lines.append(f"{n}, " + ", ".join(map(str, nodes)))
-    for tooth in np.unique(mesh.tooth):
-        members = np.flatnonzero(mesh.tooth == tooth) + first_element
-        lines += [f"*ELSET, ELSET={prefix}TOOTH_{_signed(int(tooth))}", *_members(members)]
-    for name, (boundary, tooth_or_all) in set_names(mesh, prefix).items():
-        edges = mesh.facets[boundary]
-        if tooth_or_all is not None:
-            edges = edges[mesh.facet_tooth[boundary] == tooth_or_all]
-        lines += [f"*NSET, NSET={name}", *_members(np.unique(edges) + first_node)]
-        lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
-        owner, side = _sides(mesh, edges)
-        lines += [f"{e}, S{s}" for e, s in zip((owner + first_element).tolist(), side.tolist(), strict=True)]
-    return "\n".join(lines) + "\n"
+    import meshio
+
+    points, triangles, nodes, elements, surfaces = [], [], {}, {}, []
+    node = first = 0
+    for prefix, mesh in gears.items():
+        points.append(mesh.points)
+        triangles.append(mesh.triangles + node)
+        nodes[f"{prefix}GEAR"] = np.arange(node, node + len(mesh.points))
+        elements[f"{prefix}GEAR"] = [np.arange(first, first + len(mesh.triangles))]
+        for tooth in mesh.teeth:
+            elements[f"{prefix}TOOTH_{_signed(tooth)}"] = [first + np.flatnonzero(mesh.tooth == tooth)]
+        for name, (boundary, tooth_or_all) in set_names(mesh, prefix).items():
+            edges = mesh.facets[boundary]
+            if tooth_or_all is not None:
+                edges = edges[mesh.facet_tooth[boundary] == tooth_or_all]
+            nodes[name] = node + np.unique(edges)
+            owner, side = _sides(mesh, edges)
+            surfaces.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
+            surfaces += [f"{e + first + 1}, S{s}" for e, s in zip(owner, side, strict=True)]
+        node, first = node + len(mesh.points), first + len(mesh.triangles)
+    places = np.concatenate(points)
+    places = np.column_stack([np.where(np.abs(places) < 1e-99, 0.0, places), np.zeros(len(places))])
+    whole = meshio.Mesh(
+        places, [("triangle6", np.concatenate(triangles))], point_sets=nodes, cell_sets=elements
+    )
+    text = StringIO()
+    # under its own name, since meshio's translation of six-node triangles is a shell
+    meshio.abaqus.write(text, whole, float_fmt=DIGITS, translate_cell_names=False)
+    deck = text.getvalue().replace("TYPE=triangle6", f"TYPE={element}", 1).replace(",\n", "\n")
+    return deck[deck.index("*NODE") :] + "\n".join(surfaces) + "\n"
 
 
 def _signed(tooth: int) -> str:
     return str(tooth) if tooth >= 0 else f"MINUS_{-tooth}"
 
 
-def _members(numbers: Integers) -> Iterator[str]:
-    """Sixteen numbers a line, as many as Abaqus takes."""
-    for start in range(0, len(numbers), 16):
-        yield ", ".join(map(str, numbers[start : start + 16].tolist()))
-
-
-def _sides(mesh: GearMesh, edges: Integers) -> tuple[Integers, Integers]:
+def _sides(mesh: GearMesh, edges: Integers) -> tuple[list[int], list[int]]:
     """Element of each edge and which of its sides (1, 2, 3) it is, by the node in the edge's middle."""
     middles = mesh.triangles[:, 3:].ravel()
     order = np.argsort(middles, kind="stable")
     place = order[np.searchsorted(middles, edges[:, 2], sorter=order)]
-    return place // 3, place % 3 + 1
+    return (place // 3).tolist(), (place % 3 + 1).tolist()

@@ -41,6 +41,12 @@ class GearMesh:
     facet_tooth: Mapping[str, Integers]
     nodes: Mapping[int, Integers]
 
+    @property
+    def teeth(self) -> list[int]:
+        """Numbers of the teeth, growing."""
+        found: list[int] = np.unique(self.tooth).tolist()
+        return found
+
 
 def turned(points: Array, angle: float) -> Array:
     """Points (n, 2) turned anticlockwise about the origin by an angle [rad]."""

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import signal
-import threading
-from itertools import count
 from typing import Any
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers, unclocked
+from base import Array, Fault, InputError, Integers
+from meshes.gmsh_session import gmsh_session
 from meshes.outline import crossing
 
 __all__ = ["triangulate"]
-
-_one_at_a_time = threading.Lock()  # gmsh keeps one state per process
-_names = count()
 
 
 def triangulate(polygon: Array) -> tuple[Array, Integers]:
@@ -50,8 +45,7 @@ def triangulate(polygon: Array) -> tuple[Array, Integers]:
     scale = float(np.max(np.ptp(polygon, axis=0)))
     # rounded, so that gears which differ in size alone get the same triangles whatever the last bit is
     shape = np.round(polygon / scale, 9)
-    with _one_at_a_time:
-        points, triangles = _fill(shape)
+    points, triangles = _fill(shape)
     if not np.allclose(points[: len(polygon)], shape, rtol=0, atol=1e-13):
         allowed = "must keep its nodes in place"
         raise InputError([Fault("outline", "moved by gmsh", allowed, "use smaller elements")])
@@ -64,57 +58,15 @@ def triangulate(polygon: Array) -> tuple[Array, Integers]:
 
 
 def _fill(polygon: Array) -> tuple[Array, Integers]:
-    gmsh = _load_gmsh()
-    began = not gmsh.isInitialized()
-    if began:
-        # interruptible=False: gmsh otherwise sets a signal handler, which only the main thread may do
-        gmsh.initialize(readConfigFiles=False, interruptible=False)
-        _keep_broken_pipes_harmless()
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
+    with gmsh_session() as gmsh:
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
         gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
-        name = f"sector {next(_names)}"
-        gmsh.model.add(name)
-        try:
-            return _mesh_polygon(gmsh, polygon)
-        finally:
-            gmsh.model.setCurrent(name)
-            gmsh.model.remove()
-    finally:
-        if began:
-            gmsh.finalize()
+        return _mesh_polygon(gmsh.model, polygon)
 
 
-def _keep_broken_pipes_harmless() -> None:
-    """Undo what gmsh does to SIGPIPE when it is first initialised: a write to a closed pipe would end the process.
-
-    Python ignores the signal and raises BrokenPipeError instead. Handlers can be set in the main thread alone; a
-    program that meshes in another one first keeps gmsh's choice.
-    """
-    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
-        handler = signal.getsignal(signal.SIGPIPE)
-        if handler is not None:
-            signal.signal(signal.SIGPIPE, handler)
-
-
-def _load_gmsh() -> Any:
-    """Load gmsh; where its shared libraries are missing say which, and what installs them."""
-    try:
-        with unclocked():
-            import gmsh
-    except OSError as fault:
-        packages = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
-        remedy = f"on Debian or Ubuntu: sudo apt-get install --no-install-recommends {packages}"
-        raise InputError([Fault("gmsh", str(fault), "requires shared libraries", remedy)]) from fault
-    return gmsh
-
-
-def _mesh_polygon(gmsh: object, polygon: Array) -> tuple[Array, Integers]:
-    model = gmsh.model  # type: ignore[attr-defined]
+def _mesh_polygon(model: Any, polygon: Array) -> tuple[Array, Integers]:
     geo, n = model.geo, len(polygon)
     corners = [geo.addPoint(float(x), float(y), 0.0) for x, y in polygon]
     lines = [geo.addLine(corners[i], corners[(i + 1) % n]) for i in range(n)]

@@ -121,7 +121,11 @@ def export_mesh(
     *,
     out: Annotated[Path, Parameter(help="Folder for pinion and wheel.")],
     format: Annotated[
-        Literal["inp", "msh"], Parameter(help="Input of CalculiX and Abaqus with loads, or mesh of gmsh.")
+        str,
+        Parameter(
+            help="inp: CalculiX and Abaqus with loads; msh: gmsh; vtm: named blocks of VTK; or another format of "
+            "meshio (med, vtu, xdmf, ...)."
+        ),
     ] = "inp",
     position: Annotated[
         float, Parameter(help="Travel after a pair is at A, over the base pitch, 0 to 1.")

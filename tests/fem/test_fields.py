@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
+import meshio
 import numpy as np
 import pytest
 
@@ -15,8 +16,7 @@ from fem.flamant import hertz_half_width
 from fem.picture import picture_of
 from fem.ring import mesh_and_factor
 from fem.tooth_root import root_stress
-from fem.vtk import write_vtk_series
-from fem.vtk_file import VERTEX, Grid, write_grid
+from fem.vtk import _rounded, _stored, _write_grid, write_vtk_series
 from meshes import Sizes
 
 
@@ -334,19 +334,17 @@ def test_stored_numbers_are_as_exact_as_promised(tmp_path):
     rng = np.random.default_rng(5)
     values = rng.normal(size=500) * 10.0 ** rng.integers(-20, 12, 500)
     values[:3] = 0.0, np.nan, -1.5
-    grid = Grid(
-        rng.normal(size=(500, 2)),
-        np.arange(500)[:, None],
-        VERTEX,
-        {"rough_Pa": values, "exact_m": values},
-        rounded={"rough_Pa"},
-    )
-    back = pyvista.read(write_grid(tmp_path / "a.vtu", grid))
+    places = rng.normal(size=(500, 3)).astype(np.float32)
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: np.arange(500)[:, None]}, places)
+    grid["exact_m"], grid["rough_Pa"] = _stored(values), _rounded(_stored(values))
+    _write_grid(tmp_path / "a.vtu", grid)
+    back = pyvista.read(tmp_path / "a.vtu")
     np.testing.assert_allclose(back["exact_m"], values, rtol=1e-7)
     np.testing.assert_allclose(back["rough_Pa"], values, rtol=2.5e-4)
-    np.testing.assert_allclose(back.points[:, :2], grid.points, rtol=1e-7)
-    empty = Grid(np.empty((0, 2)), np.empty((0, 1), dtype=int), VERTEX, {"force_N": np.empty((0, 2))})
-    assert pyvista.read(write_grid(tmp_path / "b.vtu", empty)).n_points == 0
+    np.testing.assert_array_equal(back.points, places)
+    assert meshio.read(tmp_path / "a.vtu").points.shape == (500, 3)
+    _write_grid(tmp_path / "b.vtu", pyvista.UnstructuredGrid())
+    assert pyvista.read(tmp_path / "b.vtu").n_points == 0
 
 
 def test_rows_outside_the_cycle_are_refused(article_pair, article_bodies, cycle):

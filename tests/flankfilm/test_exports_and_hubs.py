@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 
@@ -57,10 +58,18 @@ def _block(text, keyword):
 
 def test_meshes_for_gmsh(tmp_path):
     export("--out", tmp_path, "--format", "msh", "--refinements", "0", "--position", "0.1")
-    assert (tmp_path / "pinion.msh").read_text(encoding="ascii").startswith("$MeshFormat\n4.1")
+    assert (tmp_path / "pinion.msh").read_bytes().startswith(b"$MeshFormat\n4.1")
 
 
-@pytest.mark.parametrize(("option", "value"), [("--position", "1.5"), ("--refinements", "9")])
+def test_meshes_in_formats_of_meshio(tmp_path):
+    export("--out", tmp_path, "--format", "vtu", "--refinements", "0")
+    back = meshio.read(tmp_path / "wheel.vtu")
+    assert {"flank_left", "bore", "force_N"} <= back.point_data.keys()
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("--position", "1.5"), ("--refinements", "9"), ("--format", "step")]
+)
 def test_senseless_options_are_refused(tmp_path, option, value):
     told = export("--out", tmp_path, option, value, status=2).stderr
     assert option.strip("-") in told

@@ -28,23 +28,25 @@ def sections(text):
         if line.startswith("*"):
             found.append((line, []))
         else:
-            found[-1][1].append([part.strip() for part in line.split(",")])
+            found[-1][1].append([part.strip() for part in line.split(",") if part.strip()])
     return dict(found)
 
 
 def test_deck_reads_back_to_the_last_digit_that_a_deck_holds(some_teeth):
-    found = sections(mesh_text(some_teeth))
-    nodes = np.array(found["*NODE, NSET=GEAR"], dtype=float)
+    found = sections(mesh_text({"": some_teeth}))
+    nodes = np.array(found["*NODE"], dtype=float)
     np.testing.assert_array_equal(nodes[:, 0], 1 + np.arange(len(some_teeth.points)))
     np.testing.assert_allclose(nodes[:, 1:3], some_teeth.points, rtol=1e-13, atol=1e-30)
-    elements = np.array(found["*ELEMENT, TYPE=CPE6, ELSET=GEAR"], dtype=int)
+    elements = np.array(found["*ELEMENT, TYPE=CPE6"], dtype=int)
     np.testing.assert_array_equal(elements[:, 1:] - 1, some_teeth.triangles)
 
 
 def test_deck_names_sets_and_surfaces(some_teeth):
-    found = sections(mesh_text(some_teeth, "CPS6", prefix="P_", first_node=101, first_element=1001))
-    elements = np.array(found["*ELEMENT, TYPE=CPS6, ELSET=P_GEAR"], dtype=int)
-    assert elements[0, 0] == 1001
+    """Of two gears in one deck the second is numbered after the first."""
+    found = sections(mesh_text({"W_": some_teeth, "P_": some_teeth}, "CPS6"))
+    node, element = 1 + len(some_teeth.points), 1 + len(some_teeth.triangles)
+    elements = np.array(found["*ELEMENT, TYPE=CPS6"], dtype=int)[element - 1 :]
+    assert elements[0, 0] == element
     corners = dict(zip(elements[:, 0].tolist(), elements[:, 1:].tolist(), strict=True))
     names = set_names(some_teeth, "P_")
     assert {"P_FLANK_LEFT", "P_FLANK_LEFT_0", "P_FLANK_LEFT_MINUS_1", "P_TOP_1", "P_BORE"} <= names.keys()
@@ -54,14 +56,14 @@ def test_deck_names_sets_and_surfaces(some_teeth):
             edges = edges[some_teeth.facet_tooth[boundary] == tooth]
         # a surface names the same edges, first node, last node and middle in this order
         surface = [
-            [corners[int(e)][k] - 101 for k in SIDES[int(side[1])]]
+            [corners[int(e)][k] - node for k in SIDES[int(side[1])]]
             for e, side in found[f"*SURFACE, NAME={name}, TYPE=ELEMENT"]
         ]
         np.testing.assert_array_equal(surface, edges)
         members = np.concatenate([np.array(row, dtype=int) for row in found[f"*NSET, NSET={name}"]])
-        np.testing.assert_array_equal(members - 101, np.unique(edges))
+        np.testing.assert_array_equal(members - node, np.unique(edges))
     teeth = np.concatenate([np.array(row, dtype=int) for row in found["*ELSET, ELSET=P_TOOTH_MINUS_1"]])
-    np.testing.assert_array_equal(teeth - 1001, np.flatnonzero(some_teeth.tooth == -1))
+    np.testing.assert_array_equal(teeth - element, np.flatnonzero(some_teeth.tooth == -1))
     assert all(len(row) <= 16 for rows in found.values() for row in rows)
 
 

@@ -33,13 +33,13 @@ ROWS = (  # approach [m], smallest edge [m], penalty [N/mm^3], edges free
 
 def deck(pair, stand, contacts, bodies, approach, penalty):
     """Text of the deck, the numbers and places (mm) of the pinion's bore nodes."""
-    text, node, element, starts, meshes = ["*HEADING", "two gears, mm N MPa"], 1, 1, [], []
+    starts, meshes, node = [], [], 1
     for gear, body in enumerate(bodies):
         mesh = replace(body.mesh, points=MM * stand.out(gear, body.mesh.points))
-        text.append(mesh_text(mesh, "CPE6", PREFIX[gear], node, element).rstrip())
         starts.append(node)
         meshes.append(mesh)
-        node, element = node + len(mesh.points), element + len(mesh.triangles)
+        node += len(mesh.points)
+    text = ["*HEADING", "two gears, mm N MPa", mesh_text(dict(zip(PREFIX, meshes, strict=True))).rstrip()]
     for prefix, material in zip(PREFIX, pair.materials, strict=True):
         text += [f"*MATERIAL, NAME={prefix}MATERIAL", "*ELASTIC"]
         text += [f"{number(1e-6 * material.youngs_modulus)}, {number(material.poisson_ratio)}"]
