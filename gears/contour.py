@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from base import Array, Fault
+from base import Array, Fault, Faults
 from gears.errors import GeometryError
 from gears.placement import mirrored, turned
 from gears.profile import ToothProfile
@@ -150,16 +150,15 @@ def contour(
 
 
 def _check(profile: ToothProfile, teeth: int | None, tolerance: float) -> None:
-    faults = []
+    found = Faults()
     if teeth is not None and not 1 <= teeth <= profile.teeth:
         allowed = f"must be 1 to {profile.teeth}, or None"
-        faults.append(Fault("teeth", str(teeth), allowed, "take teeth that the gear has"))
+        found.add("teeth", str(teeth), allowed, "take teeth that the gear has")
     coarsest = 0.1 * profile.module
     if not FINEST <= tolerance <= coarsest:
         allowed = f"must be at least {FINEST:g} and at most {coarsest:g} m"
-        faults.append(Fault("tolerance", repr(tolerance), allowed, "give it in metres (1 um is 1e-6)"))
-    if faults:
-        raise GeometryError(faults)
+        found.add("tolerance", repr(tolerance), allowed, "give it in metres (1 um is 1e-6)")
+    found.raise_if_any(GeometryError)
 
 
 def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segment]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Fault
+from base import Array, Fault, Faults
 
 __all__ = ["GearDeviations", "PitchDeviations", "ProfileDeviation"]
 
@@ -17,12 +17,9 @@ def _numbers(values: ArrayLike) -> tuple[float, ...]:
     return tuple(float(value) for value in np.atleast_1d(np.asarray(values, dtype=float)).ravel())
 
 
-def _finite_faults(where: str, values: tuple[float, ...], unit: str) -> tuple[Fault, ...]:
-    if all(math.isfinite(value) for value in values):
-        return ()
-    return (
-        Fault(where, "not finite", f"must be finite numbers ({unit})", "leave out points without a value"),
-    )
+def _check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
+    if not all(math.isfinite(value) for value in values):
+        found.add(where, "not finite", "must be finite numbers (m)", "leave out points without a value")
 
 
 @dataclass(frozen=True)
@@ -56,22 +53,25 @@ class ProfileDeviation:
         """Curve given over the roll angle xi [rad], rho = r_b xi."""
         return cls(_numbers(base_radius * np.asarray(roll_angle, dtype=float)), _numbers(material))
 
+    def __repr__(self) -> str:
+        """One line: how many points, and where."""
+        if not self.rho:
+            return "ProfileDeviation(no points)"
+        ends = f"rho {1e3 * self.rho[0]:.6g} to {1e3 * self.rho[-1]:.6g} mm"
+        return f"ProfileDeviation({len(self.rho)} points, {ends})"
+
     def faults(self, where: str = "profile") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
-        found = (
-            *_finite_faults(f"{where}.rho", self.rho, "m"),
-            *_finite_faults(f"{where}.material", self.material, "m"),
-        )
+        found = Faults()
+        _check_finite(found, f"{where}.rho", self.rho)
+        _check_finite(found, f"{where}.material", self.material)
         if len(self.rho) != len(self.material) or len(self.rho) < 2:
             points = f"{len(self.rho)} and {len(self.material)} points"
-            found = (
-                *found,
-                Fault(where, points, "must be as many radii as values, at least 2", "give pairs"),
-            )
-        if not found and not np.all(np.diff(self.rho) > 0):
+            found.add(where, points, "must be as many radii as values, at least 2", "give pairs")
+        if not found.found and not np.all(np.diff(self.rho) > 0):
             remedy = "sort the points and leave out doubles"
-            found = (Fault(f"{where}.rho", "not growing", "must be growing curvature radii", remedy),)
-        return found
+            found.add(f"{where}.rho", "not growing", "must be growing curvature radii", remedy)
+        return tuple(found.found)
 
     def at(self, rho: float | Array) -> Array:
         """Excess of material at curvature radii `rho` [m], an array like it [m]."""
@@ -104,6 +104,11 @@ class PitchDeviations:
     cumulative : (z,) sequence
         Cumulative (index) pitch deviation of each tooth's flank [m]. The same constant on all teeth is a turn
         of the gear, and shifts the transmission error by that.
+
+    Examples
+    --------
+    >>> PitchDeviations.from_single([2e-6, -1e-6, -1e-6]).cumulative
+    (0.0, -1e-06, -2e-06)
     """
 
     cumulative: tuple[float, ...]  # m
@@ -123,6 +128,11 @@ class PitchDeviations:
         summed = np.cumsum(pitches - pitches.mean()) if pitches.size else pitches
         return cls(_numbers(summed - summed[0]) if pitches.size else ())
 
+    def __repr__(self) -> str:
+        """One line: how many teeth, and how far their flanks lie apart."""
+        spread = max(self.cumulative, default=0.0) - min(self.cumulative, default=0.0)
+        return f"PitchDeviations({len(self.cumulative)} teeth, total {1e6 * spread:.4g} um)"
+
     @property
     def single(self) -> Array:
         """Single pitch deviations (z,) [m], value i of the pitch from tooth i - 1 to tooth i."""
@@ -131,14 +141,12 @@ class PitchDeviations:
 
     def faults(self, where: str, teeth: int) -> tuple[Fault, ...]:
         """All faults of the values for a gear of so many teeth, empty when there are none."""
-        found = _finite_faults(where, self.cumulative, "m")
+        found = Faults()
+        _check_finite(found, where, self.cumulative)
         if len(self.cumulative) != teeth:
             count = f"{len(self.cumulative)} values"
-            found = (
-                *found,
-                Fault(where, count, f"must be {teeth}, one for each tooth", "give every tooth's"),
-            )
-        return found
+            found.add(where, count, f"must be {teeth}, one for each tooth", "give every tooth's")
+        return tuple(found.found)
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
-from base import Fault, Faults, Limit
+from base import Fault, Faults, Limit, shorten
 
 __all__ = ["LIMITS", "RELIEF_LIMITS", "Gear", "TipRelief"]
 
@@ -77,6 +77,11 @@ class Gear:
         Relief of the flank towards the tip.
     tip_chamfer : float
         Radial height of a chamfer of 45 deg at the tip edges [m].
+
+    Examples
+    --------
+    >>> Gear(teeth=21, profile_shift=0.2, tip_relief=TipRelief(amount=20e-6, length=2e-3))
+    Gear(teeth=21, profile_shift=0.2, tip_relief=TipRelief(amount=2e-05, length=0.002, form='linear'))
     """
 
     teeth: int  # z
@@ -86,6 +91,17 @@ class Gear:
     thickness_allowance: float = 0.0  # arc at the reference circle, m
     tip_relief: TipRelief | None = None
     tip_chamfer: float = 0.0  # radial height, m
+
+    def __repr__(self) -> str:
+        """Teeth, and what differs from the defaults."""
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        defaults = {field.name: field.default for field in fields(self)}
+        changed = (
+            f"{name}={f'{value:.9g}' if isinstance(value, float) else shorten(value)}"
+            for name, value in given.items()
+            if value != defaults[name]
+        )
+        return f"Gear({', '.join(changed)})"
 
     def faults(self, where: str = "gear") -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""

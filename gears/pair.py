@@ -144,47 +144,46 @@ class GearPair:
         assert second is not None
         return first, second
 
+    def _of_both(self, name: str) -> tuple[float, float]:
+        """Length that each tooth has, of pinion and wheel [m]."""
+        first, second = (getattr(tooth, name) for tooth in self.teeth_profiles)
+        return first, second
+
     @property
     @described("m", "gear", shown="mm")
     def reference_radii(self) -> tuple[float, float]:
         """Reference radius, r = m z / 2."""
-        first, second = self.teeth_profiles
-        return first.reference_radius, second.reference_radius
+        return self._of_both("reference_radius")
 
     @property
     @described("m", "gear", shown="mm")
     def base_radii(self) -> tuple[float, float]:
         """Base radius, r_b = r cos alpha."""
-        first, second = self.teeth_profiles
-        return first.base_radius, second.base_radius
+        return self._of_both("base_radius")
 
     @property
     @described("m", "gear", shown="mm")
     def root_radii(self) -> tuple[float, float]:
         """Root radius, r_f = r - m (h_fP - x)."""
-        first, second = self.teeth_profiles
-        return first.root_radius, second.root_radius
+        return self._of_both("root_radius")
 
     @property
     @described("m", "gear", shown="mm")
     def tip_radii(self) -> tuple[float, float]:
         """Tip radius, r_a = r + m (h_aP + x + k)."""
-        first, second = self.teeth_profiles
-        return first.tip_radius, second.tip_radius
+        return self._of_both("tip_radius")
 
     @property
     @described("m", "gear", shown="mm")
     def form_radii(self) -> tuple[float, float]:
         """Form radius, at which the involute starts."""
-        first, second = self.teeth_profiles
-        return first.form_radius, second.form_radius
+        return self._of_both("form_radius")
 
     @property
     @described("m", "gear", shown="mm")
     def bore_radii(self) -> tuple[float, float]:
         """Bore radius, half the root radius where none was given."""
-        first, second = self.teeth_profiles
-        return first.bore_radius, second.bore_radius
+        return self._of_both("bore_radius")
 
     @property
     @described("1")

@@ -58,6 +58,14 @@ class ToothProfile:
     undercut: bool
     tip_relief: TipRelief | None = None
 
+    def __repr__(self) -> str:
+        """One line: the tooth among its like."""
+        tip, root = 1e3 * self.tip_radius, 1e3 * self.root_radius
+        return (
+            f"ToothProfile({self.teeth} teeth, module {1e3 * self.module:.6g} mm, "
+            f"root radius {root:.7g} mm, tip radius {tip:.7g} mm)"
+        )
+
     @property
     def pitch_angle(self) -> float:
         """Angle between neighbouring teeth, 2 pi / z [rad]."""
