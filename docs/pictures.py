@@ -22,8 +22,8 @@ def main() -> None:
         run_scene(read_scene(EXAMPLES / "article.toml"), folder)
         with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
             save({"teeth": figures.tooth_stress(results), "stiffness": figures.mesh_stiffness(results)})
-        figures.tooth_picture(folder, IMAGES / "tooth.webp", size=(960, 640))
-        figures.animate_cycle(folder, IMAGES / "mesh_cycle.webp", size=(390, 260))
+        figures.tooth_picture(folder, IMAGES / "tooth.webp", frame=figures.Frame(size=(960, 640)))
+        figures.animate_cycle(folder, IMAGES / "mesh_cycle.webp", frame=figures.Frame(size=(390, 260)))
 
 
 if __name__ == "__main__":

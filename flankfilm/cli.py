@@ -271,28 +271,22 @@ def new(scene: Path, /) -> int:
     return 0
 
 
-for _function, _name, _help in (
-    ("import_gears", "import", "Write a scene from the gear data in FILE (REXS, XML)."),
+for _module, _function, _name, _help in (
+    ("exchange", "import_gears", "import", "Write a scene from the gear data in FILE (REXS, XML)."),
+    ("exchange", "export_profile", "export-profile", "Write the tooth profile of a gear of SCENE."),
     (
-        "export_profile",
-        "export-profile",
-        "Write the tooth profile of a gear of SCENE as a drawing or as points.",
-    ),
-    (
+        "exchange",
         "export_mesh",
         "export",
-        "Write both gears of SCENE, loaded as they mesh, for CalculiX, Abaqus or gmsh.",
+        "Write both gears of SCENE, loaded as they mesh, for other programs.",
     ),
-    ("export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
-    ("completion", "completion", "Print the script that completes commands in bash, zsh or fish."),
+    ("exchange", "export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
+    ("exchange", "completion", "completion", "Print the script that completes commands in SHELL."),
+    ("figures", "view", "view", "Show the fields in RESULTS on the deformed teeth."),
+    ("figures", "animate", "animate", "Draw the mesh cycle in RESULTS, deformed."),
 ):
     # the module is loaded when the command is called
-    app.command(f"flankfilm.exchange.commands:{_function}", name=_name, help=_help)
-
-
-app.command(
-    "flankfilm.figures.commands:animate", name="animate", help="Draw the mesh cycle in RESULTS, deformed."
-)
+    app.command(f"flankfilm.{_module}.commands:{_function}", name=_name, help=_help)
 
 
 def guarded(command: Callable[[], int]) -> int:

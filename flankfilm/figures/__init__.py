@@ -4,7 +4,7 @@ The report and the documentation draw with the same functions. ``results.nc``, `
 ``verify.nc`` hold all that they need, so that any figure can be drawn again in a style of one's own.
 """
 
-from flankfilm.figures.animation import animate_cycle, tooth_picture
+from flankfilm.figures.animation import Frame, animate_cycle, teeth_scene, tooth_picture, view_cycle
 from flankfilm.figures.diagrams import diagram
 from flankfilm.figures.film import (
     film_along_path,
@@ -23,6 +23,7 @@ from flankfilm.figures.studies import study
 from flankfilm.figures.verified import verification
 
 __all__ = [
+    "Frame",
     "animate_cycle",
     "diagram",
     "film_along_path",
@@ -44,8 +45,10 @@ __all__ = [
     "single_pairs",
     "study",
     "sweep",
+    "teeth_scene",
     "tooth_picture",
     "tooth_stress",
     "transmission_error",
     "verification",
+    "view_cycle",
 ]

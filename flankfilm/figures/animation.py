@@ -6,10 +6,11 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import asdict
-from importlib.util import find_spec
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from base import Fault, InputError, SolverError, shorten
 from base.files import replacing
@@ -35,18 +36,34 @@ NO_OPENGL = (
 )
 
 
+@dataclass(frozen=True)
+class Frame:
+    """How the loaded teeth are drawn.
+
+    Parameters
+    ----------
+    size : tuple of int
+        Width and height [pixels].
+    scale : float, optional
+        Factor of the displacements; chosen so that they show unless given.
+    field : str
+        Field of the files for ParaView that gives the colours, such as ``von_mises_Pa`` or ``displacement_m``.
+    position : float, optional
+        Base pitches from A, of the one picture or of the window's start; a pair at the pitch point unless given.
+    """
+
+    size: tuple[int, int] = (1440, 960)
+    scale: float | None = None
+    field: str = "von_mises_Pa"
+    position: float | None = None
+
+
 def animate_cycle(
-    folder: Path | str,
-    target: Path | str,
-    *,
-    seconds: float = 2.0,
-    size: tuple[int, int] = (720, 480),
-    scale: float | None = None,
+    folder: Path | str, target: Path | str, *, seconds: float = 2.0, frame: Frame = Frame(size=(720, 480))
 ) -> Path:
     """Draw one base pitch of the mesh cycle as an animation that repeats without a seam.
 
-    Colours are the von Mises stress; teeth are drawn deformed, and the pinion ahead by the transmission error,
-    all by one factor that the picture tells.
+    Teeth are drawn deformed, and the pinion ahead by the transmission error, all by one factor that the picture names.
 
     Parameters
     ----------
@@ -56,10 +73,8 @@ def animate_cycle(
         File to write: ``.gif``, or ``.webp`` with all colours.
     seconds : float
         Length.
-    size : tuple of int
-        Width and height [pixels].
-    scale : float, optional
-        Factor of the displacements; chosen so that they show unless given.
+    frame : Frame
+        Size, scale and field.
 
     Returns
     -------
@@ -69,119 +84,146 @@ def animate_cycle(
     Raises
     ------
     InputError
-        Without pyvista, without the run's files, or with another suffix.
+        Without the run's files, with another suffix, or for a field that the files do not hold.
     SolverError
-        Where the machine cannot draw; the message tells what to install.
+        Where the machine cannot draw; the message says what to install.
     """
-    return _render(Path(folder), Path(target), MOVING, size, scale, seconds=seconds, only=0.0)
+    return _render(Path(folder), Path(target), MOVING, frame, seconds)
 
 
-def tooth_picture(
-    folder: Path | str,
-    target: Path | str,
-    *,
-    phase: float | None = None,
-    size: tuple[int, int] = (1440, 960),
-    scale: float | None = None,
-) -> Path:
-    """Draw the von Mises stress on the deformed teeth at one position.
+def tooth_picture(folder: Path | str, target: Path | str, *, frame: Frame = Frame()) -> Path:
+    """Draw a field on the deformed teeth at one position into ``.png``, ``.jpg`` or ``.webp``.
 
     Parameters
     ----------
-    folder : Path
-        Of a run that wants ``vtk``.
-    target : Path
-        File to write: ``.png``, ``.jpg`` or ``.webp``.
-    phase : float, optional
-        Travel after a pair is at A [base pitches]; a pair at the pitch point unless given.
-    size : tuple of int
-        Width and height [pixels].
-    scale : float, optional
-        Factor of the displacements; chosen so that they show unless given.
+    folder, target, frame
+        As of `animate_cycle`.
 
     Returns
     -------
     Path
         The file.
-
-    Raises
-    ------
-    InputError, SolverError
-        As `animate_cycle` does.
     """
-    return _render(Path(folder), Path(target), STILL, size, scale, seconds=0.0, only=phase)
+    return _render(Path(folder), Path(target), STILL, frame)
+
+
+def view_cycle(folder: Path | str, *, frame: Frame = Frame()) -> None:
+    """Open a window with the fields of the mesh cycle, its positions under a slider; returns when it is closed.
+
+    Parameters
+    ----------
+    folder, frame
+        As of `animate_cycle`.
+    """
+    import xarray as xr
+
+    _check(Path(folder), None, ())
+    with xr.open_dataset(Path(folder) / "results.nc", engine="h5netcdf") as results:
+        view = _view(results, Path(folder), Path(), frame)
+    _in_a_process(replace(view, window=True), patience=None)
+
+
+def teeth_scene(folder: Path | str, *, frame: Frame = Frame(size=(720, 480))) -> Any:
+    """Loaded teeth at one position as a scene of pyvista, for notebooks: its ``show`` draws it in the cell.
+
+    Parameters
+    ----------
+    folder, frame
+        As of `animate_cycle`.
+
+    Returns
+    -------
+    pyvista.Plotter
+        VTK ends the process where OpenGL is missing.
+    """
+    import xarray as xr
+
+    from flankfilm.figures.rendering import draw, plotter_of, steps
+
+    _check(Path(folder), None, ())
+    with xr.open_dataset(Path(folder) / "results.nc", engine="h5netcdf") as results:
+        view = _view(results, Path(folder), Path(), frame)
+    plotter, chosen = plotter_of(view), steps(Path(folder))
+    at = min(chosen, key=lambda place: abs(place - view.only))
+    draw(plotter, view, at, chosen[at])
+    return plotter
 
 
 def _render(
-    folder: Path,
-    target: Path,
-    suffixes: tuple[str, ...],
-    size: tuple[int, int],
-    scale: float | None,
-    seconds: float,
-    only: float | None,
+    folder: Path, target: Path, suffixes: tuple[str, ...], frame: Frame, seconds: float = 0.0
 ) -> Path:
-    _check(folder, target, suffixes)
     import xarray as xr
 
+    _check(folder, target, suffixes)
     with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results, replacing(target) as beside:
-        _in_a_process(_view(results, folder, beside, size, scale, seconds, only))
+        _in_a_process(replace(_view(results, folder, beside, frame), seconds=seconds))
     return target
 
 
-def _check(folder: Path, target: Path, suffixes: tuple[str, ...]) -> None:
+def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None:
     """Refuse, all at once, what cannot lead to a picture."""
     faults = []
-    if target.suffix not in suffixes:
+    if target is not None and target.suffix not in suffixes:
         faults.append(
             Fault(str(target), "", f"must end in {' or '.join(suffixes)}", "The suffix is the format")
         )
     missing = [name for name in ("results.nc", "mesh_cycle.pvd") if not (folder / name).is_file()]
     if missing:
-        told = f"holds no {' and no '.join(missing)}"
-        faults.append(Fault(str(folder), "", told, 'Run a scene that wants "vtk" into it'))
-    if find_spec("pyvista") is None:
-        faults.append(Fault("pyvista", "", "is not installed", "pip install 'flankfilm[pictures]'"))
+        lacks = f"holds no {' and no '.join(missing)}"
+        faults.append(Fault(str(folder), "", lacks, 'Run a scene that wants "vtk" into it'))
     if faults:
         raise InputError(faults)
 
 
-def _view(
-    results: xr.Dataset,
-    folder: Path,
-    target: Path,
-    size: tuple[int, int],
-    scale: float | None,
-    seconds: float,
-    only: float | None,
-) -> View:
+def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View:
     need(results, 'run a scene that wants "vtk" with this version', "field_point", "module", "base_radius")
     prefix = "lubricated" if "lubricated_phase" in results else "dry"
     error = results[f"{prefix}_transmission_error"].values
+    scale, position = frame.scale, frame.position
     if scale is None:
         scale = _round(SHOWN * float(results["module"]) / float(error.max()))
-    if only is None:
+    if position is None:
         at_pitch = float(results["path_point_rho1"][2] - results["path_point_rho1"][0])
-        only = at_pitch / float(results["base_pitch"]) % 1.0
+        position = at_pitch / float(results["base_pitch"]) % 1.0
     x, y = results["field_centre"].values.tolist()
-    top = stress_of_nearly_all(results)
-    step = _round(top / 3)
-    ticks = math.ceil(top / step)
+    step, ticks = _scale_of_colours(results, folder, frame.field)
     return View(
         folder=str(folder.absolute()),
         target=str(target.absolute()),
-        size=size,
+        size=frame.size,
         scale=scale,
-        greatest=1e6 * step * ticks,
+        greatest=step * ticks,
         ticks=ticks,
         centre=(x, y),
         reach=0.8 * float(results["field_reach"]),
         base_radius=float(results["base_radius"][0]),
         phase=tuple(results[f"{prefix}_phase"].values.tolist()),
         error=tuple(error.tolist()),
-        seconds=seconds,
-        only=only,
+        seconds=0.0,
+        only=position,
+        field=frame.field,
     )
+
+
+def _scale_of_colours(results: xr.Dataset, folder: Path, field: str) -> tuple[float, int]:
+    """Step between the ticks of the scale of colours, and their number; from all but the peaks under contacts."""
+    import pyvista as pv
+
+    from flankfilm.figures.rendering import steps
+
+    if field == Frame.field:
+        top = 1e6 * stress_of_nearly_all(results)
+    else:
+        files = next(iter(steps(folder).values()))
+        grids = [pv.read(files[gear]) for gear in ("pinion", "wheel")]
+        if missing := [grid for grid in grids if field not in grid.point_data]:
+            held = ", ".join(missing[0].point_data.keys())
+            raise InputError([Fault("field", field, "must be a field of the files", f"Such as {held}")])
+        values = [np.asarray(grid[field]) for grid in grids]
+        sizes = [v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]
+        top = float(np.quantile(np.abs(np.concatenate(sizes)), 0.997))
+    step = _round(top / 3)
+    return step, math.ceil(top / step)
 
 
 def _round(value: float) -> float:
@@ -190,7 +232,7 @@ def _round(value: float) -> float:
     return max(ten * n for n in (1, 2, 5) if ten * n <= value)
 
 
-def _in_a_process(view: View) -> None:
+def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:
     """Draw in a process of its own, which a missing OpenGL may kill."""
     command = [sys.executable, "-m", "flankfilm.figures.rendering"]
     try:
@@ -199,12 +241,12 @@ def _in_a_process(view: View) -> None:
             input=json.dumps(asdict(view)),
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=patience,
             check=False,
         )
     except subprocess.TimeoutExpired as fault:
         raise SolverError(
-            f"the picture was not drawn within {PATIENCE:.0f} s; ask for a smaller size"
+            f"the picture was not drawn within {patience:.0f} s; ask for a smaller size"
         ) from fault
     if done.returncode == 0:
         return

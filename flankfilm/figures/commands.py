@@ -8,6 +8,40 @@ from typing import Annotated
 from cyclopts import Parameter, validators
 
 
+def view(
+    results: Path,
+    /,
+    *,
+    field: Annotated[
+        str, Parameter(help="Field of the files for ParaView, such as von_mises_Pa, displacement_m.")
+    ] = "von_mises_Pa",
+    position: Annotated[
+        float | None, Parameter(help="Base pitches from A; a pair at the pitch point if left out.")
+    ] = None,
+    scale: Annotated[
+        float | None, Parameter(help="Factor of the displacements; so that they show if left out.")
+    ] = None,
+    out: Annotated[
+        Path | None, Parameter(help="Write a picture, .png, .jpg or .webp, instead of opening a window.")
+    ] = None,
+) -> int:
+    """Show the fields in the folder RESULTS on the deformed teeth, in a window with a slider over the mesh cycle.
+
+    Parameters
+    ----------
+    results : Path
+        Folder of a run that wants vtk.
+    """
+    from flankfilm.figures.animation import Frame, tooth_picture, view_cycle
+
+    frame = Frame(field=field, position=position, scale=scale)
+    if out is None:
+        view_cycle(results, frame=frame)
+    else:
+        print(f"{tooth_picture(results, out, frame=frame)} is written.")
+    return 0
+
+
 def animate(
     results: Path,
     /,
@@ -29,9 +63,9 @@ def animate(
     width : int
         Of the picture [pixels]; the height is two thirds of it.
     """
-    from flankfilm.figures.animation import animate_cycle
+    from flankfilm.figures.animation import Frame, animate_cycle
 
     target = results / "mesh_cycle.gif" if out is None else out
-    animate_cycle(results, target, seconds=seconds, size=(width, 2 * width // 3))
+    animate_cycle(results, target, seconds=seconds, frame=Frame(size=(width, 2 * width // 3)))
     print(f"{target}: {target.stat().st_size / 1e3:.0f} kB")
     return 0

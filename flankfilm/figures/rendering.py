@@ -1,7 +1,7 @@
 """Draws the loaded teeth with VTK, in a process of its own: ``python -m flankfilm.figures.rendering``.
 
 A machine without OpenGL ends the process that draws, with a signal rather than an exception; `animation` starts
-this one, and tells what happened to it.
+this one, and reports what happened to it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,9 @@ from flankfilm.figures.view import View
 
 INK, PAPER = "#1c2126", "#ffffff"
 
+SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
+"""Ending of a field's name to the unit that people read, and its factor."""
+
 COLOURS = 160
 """Colours of the scale in a GIF, which can hold 256 in all."""
 
@@ -34,26 +37,49 @@ def steps(folder: Path) -> dict[float, dict[str, Path]]:
 
 def frames(view: View) -> Iterator[Any]:
     """Draw the positions, each as an array of pixels."""
-    import pyvista as pv
-
     chosen = steps(Path(view.folder))
     if not view.seconds:
         nearest = min(chosen, key=lambda at: abs(at - view.only))
         chosen = {nearest: chosen[nearest]}
-    plotter = pv.Plotter(off_screen=True, window_size=list(view.size), lighting="none")
-    plotter.set_background(PAPER)
-    plotter.enable_parallel_projection()
+    plotter = plotter_of(view, off_screen=True)
     for at, files in chosen.items():
-        plotter.clear()
-        _draw(plotter, view, at, files)
+        draw(plotter, view, at, files)
         yield plotter.screenshot(return_img=True)
     plotter.close()
 
 
-def _draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
-    """One position: stress on the deformed teeth, and the forces between them."""
+def plotter_of(view: View, **options: Any) -> Any:
+    """Empty picture, seen from the front."""
     import pyvista as pv
 
+    plotter = pv.Plotter(window_size=list(view.size), lighting="none", **options)
+    plotter.set_background(PAPER)
+    plotter.enable_parallel_projection()
+    return plotter
+
+
+def show(view: View) -> None:
+    """Open a window with a slider over the positions."""
+    plotter, chosen = plotter_of(view), steps(Path(view.folder))
+    places = list(chosen)
+
+    def move(value: float) -> None:
+        at = min(places, key=lambda place: abs(place - value))
+        draw(plotter, view, at, chosen[at])
+
+    start = min(places, key=lambda place: abs(place - view.only))
+    plotter.add_slider_widget(
+        move, [places[0], places[-1]], value=start, title="base pitches from A", color=PAPER,
+        pointa=(0.65, 0.93), pointb=(0.97, 0.93), title_height=0.02, fmt="%.3f",
+    )  # fmt: skip
+    plotter.show(title="flankfilm")
+
+
+def draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
+    """One position: a field on the deformed teeth, and their outlines; replaces the position before."""
+    import pyvista as pv
+
+    unit, factor = SHOWN_UNITS.get(view.field.rpartition("_")[2], ("", 1.0))
     # the pinion turns ahead by the deflection, as much exaggerated as the displacements
     turn = view.scale * float(np.interp(at, view.phase, view.error)) / view.base_radius
     for name, angle in (("pinion", turn), ("wheel", 0.0)):
@@ -62,25 +88,33 @@ def _draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
         gear = gear.extract_cells(np.flatnonzero(near))
         ahead = angle * np.column_stack([-gear.points[:, 1], gear.points[:, 0], np.zeros(gear.n_points)])
         gear.points = gear.points + view.scale * gear["displacement_m"] + ahead
-        gear["stress"] = 1e-6 * gear["von_mises_Pa"]
+        values = np.asarray(gear[view.field])
+        gear["shown"] = factor * (values if values.ndim == 1 else np.linalg.norm(values, axis=1))
         surface = gear.extract_surface(nonlinear_subdivision=1, algorithm="dataset_surface")
         bar = {
-            "title": "von Mises stress [MPa]", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
+            "title": f"{title(view.field)}{unit}", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
             "fmt": "%.0f", "position_x": 0.3, "position_y": 0.03, "width": 0.4, "height": 0.09,
             "title_font_size": view.size[1] // 32, "label_font_size": view.size[1] // 36,
         }  # fmt: skip
         plotter.add_mesh(
-            surface, scalars="stress", cmap="viridis", clim=(0.0, 1e-6 * view.greatest), lighting=False,
+            surface, scalars="shown", cmap="viridis", clim=(0.0, factor * view.greatest), lighting=False, name=name,
             show_scalar_bar=name == "pinion", scalar_bar_args=bar if name == "pinion" else None,
         )  # fmt: skip
         edges = _outline(surface)
         if edges.n_cells:
-            plotter.add_mesh(edges, color=INK, line_width=view.size[1] / 400, lighting=False)
-    told, corner = f"displacements x {view.scale:g}", (view.size[1] // 40, view.size[1] - view.size[1] // 15)
-    plotter.add_text(told, position=corner, font_size=view.size[1] // 56, color=PAPER)
+            width = view.size[1] / 400
+            plotter.add_mesh(edges, color=INK, line_width=width, lighting=False, name=f"{name} outline")
+    text, corner = f"displacements x {view.scale:g}", (view.size[1] // 40, view.size[1] - view.size[1] // 15)
+    plotter.add_text(text, position=corner, font_size=view.size[1] // 56, color=PAPER, name="scale")
     x, y = view.centre
     plotter.camera_position = [(x, y, 1.0), (x, y, 0.0), (0.0, 1.0, 0.0)]
     plotter.camera.parallel_scale = view.reach * view.size[1] / view.size[0]
+
+
+def title(field: str) -> str:
+    """Words of a field's name without its unit."""
+    words = field.rpartition("_")[0] if field.rpartition("_")[2] in SHOWN_UNITS else field
+    return "von Mises stress" if words == "von_mises" else words.replace("_", " ")
 
 
 def _outline(surface: Any) -> Any:
@@ -96,8 +130,8 @@ def _outline(surface: Any) -> Any:
     square = np.maximum(np.sum(along**2, axis=1), 1e-30)
     alone = np.ones(len(ends), dtype=bool)
     for i, middle in enumerate(ends.mean(axis=1)):
-        way = np.clip(np.sum((middle - start) * along, axis=1) / square, 0.0, 1.0)
-        distance = np.sum((middle - start - way[:, None] * along) ** 2, axis=1)
+        share = np.clip(np.sum((middle - start) * along, axis=1) / square, 0.0, 1.0)
+        distance = np.sum((middle - start - share[:, None] * along) ** 2, axis=1)
         distance[i] = np.inf
         alone[i] = distance.min() > 0.04 * square[i]
     return edges.extract_cells(np.flatnonzero(alone))
@@ -138,4 +172,5 @@ def _palette() -> Any:
 
 
 if __name__ == "__main__":
-    write(View(**json.load(sys.stdin)))
+    asked = View(**json.load(sys.stdin))
+    show(asked) if asked.window else write(asked)

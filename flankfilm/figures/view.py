@@ -33,6 +33,10 @@ class View:
         Length of the animation; 0 for one picture.
     only : float
         Position of the one picture [base pitches].
+    field : str
+        Name of the field that is drawn.
+    window : bool
+        Whether a window is opened instead of a file written.
     """
 
     folder: str
@@ -48,3 +52,5 @@ class View:
     error: tuple[float, ...]
     seconds: float
     only: float
+    field: str = "von_mises_Pa"
+    window: bool = False

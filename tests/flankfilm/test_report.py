@@ -75,7 +75,7 @@ OF_A_RUN = (
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
 OF_OTHERS = {"optimum", "study", "verification"}
-ELSEWHERE = {"animate_cycle", "film_families", "tooth_picture"}
+ELSEWHERE = {"Frame", "animate_cycle", "film_families", "teeth_scene", "tooth_picture", "view_cycle"}
 
 PURE = {"motion n-p-q", "evaluation"}
 """Titles of axes that have no unit to tell."""

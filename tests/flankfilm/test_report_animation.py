@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ import fem
 from base import InputError, SolverError
 from fem.vtk import write_vtk_series
 from flankfilm.cache import Cache
-from flankfilm.figures import animate_cycle, animation, tooth_picture
+from flankfilm.figures import Frame, animate_cycle, animation, tooth_picture
 from flankfilm.outputs import results_dataset, write_data
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
@@ -69,7 +70,7 @@ def drawn(draw, *arguments, **options) -> Path:
 def frames(run, tmp_path_factory) -> list[np.ndarray]:
     """Frames of the animation."""
     file = tmp_path_factory.mktemp("moving") / "cycle.gif"
-    drawn(animate_cycle, run, file, size=(240, 160), seconds=1.5)
+    drawn(animate_cycle, run, file, seconds=1.5, frame=Frame(size=(240, 160)))
     with Image.open(file) as moving:
         assert moving.n_frames == 3
         assert moving.info["duration"] == 500
@@ -93,7 +94,7 @@ def test_the_animation_shows_stress_that_moves(frames):
 
 
 def test_the_picture_takes_the_position_that_is_asked_for(run, frames, tmp_path):
-    file = drawn(tooth_picture, run, tmp_path / "last.png", phase=0.7, size=(240, 160))
+    file = drawn(tooth_picture, run, tmp_path / "last.png", frame=Frame(size=(240, 160), position=0.7))
     picture = np.asarray(Image.open(file), dtype=float)
     assert picture.shape == (160, 240, 3)
     apart = [np.abs(frame - picture).mean() for frame in frames]
@@ -107,10 +108,41 @@ def test_faults_are_told_together(tmp_path):
     assert 'wants "vtk"' in str(told.value)
 
 
-def test_without_pyvista_the_extra_is_named(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(animation, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"flankfilm\[pictures\]"):
-        animate_cycle(run, tmp_path / "cycle.gif")
+def test_other_fields_are_drawn_and_an_unknown_one_is_refused(run, tmp_path):
+    frame = Frame(size=(240, 160), field="displacement_m", position=0.1)
+    moved = np.asarray(
+        Image.open(drawn(tooth_picture, run, tmp_path / "moved.png", frame=frame)), dtype=float
+    )
+    frame = replace(frame, field="von_mises_Pa")
+    stress = np.asarray(
+        Image.open(drawn(tooth_picture, run, tmp_path / "stress.png", frame=frame)), dtype=float
+    )
+    assert np.abs(moved - stress).mean() > 5
+    with pytest.raises(
+        InputError, match=r"field = heat: must be a field of the files. Such as .*displacement_m"
+    ):
+        tooth_picture(run, tmp_path / "heat.png", frame=replace(frame, field="heat"))
+
+
+DRAW = """
+import sys
+from flankfilm.figures import Frame, teeth_scene
+plotter = teeth_scene(sys.argv[1], frame=Frame(size=(240, 160)))
+plotter.off_screen = True
+plotter.screenshot(sys.argv[2])
+"""
+
+
+def test_a_notebook_gets_the_same_scene(run, tmp_path):
+    file = drawn(tooth_picture, run, tmp_path / "picture.png", frame=Frame(size=(240, 160)))
+    # VTK in a process of its own: it ends the one that it is in where OpenGL is missing
+    environment = {**os.environ, "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
+    scene = [sys.executable, "-c", DRAW, str(run), str(tmp_path / "scene.png")]
+    subprocess.run(scene, check=True, timeout=120, env=environment, capture_output=True)
+    both = [
+        np.asarray(Image.open(path).convert("RGB"), dtype=float) for path in (file, tmp_path / "scene.png")
+    ]
+    assert np.abs(both[0] - both[1]).mean() < 1
 
 
 @pytest.mark.parametrize("end", ["import os; os.kill(os.getpid(), 11)", "raise RuntimeError('no display')"])
