@@ -7,9 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Stopwatch
 from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch
 from dynamics.branch_problem import BranchPoint, BranchProblem, Steps
 from dynamics.corrector import passes
@@ -18,7 +17,6 @@ from dynamics.special import SpecialPoint
 
 __all__ = ["follow"]
 
-FloatArray = npt.NDArray[np.float64]
 FLAT = np.array([0.0, 0.0, 1.0])  # across which the parameter is held
 LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
 ENDLESS = 1e4  # times its first size: a motion that grows without bound
@@ -26,7 +24,7 @@ ENDLESS = 1e4  # times its first size: a motion that grows without bound
 
 def follow(
     problem: BranchProblem,
-    state: FloatArray,
+    state: Array,
     value: float,
     steps: Steps,
     progress: Callable[[int, float], None] | None,
@@ -39,7 +37,7 @@ def follow(
         If Newton's method does not arrive at the start.
     """
     watch = Stopwatch()
-    start = problem.correct(_unknowns(problem, state, value), FLAT)
+    start = problem.correct(problem.unknowns(state, value), FLAT)
     if start is None:
         faults = Faults()
         faults.add("orbit", value, "must be an orbit that can be continued", "at a fold, start beside it")
@@ -54,16 +52,12 @@ def follow(
     return _joined(walkers, watch)
 
 
-def _unknowns(problem: BranchProblem, state: FloatArray, value: float) -> FloatArray:
-    return np.array([*(state / problem.scale), (value - problem.low) / (problem.high - problem.low)])
-
-
 @dataclass(frozen=True, eq=False)
 class _Step:
     """A step that may be taken."""
 
     point: BranchPoint
-    tangent: FloatArray
+    tangent: Array
     special: list[SpecialPoint]
     complete: bool  # whether the special points explain all that changes
 
@@ -72,7 +66,7 @@ class _Walker:
     """Steps from a start in one direction until a reason to end."""
 
     def __init__(
-        self, problem: BranchProblem, start: BranchPoint, along: FloatArray, steps: Steps,
+        self, problem: BranchProblem, start: BranchPoint, along: Array, steps: Steps,
         progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         self.problem, self.steps, self.progress = problem, steps, progress
@@ -80,7 +74,7 @@ class _Walker:
         self.size = problem.scale
         self.points, self.states = [start], [start.u[:2] * problem.scale]
         self.special: list[SpecialPoint] = []
-        self.tangent, self.bend = problem.tangent(start, along), np.zeros(3)
+        self.tangent, self.bend = start.tangent(along), np.zeros(3)
         self.phases = problem.phases(start)
         self.half = self._half(start)
         self.ended, self.refused = "", ""
@@ -115,7 +109,7 @@ class _Walker:
             elif size > LARGE:
                 self._magnify(size)
 
-    def _half(self, point: BranchPoint) -> FloatArray:
+    def _half(self, point: BranchPoint) -> Array:
         """From the state to the state half the orbit's period later; 0 if n is odd."""
         if self.problem.periods % 2:
             return np.zeros(2)
@@ -126,7 +120,7 @@ class _Walker:
         larger = self.problem.magnified(factor)
         if larger is None:
             return
-        again = larger.correct(_unknowns(larger, self.states[-1], self.points[-1].value), FLAT)
+        again = larger.correct(larger.unknowns(self.states[-1], self.points[-1].value), FLAT)
         if again is None:
             return
         self.problem, self.points[-1] = larger, again
@@ -134,7 +128,7 @@ class _Walker:
         self.phases = (np.array(self.phases) * shrink).tolist()
         self.bend = np.zeros(3)
         self.half = self.half / factor
-        self.tangent = larger.tangent(again, self.tangent * shrink)
+        self.tangent = again.tangent(self.tangent * shrink)
 
     def _try(self, last: BranchPoint) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
@@ -154,7 +148,7 @@ class _Walker:
         chord = new.u - last.u
         if math.sqrt(chord @ chord) > 2.0 * self.step and math.isnan(bound):
             return None
-        tangent = self.problem.tangent(new, chord)
+        tangent = new.tangent(chord)
         patient = self.step > 16.0 * self.steps.least
         self.refused = "the branch has a corner"
         if tangent @ self.tangent < 0.9 and patient:
@@ -164,9 +158,7 @@ class _Walker:
             return None
         return self._between(last, new, tangent, patient)
 
-    def _between(
-        self, last: BranchPoint, new: BranchPoint, tangent: FloatArray, patient: bool
-    ) -> _Step | None:
+    def _between(self, last: BranchPoint, new: BranchPoint, tangent: Array, patient: bool) -> _Step | None:
         """The step with its special points; None if one is not located and a shorter step may help."""
         crossings, explained = self.problem.crossings(last, new)
         if not explained and patient:
@@ -178,7 +170,7 @@ class _Walker:
             return None
         chord = new.u - last.u
         found = [p for p, _ in looked if p is not None]
-        found.sort(key=lambda p: float((_unknowns(self.problem, p.state, p.parameter) - last.u) @ chord))
+        found.sort(key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord))
         return _Step(new, tangent, found, explained and arrived)
 
     def _accept(self, step: _Step) -> None:

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.exponents import stretch_rate
-from dynamics.flow import Tables, period_map, tables
 from dynamics.homes import Homes
-from dynamics.limits import NUMBER, RADIUS
-from dynamics.oscillator import GearOscillator
+from dynamics.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
+from dynamics.protocol import Flow, Oscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart
-from dynamics.sweeps import APERIODIC, creeping, repeat_after, settling_periods
+from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after, settling_periods
 
 __all__ = ["Attractor", "BasinResult", "basins"]
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
 PATIENCE = 20  # times the limit that a motion which does not repeat is followed on
@@ -29,61 +25,37 @@ TRIALS = 3  # motions followed so far to tell chaos from a long transient
 SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Attractor:
-    """An attractor and its share of the starts.
+    """An attractor and its share of the starts."""
 
-    Parameters
-    ----------
-    label : str
-        n-p-q, or "aperiodic".
-    states : ndarray, shape (n, 2)
-        Its points at tau = 0 mod the excitation period; samples of them if it is aperiodic.
-    orbit : Orbit or None
-        The periodic orbit, polished by Newton's method; None if aperiodic.
-    share : float
-        Part of the starts that come to it.
-    share_error : float
-        Standard error of the share if the starts are taken for a sample.
-    """
+    headline = ("label", "share", "share_error")
 
-    label: str
-    states: FloatArray
+    label: str = quantity("", "n-p-q, or aperiodic")
+    states: Array = quantity(
+        "1",
+        "its points at tau = 0 mod the excitation period; samples of them if it is aperiodic",
+        "point coordinate",
+    )
     orbit: Orbit | None
-    share: float
-    share_error: float
+    """The periodic orbit, polished by Newton's method; None if aperiodic."""
+    share: float = quantity("1", "part of the starts that come to it")
+    share_error: float = quantity("1", "standard error of the share if the starts are taken for a sample")
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class BasinResult:
-    """Which attractor every start comes to.
+    """Which attractor every start comes to."""
 
-    Parameters
-    ----------
-    x, v : ndarray, shape (nx,) and (nv,)
-        Starting values.
-    labels : ndarray of int, shape (nx, nv)
-        Index into `attractors`; -1 unsettled, -2 unbounded. X runs along the first axis.
-    attractors : tuple of Attractor
-        In the order in which they were found; all aperiodic motion counts as one.
-    error : float
-        Part of the starts unsettled plus the largest standard error of a share.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether every start has settled.
-    message : str
-        What was found, with a remedy if some starts have not settled.
-    """
-
-    x: FloatArray
-    v: FloatArray
-    labels: IntArray
+    x: Array = quantity("1", "starting values of X", "x")
+    v: Array = quantity("1", "starting values of V", "v")
+    labels: Integers = quantity("1", "index into the attractors; -1 unsettled, -2 unbounded", "x v")
     attractors: tuple[Attractor, ...]
-    error: float
+    """In the order in which they were found; all aperiodic motion counts as one."""
+    error: float = quantity("1", "part of the starts unsettled plus the largest standard error of a share")
     cost: Cost
-    converged: bool
-    message: str
+    converged: bool = quantity("1", "whether every start has settled")
+    message: str = quantity("", "what was found, with a remedy if some starts have not settled")
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
@@ -93,13 +65,14 @@ class BasinResult:
 
 
 def basins(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     x: tuple[float, float, int],
     v: tuple[float, float, int],
     *,
     limit: int | None = None,
     radius: float = 1e-4,
     max_period: int = 16,
+    tolerance: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BasinResult:
     """Find the attractors that a grid of starts comes to, and which start comes to which.
@@ -113,7 +86,7 @@ def basins(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     x, v : tuple
         First value, last value and number of starting values of X and of V.
@@ -123,6 +96,8 @@ def basins(
         Nearness to an attractor, over the size of the attractor.
     max_period : int
         Longest period that is recognised; longer ones count as aperiodic.
+    tolerance : float, optional
+        Of the flow, as of `period_map`; 1e-9 for steps, rounding for the exact flow.
     progress : callable, optional
         Called with the number of starts decided and the number of all.
 
@@ -135,20 +110,25 @@ def basins(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> [attractor.label for attractor in basins(oscillator, x=(-1, 1, 6), v=(-1, 1, 6)).attractors]
+    ['1-1-0']
     """
     watch = Stopwatch()
     faults = Faults()
-    xs, vs = (_axis(faults, name, axis) for name, axis in (("x", x), ("v", v)))
+    xs, vs = (checked_axis(faults, name, axis) for name, axis in (("x", x), ("v", v)))
     near = faults.number("radius", radius, RADIUS)
-    longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
-    wait = (
-        settling_periods(oscillator) if limit is None else faults.whole("limit", limit, 1, 10**7, "give more")
-    )
+    longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
+    wait = settling_periods(oscillator) if limit is None else faults.whole("limit", limit, *PATIENT)
     faults.raise_if_any()
-    table = tables(oscillator)
+    flow = long_flow(oscillator, tolerance)
     starts = np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1).reshape(-1, 2)
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
-    found = _Found(oscillator, table, longest, near, wait)
+    found = _Found(oscillator, flow, longest, near, wait)
     sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
     for i in sample:
         labels[i] = found.follow(starts[i], wait)
@@ -188,58 +168,56 @@ def basins(
 class _Found:
     """Attractors found so far."""
 
-    def __init__(
-        self, oscillator: GearOscillator, table: Tables, longest: int, near: float, limit: int
-    ) -> None:
-        self.oscillator, self.table, self.longest, self.near = oscillator, table, longest, near
+    def __init__(self, oscillator: Oscillator, flow: Flow, longest: int, near: float, limit: int) -> None:
+        self.oscillator, self.flow, self.longest, self.near = oscillator, flow, longest, near
         self.orbits: list[Orbit | None] = []
-        self.points: list[FloatArray] = []
+        self.points: list[Array] = []
         self.periods = self.iterations = self.trials = 0
         self.patience = PATIENCE * limit
         self.sieves: list[_Sieve] = []
 
-    def follow(self, state: FloatArray, wait: int) -> int:
+    def follow(self, state: Array, wait: int) -> int:
         """Attractor that one state comes to, noted if it is new; or one of the negative labels."""
         kept = 4 * self.longest
-        image = period_map(self.table, state, kept, skip=wait)
+        image = self.flow.follow(state, kept, wait, derivatives=False)
         self.periods += kept + wait
         if image.message:
             return UNBOUNDED
-        n = repeat_after(image.states, self.longest)
+        n = repeat_after(image.states, self.longest, self.flow.tolerance)
         return self.polish(image.states, n) if n else self.wandering(image.states)
 
-    def wandering(self, states: FloatArray) -> int:
+    def wandering(self, states: Array) -> int:
         """Label of a motion that does not repeat: chaotic, on its way to an orbit after all, or unsettled."""
         if self.oscillator.damping_ratio == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
             return self.note(None, states)
         if self.trials == TRIALS:
             return UNSETTLED
         self.trials += 1
-        motion, exponent, error = stretch_rate(self.table, states[-1], self.patience)
+        motion, exponent, error = stretch_rate(self.flow, states[-1], self.patience)
         self.periods += self.patience
         if not np.all(np.isfinite(motion)):
             return UNBOUNDED
         end = motion[-4 * self.longest :]
-        n = repeat_after(end, self.longest)
+        n = repeat_after(end, self.longest, self.flow.tolerance)
         if n:
             return self.polish(end, n)
         if exponent > 3.0 * error:
             self.sieves.append(_Sieve(motion))
             return self.note(None, states)
-        n, _, more = creeping(self.oscillator, self.table, end, self.longest)
+        n, _, more = creeping(self.oscillator, self.flow, end, self.longest)
         return self.polish(end, n) if n and more else UNSETTLED
 
-    def polish(self, states: FloatArray, n: int) -> int:
+    def polish(self, states: Array, n: int) -> int:
         """Label of a motion that nearly repeats after n periods, if Newton's method finds its orbit."""
-        orbit = find_orbit(self.oscillator, states[-1], periods=n)
+        orbit = find_orbit(self.oscillator, states[-1], periods=n, tolerance=orbit_tolerance(self.flow))
         self.periods += orbit.cost.periods
         self.iterations += orbit.cost.iterations
         size = max(float(np.max(np.abs(states))), 1e-300)
         if not (orbit.converged and orbit.stable and apart(orbit.state, states) < 1e-3 * size):
             return UNSETTLED
-        return self.note(orbit, period_map(self.table, orbit.state, orbit.periods).states)
+        return self.note(orbit, self.flow.follow(orbit.state, orbit.periods, derivatives=False).states)
 
-    def note(self, orbit: Orbit | None, states: FloatArray) -> int:
+    def note(self, orbit: Orbit | None, states: Array) -> int:
         """Index of an attractor, known or new; all aperiodic motion counts as one."""
         for i, (other, points) in enumerate(zip(self.orbits, self.points, strict=True)):
             if orbit is None or other is None:
@@ -253,7 +231,7 @@ class _Found:
         self.points.append(states)
         return len(self.orbits) - 1
 
-    def settle(self, starts: FloatArray, limit: int, labels: IntArray, which: int = UNDECIDED) -> None:
+    def settle(self, starts: Array, limit: int, labels: Integers, which: int = UNDECIDED) -> None:
         """Follow all starts with the label `which` until they arrive at a known periodic attractor."""
         if which != UNDECIDED:
             some = labels == which
@@ -264,11 +242,11 @@ class _Found:
                 labels[some], starts[some] = mine, there
             return
         known = [None if orbit is None else p for orbit, p in zip(self.orbits, self.points, strict=True)]
-        homes = Homes(self.table, known, self.near)
+        homes = Homes(self.flow, known, self.near)
         homes.settle(starts, limit, labels)
         self.periods += homes.periods
 
-    def attractors(self, labels: IntArray) -> tuple[Attractor, ...]:
+    def attractors(self, labels: Integers) -> tuple[Attractor, ...]:
         """Records with their shares."""
         records = []
         for i, (orbit, states) in enumerate(zip(self.orbits, self.points, strict=True)):
@@ -281,7 +259,7 @@ class _Found:
 class _Sieve:
     """The cells of a rectangle that a chaotic motion visits, and their neighbours."""
 
-    def __init__(self, motion: FloatArray) -> None:
+    def __init__(self, motion: Array) -> None:
         self.low = motion.min(axis=0)
         self.size = np.maximum((motion.max(axis=0) - self.low) / SIEVE, 1e-300)
         visited = np.zeros((SIEVE + 4, SIEVE + 4), dtype=bool)
@@ -290,21 +268,11 @@ class _Sieve:
         for shift in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
             self.open |= np.roll(visited, shift, axis=(0, 1))
 
-    def _cells(self, states: FloatArray) -> IntArray:
+    def _cells(self, states: Array) -> Integers:
         """Indices of the cells; what lies far outside comes to the margin, which stays closed."""
         at = np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0)
         return np.asarray(at, dtype=np.int64)
 
-    def holds(self, states: FloatArray) -> bool:
-        """Tell whether a motion has come to it: all of the later half of its states."""
+    def holds(self, states: Array) -> bool:
+        """Whether a motion has come to it: all of the later half of its states."""
         return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :]).T)]))
-
-
-def _axis(faults: Faults, name: str, given: tuple[float, float, int]) -> FloatArray:
-    """Starting values of one axis."""
-    if len(given) != 3:
-        faults.add(name, given, "must be (first, last, number)", "give three numbers")
-        return np.zeros(1)
-    low, high = (faults.number(f"{name}[{i}]", given[i], NUMBER) for i in range(2))
-    count = faults.whole(f"{name}[2]", given[2], 1, 100_000, "give the number of values")
-    return np.linspace(low, high, count) if np.isfinite(low + high) else np.zeros(1)

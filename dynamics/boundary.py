@@ -13,6 +13,7 @@ from dynamics.flow import tables
 from dynamics.homes import Homes
 from dynamics.limits import CONFIDENCE, RADIUS
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.regions import Region, checked_region
 
 __all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
@@ -90,6 +91,7 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     return max((middle - half) / whole, 0.0), min((middle + half) / whole, 1.0)
 
 
+@exact_only
 def basin_boundary(
     oscillator: GearOscillator,
     attractors: Sequence[Attractor],

@@ -2,71 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost
+from base import Array, Booleans, Cost, quantity, record
 from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["GOOD_ENDS", "KINDS", "MEETS", "UNBOUNDED", "Branch"]
 
-FloatArray = npt.NDArray[np.float64]
 MEETS = "meets the branch of half the period"
 UNBOUNDED = "the motion grows without bound"
 GOOD_ENDS = ("bound", "closed", MEETS, UNBOUNDED)
 KINDS = ("saddle-node", "period-doubling", "grazing")
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Branch:
-    """A branch of periodic orbits.
+    """A branch of periodic orbits."""
 
-    Parameters
-    ----------
-    parameter : str
-        What was varied.
-    periods : int
-        Period of the orbits, in excitation periods.
-    values : ndarray, shape (m,)
-        Parameter along the branch.
-    states : ndarray, shape (m, 2)
-        X and V at tau = 0.
-    multipliers : ndarray of complex, shape (m, 2)
-        Floquet multipliers.
-    stable : ndarray of bool, shape (m,)
-        Stability.
-    labels : tuple of str
-        n-p-q or Un-p-q.
-    points : tuple of SpecialPoint
-        Special points in their order along the branch.
-    ended : tuple of str
-        Why the branch ended at its first and at its last point.
-    error : float
-        Largest estimated relative error of a special point's parameter.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether both ends were reached for a good reason (a bound, the start again, the branch of half the period,
-        motion without bound, to which resonances lead) and every special point seen was located.
-    message : str
-        What happened, with a remedy if not converged.
-    """
+    headline = ("parameter", "periods")
 
-    parameter: str
-    periods: int
-    values: FloatArray
-    states: FloatArray
-    multipliers: npt.NDArray[np.complex128]
-    stable: npt.NDArray[np.bool_]
-    labels: tuple[str, ...]
+    parameter: str = quantity("", "what was varied")
+    periods: int = quantity("1", "period of the orbits, in excitation periods")
+    values: Array = quantity("1", "parameter along the branch", "point")
+    states: Array = quantity("1", "X and V at tau = 0", "point coordinate")
+    multipliers: npt.NDArray[np.complex128] = quantity("1", "Floquet multipliers", "point multiplier")
+    stable: Booleans = quantity("1", "stability", "point")
+    labels: tuple[str, ...] = quantity("", "n-p-q or Un-p-q", "point")
     points: tuple[SpecialPoint, ...]
-    ended: tuple[str, str]
-    error: float
+    """Special points in their order along the branch."""
+    ended: tuple[str, str] = quantity("", "why the branch ended at its first and at its last point", "end")
+    error: float = quantity("1", "largest estimated relative error of a special point's parameter")
     cost: Cost
-    converged: bool
-    message: str
+    converged: bool = quantity(
+        "1", "whether both ends were reached for a good reason (a bound, the start again, the branch of half the "
+        "period, motion without bound, to which resonances lead) and every special point seen was located"
+    )  # fmt: skip
+    message: str = quantity("", "what happened, with a remedy if not converged")
 
     def special(self, kind: str) -> list[SpecialPoint]:
         """Special points of one kind, in their order along the branch.

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Faults
-from dynamics.limits import NUMBER, STEP
+from base import Array, Faults
+from dynamics.limits import MAX_POINTS, STEP, ordered
 from dynamics.special import SpecialPoint
 
-__all__ = ["BranchPoint", "BranchProblem", "Steps", "checked_range"]
+__all__ = ["BranchPoint", "BranchProblem", "PlanePoint", "Steps", "checked_range", "match_extrema"]
 
-FloatArray = npt.NDArray[np.float64]
+NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
 
 class BranchPoint(Protocol):
@@ -36,7 +37,7 @@ class BranchPoint(Protocol):
     """
 
     @property
-    def u(self) -> FloatArray: ...  # noqa: D102
+    def u(self) -> Array: ...  # noqa: D102
 
     @property
     def value(self) -> float: ...  # noqa: D102
@@ -47,11 +48,69 @@ class BranchPoint(Protocol):
     @property
     def determinant(self) -> float: ...  # noqa: D102
 
+    def tangent(self, along: Array) -> Array:
+        """Unit vector along the branch, turned to the side of `along`."""
+        ...
+
     @property
     def counts(self) -> tuple[int, int]: ...  # noqa: D102
 
     @property
     def iterations(self) -> int: ...  # noqa: D102
+
+
+class PlanePoint:
+    """What points of the map of a plane have in common.
+
+    Attributes
+    ----------
+    derivative : ndarray, shape (2, 2 + m)
+        Of the image with respect to the unknowns; its first two columns are the Jacobian.
+    determinant : float
+        Of the Jacobian.
+    extrema : ndarray, shape (k, 3)
+        Phase in [0, 1) of the orbit's period, X, X'' at every extremum of X.
+    """
+
+    derivative: Array
+    determinant: float
+    extrema: Array
+
+    @cached_property
+    def trace(self) -> float:
+        """Trace of the Jacobian."""
+        return float(self.derivative[0, 0] + self.derivative[1, 1])
+
+    @property
+    def fold(self) -> float:
+        """Product of (1 - multiplier): zero at a saddle node."""
+        return 1.0 + self.determinant - self.trace
+
+    @property
+    def flip(self) -> float:
+        """Product of (1 + multiplier): zero at a period doubling."""
+        return 1.0 + self.determinant + self.trace
+
+    def tangent(self, along: Array) -> Array:
+        """Unit vector along the branch of one parameter, turned to the side of `along`."""
+        (a, b, c), (d, e, f) = self.derivative.tolist()
+        a, e = a - 1.0, e - 1.0
+        normal = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
+        size = math.sqrt(float(normal @ normal))
+        if not size > 0.0:
+            return np.asarray(along / np.linalg.norm(along))
+        return normal / (size if normal @ along >= 0.0 else -size)
+
+
+def match_extrema(a: PlanePoint, b: PlanePoint) -> list[tuple[int, int]]:
+    """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
+    if len(a.extrema) == 0 or len(b.extrema) == 0:
+        return []
+    gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
+    gap = np.minimum(gap, 1.0 - gap)
+    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
+    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
+    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
 
 
 class BranchProblem(Protocol):
@@ -63,8 +122,6 @@ class BranchProblem(Protocol):
         What is varied.
     periods : int
         Of the orbits.
-    low, high : float
-        Range of the parameter.
     scale : float
         Size of the motion.
     maps : int
@@ -78,30 +135,24 @@ class BranchProblem(Protocol):
     def periods(self) -> int: ...  # noqa: D102
 
     @property
-    def low(self) -> float: ...  # noqa: D102
-
-    @property
-    def high(self) -> float: ...  # noqa: D102
-
-    @property
     def scale(self) -> float: ...  # noqa: D102
 
     @property
     def maps(self) -> int: ...  # noqa: D102
 
-    def correct(self, guess: FloatArray, across: FloatArray) -> Any:
-        """Orbit in the plane across . (u - guess) = 0; None if Newton's method does not arrive."""
+    def unknowns(self, state: Array, value: float) -> Array:
+        """Unknowns of a state and a value of the parameter."""
         ...
 
-    def tangent(self, point: Any, along: FloatArray) -> FloatArray:
-        """Unit vector along the branch, turned to the side of `along`."""
+    def correct(self, guess: Array, across: Array) -> Any:
+        """Orbit in the plane across . (u - guess) = 0; None if Newton's method does not arrive."""
         ...
 
     def phases(self, point: Any) -> list[list[float]]:
         """Unknowns of a point, its orbit taken from each excitation period on."""
         ...
 
-    def half_way(self, point: Any) -> FloatArray:
+    def half_way(self, point: Any) -> Array:
         """X and V over the scale after half the orbit's period; asked for even periods only."""
         ...
 
@@ -139,16 +190,14 @@ class Steps:
         """Note what is not allowed."""
         for name, number in (("step", self.first), ("max_step", self.most), ("min_step", self.least)):
             faults.number(name, number, STEP)
-        faults.whole("max_points", self.points, 1, 10**7, "5000 is usual")
+        faults.whole("max_points", self.points, *MAX_POINTS)
 
 
 def checked_range(
     faults: Faults, bounds: tuple[float, float], parameter: str, value: float
 ) -> tuple[float, float]:
     """Bounds as numbers; notes if they are none, out of order, or do not hold the value."""
-    low, high = (faults.number(f"bounds[{i}]", bounds[i], NUMBER) for i in range(2))
-    if not low < high:
-        faults.add("bounds", bounds, "must have the lower value first", "give (low, high)")
+    low, high = ordered(faults, "bounds", bounds)
     if not low <= value <= high:
         faults.add("orbit", value, f"must have its {parameter} within bounds", "widen the bounds")
     return low, high

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Faults
+from base import Array, Faults
 from dynamics.arclength import follow
 from dynamics.branch import Branch
 from dynamics.branch_problem import Steps, checked_range
@@ -16,10 +15,9 @@ from dynamics.corrector import OrbitProblem, Point
 from dynamics.crossings import Crossing, find_crossings, locate
 from dynamics.shooting import Orbit
 from dynamics.special import SpecialPoint
+from dynamics.stepwise.problem import PeriodMap
 
-__all__ = ["continue_branch"]
-
-FloatArray = npt.NDArray[np.float64]
+__all__ = ["ExactBranch", "continue_branch", "follow_branch"]
 
 
 def continue_branch(
@@ -43,9 +41,9 @@ def continue_branch(
     Parameters
     ----------
     orbit : Orbit
-        A converged orbit within the bounds.
+        A converged orbit within the bounds; the tolerance that it was found with is kept.
     parameter : str
-        As in `GearOscillator.with_parameter`.
+        One of the `parameters` of its oscillator.
     bounds : tuple of float
         Range of the parameter.
     step, max_step, min_step : float
@@ -58,12 +56,21 @@ def continue_branch(
     Returns
     -------
     Branch
-        Points, stability and special points.
+        Points, stability and special points: saddle nodes, period doublings, grazings; where damping depends on the
+        motion Neimark-Sacker points, too.
 
     Raises
     ------
     InputError
         If an argument is out of range, or the orbit has not converged or lies outside the bounds.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
+    >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
+    >>> branch = continue_branch(find_orbit(oscillator, (0.3, 0.0)), "frequency", (0.45, 0.6))
+    >>> [point.kind for point in branch.points]
+    []
     """
     faults = Faults()
     steps = Steps(step, max_step, min_step, max_points)
@@ -73,70 +80,78 @@ def continue_branch(
         faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
     steps.check(faults)
     faults.raise_if_any()
-    scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.half_backlash, 1e-300)
-    orbits = OrbitProblem(
-        orbit.oscillator, (parameter,), orbit.periods, np.array([low]), np.array([high]), scale
-    )
-    return follow(_Exact(orbits), orbit.state, value, steps, progress)
+    scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.floor)
+    problem = orbit.oscillator.orbits(parameter, orbit.periods, (low, high), scale, orbit.tolerance)
+    return follow(problem, orbit.state, value, steps, progress)
 
 
-@dataclass(frozen=True)
-class _Exact:
-    """Orbits of the exact flow, as `dynamics.arclength` takes them."""
+def follow_branch(
+    problem: PeriodMap,
+    state: Array,
+    value: float,
+    steps: tuple[float, float, float] = (0.005, 0.02, 1e-8),
+    *,
+    max_points: int = 5000,
+    progress: Callable[[int, float], None] | None = None,
+) -> Branch:
+    """Do the same for any `PeriodMap`, from a periodic orbit at a value of its parameter.
 
-    orbits: OrbitProblem
-    maps: int = 3
+    Parameters
+    ----------
+    problem : PeriodMap
+        The map.
+    state : ndarray, shape (2,)
+        X and V of the orbit.
+    value : float
+        Of the parameter, there.
+    steps : tuple of float
+        First, largest and smallest step, as of `continue_branch`.
+    max_points : int
+        Points in each direction.
+    progress : callable, optional
+        Called with the number of points and the parameter value.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or Newton's method does not arrive at the start.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, PowerContact, SmoothOscillator, find_orbit
+    >>> law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=0.2)
+    >>> orbit = find_orbit(SmoothOscillator(law, 0.05, 0.1, 0.02, 0.5), (0.3, 0.0), tolerance=1e-9)
+    >>> problem = orbit.oscillator.orbits("frequency", 1, (0.49, 0.51), scale=0.3, tolerance=1e-9)
+    >>> follow_branch(problem, orbit.state, 0.5).converged
+    True
+    """
+    faults = Faults()
+    chosen = Steps(*steps, max_points)
+    chosen.check(faults)
+    faults.raise_if_any()
+    return follow(problem, state, value, chosen, progress)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactBranch(OrbitProblem):
+    """Orbits of the exact flow over one parameter, as `dynamics.arclength` takes them."""
+
+    maps = 3
 
     @property
     def parameter(self) -> str:
         """What is varied."""
-        return self.orbits.parameters[0]
-
-    @property
-    def periods(self) -> int:
-        """Of the orbits."""
-        return self.orbits.periods
-
-    @property
-    def low(self) -> float:
-        """Least value."""
-        return float(self.orbits.low[0])
-
-    @property
-    def high(self) -> float:
-        """Greatest value."""
-        return float(self.orbits.high[0])
-
-    @property
-    def scale(self) -> float:
-        """Size of the motion."""
-        return self.orbits.scale
-
-    def correct(self, guess: FloatArray, across: FloatArray) -> Point | None:
-        """Orbit in a plane."""
-        return self.orbits.correct(guess, across)
-
-    def tangent(self, point: Point, along: FloatArray) -> FloatArray:
-        """Unit vector along the branch."""
-        return self.orbits.tangent(point, along)
-
-    def phases(self, point: Point) -> list[list[float]]:
-        """Unknowns from each excitation period on."""
-        return self.orbits.phases(point)
-
-    def half_way(self, point: Point) -> FloatArray:
-        """State after half the orbit's period."""
-        return self.orbits.half_way(point)
+        return self.parameters[0]
 
     def crossings(self, last: Point, new: Point) -> tuple[list[Crossing], bool]:
         """Changes of sign between neighbours."""
-        return find_crossings(self.orbits, last, new)
+        return find_crossings(self, last, new)
 
     def locate(self, last: Point, new: Point, crossing: Crossing) -> tuple[SpecialPoint | None, bool]:
         """Special point of a crossing."""
-        point = locate(self.orbits, last, new, crossing)
+        point = locate(self, last, new, crossing)
         return point, point is not None
 
-    def magnified(self, factor: float) -> _Exact:
+    def magnified(self, factor: float) -> ExactBranch:
         """With a larger scale."""
-        return _Exact(replace(self.orbits, scale=factor * self.orbits.scale))
+        return replace(self, scale=factor * self.scale)

@@ -9,19 +9,19 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from base import Array, Integers
+from dynamics.branch_problem import PlanePoint
 from dynamics.flow import DEGREE, period_map
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
-from dynamics.shooting import EPS
+from dynamics.protocol import EPS
 
 __all__ = ["OrbitProblem", "Point", "passes", "rounding"]
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 ROOM = 64  # extrema expected at most; more are asked for if there are more
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class Point(PlanePoint):
     """A periodic orbit, or a state near one, with the derivatives of its map.
 
     Parameters
@@ -52,17 +52,17 @@ class Point:
         Newton iterations.
     """
 
-    u: FloatArray
-    values: FloatArray
-    state: FloatArray
-    image: FloatArray
-    derivative: FloatArray
-    second: FloatArray
+    u: Array
+    values: Array
+    state: Array
+    image: Array
+    derivative: Array
+    second: Array
     determinant: float
-    determinant_slope: FloatArray
+    determinant_slope: Array
     counts: tuple[int, int]
-    extrema: FloatArray
-    extrema_slope: FloatArray
+    extrema: Array
+    extrema_slope: Array
     residual: float
     iterations: int
 
@@ -72,29 +72,14 @@ class Point:
         return float(self.values[0])
 
     @property
-    def jacobian(self) -> FloatArray:
+    def jacobian(self) -> Array:
         """Derivative of the map with respect to the state."""
         return self.derivative[:, :2]
 
-    @cached_property
-    def trace(self) -> float:
-        """Trace of the Jacobian."""
-        return float(self.derivative[0, 0] + self.derivative[1, 1])
-
     @property
-    def trace_slope(self) -> FloatArray:
+    def trace_slope(self) -> Array:
         """Its derivative with respect to the unknowns."""
         return self.second[:, 0, 0] + self.second[:, 1, 1]
-
-    @property
-    def fold(self) -> float:
-        """Product of (1 - multiplier): zero at a saddle node."""
-        return 1.0 + self.determinant - self.trace
-
-    @property
-    def flip(self) -> float:
-        """Product of (1 + multiplier): zero at a period doubling."""
-        return 1.0 + self.determinant + self.trace
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,12 +103,12 @@ class OrbitProblem:
     oscillator: GearOscillator
     parameters: tuple[str, ...]
     periods: int
-    low: FloatArray
-    high: FloatArray
+    low: Array
+    high: Array
     scale: float
 
     @cached_property
-    def origin(self) -> FloatArray:
+    def origin(self) -> Array:
         """Packed parameters of the oscillator with every parameter at its lower bound."""
         packed = self.oscillator.packed()
         for name, low in zip(self.parameters, self.low, strict=True):
@@ -131,34 +116,34 @@ class OrbitProblem:
         return packed
 
     @cached_property
-    def ways(self) -> FloatArray:
+    def ways(self) -> Array:
         """Change of the packed parameters over the range of each parameter, shape (m, any)."""
         ways = np.zeros((len(self.parameters), len(self.origin)))
         for row, name, width in zip(ways, self.parameters, self.high - self.low, strict=True):
             row[self.oscillator.place(name)] = width
         return ways
 
-    def packed(self, u: FloatArray) -> FloatArray:
+    def packed(self, u: Array) -> Array:
         """Packed parameters of the unknowns."""
         return self.origin + u[2:] @ self.ways
 
-    def at(self, u: FloatArray) -> GearOscillator:
+    def at(self, u: Array) -> GearOscillator:
         """Oscillator of the unknowns."""
         here = self.oscillator
         for name, value in zip(self.parameters, self.values(u), strict=True):
             here = here.with_parameter(name, float(value))
         return here
 
-    def values(self, u: FloatArray) -> FloatArray:
+    def values(self, u: Array) -> Array:
         """Parameters of the unknowns."""
         return np.asarray(self.low + u[2:] * (self.high - self.low))
 
-    def unknowns(self, state: FloatArray, values: npt.ArrayLike) -> FloatArray:
+    def unknowns(self, state: Array, values: npt.ArrayLike) -> Array:
         """Unknowns of a state and the parameter values."""
         fraction = (np.atleast_1d(np.asarray(values, dtype=np.float64)) - self.low) / (self.high - self.low)
         return np.concatenate([np.asarray(state) / self.scale, fraction])
 
-    def evaluate(self, u: FloatArray, refinement: int = 1) -> Point | None:
+    def evaluate(self, u: Array, refinement: int = 1) -> Point | None:
         """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
         from dynamics.kernels.correcting import evaluate
 
@@ -176,9 +161,7 @@ class OrbitProblem:
                 return self._point(u.copy(), store, turned, residual, 0)
             store = _Store(len(self.parameters), turned)
 
-    def correct(
-        self, guess: FloatArray, across: FloatArray, refinement: int = 1, limit: int = 12
-    ) -> Point | None:
+    def correct(self, guess: Array, across: Array, refinement: int = 1, limit: int = 12) -> Point | None:
         """Periodic orbit in the plane across . (u - guess) = 0, or None if Newton's method does not arrive.
 
         For one parameter.
@@ -207,7 +190,7 @@ class OrbitProblem:
         rows: list[list[float]] = np.hstack([np.roll(states, 1, axis=0) / self.scale, rest]).tolist()
         return rows
 
-    def half_way(self, point: Point) -> FloatArray:
+    def half_way(self, point: Point) -> Array:
         """Unknowns X and V after half the orbit's period; n must be even."""
         from dynamics.kernels.flow import iterate
         from dynamics.kernels.tables import tabulate
@@ -219,28 +202,18 @@ class OrbitProblem:
         iterate((q[:8], coef, edge), state, half - 1, 0, np.empty((3, 2)), states, counts)
         return state / self.scale
 
-    def tangent(self, point: Point, along: FloatArray) -> FloatArray:
-        """Unit vector along the branch of one parameter, turned to the side of `along`."""
-        (a, b, c), (d, e, f) = point.derivative.tolist()
-        a, e = a - 1.0, e - 1.0
-        way = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
-        size = math.sqrt(float(way @ way))
-        if not size > 0.0:
-            return np.asarray(along / np.linalg.norm(along))
-        return way / (size if way @ along >= 0.0 else -size)
-
     @cached_property
     def _order(self) -> int:
         return self.oscillator.stiffness.order
 
-    def _cells(self, u: FloatArray, refinement: int) -> int:
+    def _cells(self, u: Array, refinement: int) -> int:
         packed = self.packed(u)
         if not (packed[4] > 0.0 and np.all(np.isfinite(packed))):
             return 0
         cells = cells_per_period(packed)
         return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
 
-    def _point(self, u: FloatArray, store: _Store, turned: int, residual: float, iterations: int) -> Point:
+    def _point(self, u: Array, store: _Store, turned: int, residual: float, iterations: int) -> Point:
         turns = store.turns[:turned]
         amounts = u[2:].tolist()
         damping, frequency = (self._along(place, amounts) for place in (1, 4))
@@ -265,7 +238,7 @@ class OrbitProblem:
         ways = zip(self._way_rows, amounts, strict=True)
         return float(self.origin[place]) + sum(amount * way[place] for way, amount in ways)
 
-    def play(self, u: FloatArray) -> float:
+    def play(self, u: Array) -> float:
         """D of the unknowns."""
         return self._along(6, u[2:].tolist())
 
@@ -279,13 +252,13 @@ class _Store:
         self.counts, self.turns = np.empty(2, dtype=np.int64), np.empty((room, 5 + m))
 
     @property
-    def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray, IntArray, FloatArray]:
+    def arrays(self) -> tuple[Array, Array, Array, Integers, Array]:
         """In the order of the kernels."""
         return self.image, self.lin, self.bend, self.counts, self.turns
 
 
-def passes(last: FloatArray, new: FloatArray, places: list[list[float]]) -> bool:
-    """Tell whether the step from one place to another in the space of unknowns passes one of several."""
+def passes(last: Array, new: Array, places: list[list[float]]) -> bool:
+    """Whether the step from one place to another in the space of unknowns passes one of several."""
     start = last.tolist()
     chord = [b - a for a, b in zip(start, new.tolist(), strict=True)]
     square = sum(c * c for c in chord)

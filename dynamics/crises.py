@@ -16,6 +16,7 @@ from dynamics.diagrams import Diagram
 from dynamics.limits import ordered
 from dynamics.manifolds import is_direct_saddle
 from dynamics.passing import Passing
+from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit
 from dynamics.sweeps import sweep
 
@@ -66,6 +67,7 @@ class Crisis:
     )
 
 
+@exact_only
 def boundary_crisis(
     saddle: Orbit,
     parameter: str = "frequency",

@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.branch_problem import match_extrema
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem, Point
-from dynamics.shooting import EPS, floquet_multipliers, is_stable, motion_label
+from dynamics.protocol import EPS
+from dynamics.roots import along_chord
+from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
 
-__all__ = ["Crossing", "find_crossings", "locate", "match_extrema"]
+__all__ = ["Crossing", "find_crossings", "locate"]
 
-FloatArray = npt.NDArray[np.float64]
-NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 Crossing = tuple[Condition, Condition]  # as it is at the one and at the other of two neighbours
-
-
-def match_extrema(a: Point, b: Point) -> list[tuple[int, int]]:
-    """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
-    if len(a.extrema) == 0 or len(b.extrema) == 0:
-        return []
-    gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
-    gap = np.minimum(gap, 1.0 - gap)
-    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
-    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
-    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
 
 
 def find_crossings(problem: OrbitProblem, a: Point, b: Point) -> tuple[list[Crossing], bool]:
@@ -113,30 +101,9 @@ def record(
 
 def _bracket(problem: OrbitProblem, a: Point, b: Point, crossing: Crossing) -> Point | None:
     """Root search along the chord, each trial corrected on to the branch: slower, but no corner stops it."""
-    from scipy.optimize import brentq
 
-    chord = b.u - a.u
-    row = chord / np.linalg.norm(chord)
-    points: dict[float, Point] = {0.0: a, 1.0: b}
+    def measure(point: Point, fraction: float) -> float:
+        return between(crossing, fraction).measure(problem, point)
 
-    def measure(fraction: float) -> float:
-        point = points.get(fraction) or problem.correct(a.u + fraction * chord, row)
-        if point is None:
-            raise _LostError
-        points[fraction] = point
-        value = between(crossing, fraction).measure(problem, point)
-        if not np.isfinite(value):
-            raise _LostError
-        return value
-
-    search: Callable[..., float] = brentq
-    try:
-        root = float(search(measure, 0.0, 1.0, xtol=1e-15, rtol=4.0 * EPS, maxiter=100))
-        measure(root)
-    except (_LostError, ValueError):  # ValueError: the sign did not change after all
-        return None
-    return points[root]
-
-
-class _LostError(Exception):
-    """The branch could not be followed to a point between two neighbours."""
+    found = along_chord(problem.correct, measure, a, b, 1e-15)
+    return None if found is None else found[0]

@@ -15,6 +15,7 @@ from dynamics.labelling import Stretch, stretches
 from dynamics.limits import ordered
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.shooting import find_orbit
 from dynamics.special import SpecialPoint, of_kind
 
@@ -89,6 +90,7 @@ class Diagram(AsArray):
         return np.concatenate(rows) if rows else np.empty((0, 5))
 
 
+@exact_only
 def diagram(
     oscillator: GearOscillator,
     parameter: str = "frequency",

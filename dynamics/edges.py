@@ -10,6 +10,7 @@ from dynamics.flow import period_map, tables
 from dynamics.homes import Homes
 from dynamics.manifolds import is_direct_saddle
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart
 
@@ -20,6 +21,7 @@ ROUNDS = 14  # of sections: the bracket shrinks to rounding
 NEAR = 1e-2  # of the attractor's size: recurrence of the motion on the boundary that Newton's method is tried from
 
 
+@exact_only
 def edge_saddles(
     oscillator: GearOscillator,
     attractor: Attractor,
@@ -118,7 +120,7 @@ def _edge(homes: Homes, limit: int, point: Array, along: Array) -> Array | None:
 
 def _saddle(oscillator: GearOscillator, homes: Homes, edge: Array, longest: int) -> Orbit | None:
     """Saddle that the motion from a state on the boundary comes closest to."""
-    states = np.vstack([edge, period_map(homes.table, edge, 40 + 2 * longest).states])
+    states = np.vstack([edge, period_map(homes.flow, edge, 40 + 2 * longest).states])
     best: list[tuple[float, int, int]] = []
     for n in range(1, longest + 1):
         gap = np.max(np.abs(states[n:] - states[:-n]), axis=1)

@@ -1,54 +1,44 @@
-"""Lyapunov exponents from the exact derivative of the flow."""
+"""Lyapunov exponents from the derivative of the flow."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Fault, Faults, InputError, Stopwatch
-from dynamics.flow import Tables, checked_state, tables
-from dynamics.oscillator import GearOscillator
-from dynamics.sweeps import rest_state, settling_periods
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from dynamics.flow import checked_state
+from dynamics.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
+from dynamics.protocol import Flow, Oscillator, lost_motion
+from dynamics.sweeps import long_flow, settling_periods
 
 __all__ = ["LyapunovResult", "LyapunovScan", "lyapunov_exponents", "lyapunov_scan", "stretch_rate"]
 
-FloatArray = npt.NDArray[np.float64]
-BATCHES = 20
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class LyapunovResult:
-    """Lyapunov exponents, per unit of dimensionless time.
+    """Lyapunov exponents, per unit of dimensionless time."""
 
-    Parameters
-    ----------
-    exponents : ndarray, shape (2,)
-        The larger first. Their sum is -2 zeta exactly, which is not used to compute them.
-    standard_errors : ndarray, shape (2,)
-        Of both, from the scatter of 20 batches of the motion; equal to rounding, because the sum is exact.
-    error : float
-        Standard error over the larger modulus of the two.
-    state : ndarray, shape (2,)
-        Last state.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether the sign of the larger exponent is certain: it exceeds three standard errors.
-    message : str
-        "periodic", "chaotic" or what to do.
-    """
+    headline = ("standard_error",)
 
-    exponents: FloatArray
-    standard_errors: FloatArray
-    error: float
-    state: FloatArray
+    exponents: Array = quantity(
+        "1", "the larger first; their sum is minus the mean of all damping, -2 zeta if it is linear, which is not "
+        "used to compute them", "exponent",
+    )  # fmt: skip
+    standard_errors: Array = quantity(
+        "1",
+        "of both, from the scatter of 20 batches of the motion; equal to rounding where the sum is exact",
+        "exponent",
+    )
+    error: float = quantity("1", "standard error over the larger modulus of the two")
+    state: Array = quantity("1", "last state", "coordinate")
     cost: Cost
-    converged: bool
-    message: str
+    converged: bool = quantity(
+        "1", "whether the sign of the larger exponent is certain: it exceeds three standard errors"
+    )
+    message: str = quantity("", "periodic, chaotic or what to do")
 
     @property
     def standard_error(self) -> float:
@@ -63,17 +53,18 @@ class LyapunovResult:
 
 
 def lyapunov_exponents(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     periods: int = 10_000,
     *,
     state: npt.ArrayLike | None = None,
     transient: int | None = None,
+    tolerance: float | None = None,
 ) -> LyapunovResult:
     """Lyapunov exponents of the motion that starts at a state.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     periods : int
         Excitation periods averaged over, at least 20.
@@ -81,6 +72,8 @@ def lyapunov_exponents(
         X and V at tau = 0. Left out: at rest in contact under the mean force.
     transient : int, optional
         Periods dropped before. Left out: as in `sweep`.
+    tolerance : float, optional
+        Of the flow, as of `period_map`; 1e-9 for steps, rounding for the exact flow.
 
     Returns
     -------
@@ -90,29 +83,29 @@ def lyapunov_exponents(
     Raises
     ------
     InputError
-        If an argument is out of range, or the motion grows beyond all bounds.
+        If an argument is out of range, or the motion cannot be followed.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> lyapunov_exponents(oscillator, 200).message
+    'periodic'
     """
     watch = Stopwatch()
     faults = Faults()
-    n = faults.whole("periods", periods, BATCHES, 10**9, "10 000 gives two digits in chaos")
+    n = faults.whole("periods", periods, *AVERAGED)
     skip = settling_periods(oscillator)
     if transient is not None:
-        skip = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+        skip = faults.whole("transient", transient, *TRANSIENT)
     faults.raise_if_any()
-    at = rest_state(oscillator) if state is None else checked_state(state)
-    table = tables(oscillator)
-    frame = np.vstack([np.eye(2), np.zeros((1, 2))])
-    flag = _advance(table, at, skip, frame)
-    rates, weights = np.empty((BATCHES, 2)), np.empty(BATCHES)
-    for i in range(BATCHES):
-        size = n // BATCHES + (i < n % BATCHES)
-        frame[2] = 0.0
-        flag = flag or _advance(table, at, size, frame)
-        rates[i], weights[i] = frame[2] / (size * oscillator.period), size / n
-    if flag:
-        fault = Fault("state", repr(state), "must start a motion that stays bounded", "check the parameters")
-        raise InputError((fault,))
-    exponents = weights @ rates
+    at = oscillator.rest_state() if state is None else checked_state(state)
+    sizes = np.array([n // BATCHES + (i < n % BATCHES) for i in range(BATCHES)])
+    motion = long_flow(oscillator, tolerance).stretches(at, [skip, *sizes.tolist()])
+    if motion.message:
+        raise lost_motion(at, motion.message)
+    rates = motion.logs[1:] / (sizes[:, None] * oscillator.period)
+    exponents = sizes / n @ rates
     order = np.argsort(exponents)[::-1]
     exponents = exponents[order]
     spread = np.std(rates[:, order], axis=0, ddof=1) / math.sqrt(BATCHES)
@@ -121,49 +114,32 @@ def lyapunov_exponents(
     message = "average more periods: the sign of the larger exponent is not certain"
     if sure:
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
-    cost = Cost(watch.seconds, 0, 0, skip + n)
+    cost = Cost(watch.seconds, periods=skip + n)
     error = float(spread[0]) / largest if largest > 0.0 else float(spread[0])
-    return LyapunovResult(exponents, spread, error, at, cost, bool(sure), message)
+    return LyapunovResult(exponents, spread, error, motion.states[-1], cost, bool(sure), message)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class LyapunovScan:
-    """Both Lyapunov exponents over a parameter.
+    """Both Lyapunov exponents over a parameter."""
 
-    Parameters
-    ----------
-    parameter : str
-        What was varied.
-    values : ndarray, shape (m,)
-        Its values, in the order given.
-    exponents : ndarray, shape (m, 2)
-        The larger first; nan where the motion grew without bound.
-    standard_errors : ndarray, shape (m, 2)
-        Of both.
-    states : ndarray, shape (m, 2)
-        Last states.
-    defect : float
-        Largest departure of the sum from -2 zeta: a check of the flow, not used to compute anything.
-    error : float
-        Largest standard error.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether the sign of the larger exponent is certain everywhere.
-    message : str
-        What to know about the result.
-    """
+    headline = ("parameter", "defect")
 
-    parameter: str
-    values: FloatArray
-    exponents: FloatArray
-    standard_errors: FloatArray
-    states: FloatArray
-    defect: float
-    error: float
+    parameter: str = quantity("", "what was varied")
+    values: Array = quantity("1", "its values, in the order given", "value")
+    exponents: Array = quantity(
+        "1", "the larger first; nan where the motion could not be followed", "value exponent"
+    )
+    standard_errors: Array = quantity("1", "standard errors of both", "value exponent")
+    states: Array = quantity("1", "last states", "value coordinate")
+    defect: float = quantity(
+        "1",
+        "largest departure of the sum from -2 zeta: a check of a flow with linear damping",
+    )
+    error: float = quantity("1", "largest standard error")
     cost: Cost
-    converged: bool
-    message: str
+    converged: bool = quantity("1", "whether the sign of the larger exponent is certain everywhere")
+    message: str = quantity("", "what to know about the result")
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
@@ -174,23 +150,24 @@ class LyapunovScan:
 
 
 def lyapunov_scan(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     parameter: str,
     values: npt.ArrayLike,
     periods: int = 2000,
     *,
     state: npt.ArrayLike | None = None,
     transient: int | None = None,
+    tolerance: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> LyapunovScan:
     """Both exponents over a parameter, the motion carried from value to value in the order given.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator; its own value of the parameter is not used.
     parameter : str
-        As in `GearOscillator.with_parameter`.
+        One of its `parameters`.
     values : array_like, shape (m,)
         Parameter values.
     periods : int
@@ -199,6 +176,8 @@ def lyapunov_scan(
         X and V at tau = 0 for the first value. Left out: at rest in contact under the mean force.
     transient : int, optional
         Periods dropped before. Left out: as in `sweep`.
+    tolerance : float, optional
+        Of the flow, as of `period_map`; 1e-9 for steps, rounding for the exact flow.
     progress : callable, optional
         Called with the number of values done and the number of all.
 
@@ -211,16 +190,20 @@ def lyapunov_scan(
     ------
     InputError
         If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> lyapunov_scan(oscillator, "frequency", [0.5, 0.6], periods=100).exponents.shape
+    (2, 2)
     """
     watch = Stopwatch()
     faults = Faults()
-    grid = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if grid.ndim != 1 or len(grid) == 0 or not np.all(np.isfinite(grid)):
-        allowed = "must be finite numbers in one dimension"
-        faults.add("values", f"shape {grid.shape}", allowed, "give at least one value")
-    n = faults.whole("periods", periods, BATCHES, 10**9, "2000 draws a curve")
+    grid = checked_grid(faults, "values", values)
+    n = faults.whole("periods", periods, *AVERAGED)
     if transient is not None:
-        faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+        faults.whole("transient", transient, *TRANSIENT)
     faults.raise_if_any()
     start = None if state is None else checked_state(state)
     exponents, errors, states = (np.full((len(grid), 2), np.nan) for _ in range(3))
@@ -228,7 +211,7 @@ def lyapunov_scan(
     for i, value in enumerate(grid):
         here = oscillator.with_parameter(parameter, float(value))
         try:
-            result = lyapunov_exponents(here, n, state=at, transient=transient)
+            result = lyapunov_exponents(here, n, state=at, transient=transient, tolerance=tolerance)
         except InputError:  # unbounded: the arguments have been checked
             at = start
             continue
@@ -247,34 +230,19 @@ def lyapunov_scan(
     if lost:
         message += f"; unbounded at {lost}: check the parameters there"
     error = float(np.nanmax(errors[:, 0], initial=0.0))
-    cost = Cost(watch.seconds, 0, 0, used)
+    cost = Cost(watch.seconds, periods=used)
     good = lost == unsure == 0
     return LyapunovScan(parameter, grid, exponents, errors, states, defect, error, cost, good, message)
 
 
-def stretch_rate(table: Tables, state: FloatArray, periods: int) -> tuple[FloatArray, float, float]:
+def stretch_rate(flow: Flow, state: Array, periods: int) -> tuple[Array, float, float]:
     """States of a motion, shape (periods, 2), its larger exponent per period and the standard error of that.
 
     All nan if the motion is lost.
     """
-    from dynamics.kernels.flow import iterate
-
-    states, at = np.empty((periods, 2)), state.copy()
-    frame = np.vstack([np.eye(2), np.zeros((1, 2))])
-    rates = np.empty(BATCHES)
-    for i, part in enumerate(np.array_split(states, BATCHES)):
-        frame[2] = 0.0
-        if iterate(table.arrays, at, 0, 2, frame, part, np.zeros((len(part), 2), dtype=np.int64)):
-            return np.full_like(states, np.nan), math.nan, math.nan
-        rates[i] = frame[2, 0] / len(part)
-    return states, float(np.mean(rates)), float(np.std(rates, ddof=1)) / math.sqrt(BATCHES)
-
-
-def _advance(table: Tables, at: FloatArray, n: int, frame: FloatArray) -> int:
-    """Carry state and frame over n periods."""
-    from dynamics.kernels.flow import iterate
-
-    if n == 0:
-        return 0
-    one, counts = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64)
-    return int(iterate(table.arrays, at, n - 1, 2, frame, one, counts))
+    sizes = [len(part) for part in np.array_split(np.arange(periods), BATCHES)]
+    motion = flow.stretches(state, sizes, keep=True)
+    if motion.message:
+        return np.full_like(motion.states, np.nan), math.nan, math.nan
+    rates = motion.logs[:, 0] / sizes
+    return motion.states, float(np.mean(rates)), float(np.std(rates, ddof=1)) / math.sqrt(BATCHES)

@@ -10,10 +10,11 @@ from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow import Tables, period_map, tables
 from dynamics.index import index_at_infinity
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.regions import Region, checked_region
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart
-from dynamics.sweeps import rest_state, settling_periods
+from dynamics.sweeps import settling_periods
 
 __all__ = ["IndexCount", "OrbitSet", "find_orbits", "reach"]
 
@@ -56,6 +57,7 @@ class OrbitSet:
         return len(self.orbits)
 
 
+@exact_only
 def find_orbits(
     oscillator: GearOscillator,
     periods: Sequence[int] = (1, 2, 3, 4),
@@ -207,7 +209,7 @@ def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[Array, int
 
     What diverges is left out.
     """
-    rest = rest_state(oscillator)
+    rest = oscillator.rest_state()
     push = np.array([0.0, 1.0 + float(np.max(np.abs(rest)))])
     wait = min(settling_periods(oscillator, low=50), 400)
     parts, used = [], 0

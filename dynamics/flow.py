@@ -1,15 +1,19 @@
-"""The exact flow: period map, sampled motion, extrema and impacts."""
+"""Motions by themselves: the tables of the exact flow, period map, sampled motion, extrema and impacts."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults, Limit
+from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
+from dynamics.limits import PERIODS, POINTS, POSITIVE, REFINEMENT, TAYLOR_DEGREE, TRANSIENT
+from dynamics.multiple_shooting import Chain, shoot_in_stretches
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import EPS, Flow, MapResult, Oscillator, Stretches, exact_only, lost_motion
 
 __all__ = [
     "DEGREE",
@@ -22,17 +26,15 @@ __all__ = [
     "turning_points",
 ]
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-DEGREE = (
-    13  # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
-)
+# of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
+DEGREE = 13
+LONG = 200  # cells of an orbit that multiple shooting is tried for, too, where one shot fails
 _REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
 
 
 @dataclass(frozen=True, eq=False)
-class Tables:
-    """An oscillator tabulated for the compiled kernels.
+class Tables(Flow):
+    """The exact flow of an oscillator, tabulated for the compiled kernels.
 
     Parameters
     ----------
@@ -42,12 +44,15 @@ class Tables:
         See `dynamics.kernels`.
     """
 
-    packed: FloatArray
-    coef: FloatArray
-    edge: FloatArray
+    tolerance = EPS
+    noise = 64.0 * EPS
+
+    packed: Array
+    coef: Array
+    edge: Array
 
     @property
-    def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def arrays(self) -> tuple[Array, Array, Array]:
         """What the kernels take."""
         return self.packed[:8], self.coef, self.edge
 
@@ -56,62 +61,103 @@ class Tables:
         """Cells per period."""
         return len(self.edge) // 2
 
+    def finer(self) -> Tables:
+        """Tables with half the cell."""
+        return _tabulated(self.packed, 2 * self.cells, DEGREE)
 
-@dataclass(frozen=True, eq=False)
-class MapResult:
-    """Image of a state under n periods.
+    def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
+        """Follow a state; the Jacobian covers the periods skipped, too."""
+        from dynamics.kernels.flow import iterate
 
-    Parameters
-    ----------
-    states : ndarray, shape (periods, 2)
-        X and V after each period.
-    jacobian : ndarray, shape (2, 2)
-        Derivative of the last state with respect to the first.
-    counts : ndarray, shape (periods, 2)
-        Exits from X > D and entries into X < -D during each period.
-    message : str
-        Empty, or why the map could not be followed; the states are then nan.
-    """
+        watch = Stopwatch()
+        states, counts, jacobian = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(2)
+        at = np.array(state, dtype=np.float64)
+        flag = int(iterate(self.arrays, at, skip, int(derivatives), jacobian, states, counts))
+        if flag:
+            states[:], jacobian[:] = np.nan, np.nan
+        # the damping is the same in every region
+        decay = -2.0 * self.packed[1] * (2.0 * math.pi / self.packed[4]) * (periods + skip)
+        cost = Cost(watch.seconds, periods=periods + skip)
+        return MapResult(states, jacobian, float(decay), counts, _REASONS.get(flag, ""), cost)
 
-    states: FloatArray
-    jacobian: FloatArray
-    counts: IntArray
-    message: str
+    def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
+        """Samples, extrema and impacts; repeated with more room if the last two did not fit."""
+        from dynamics.kernels.walking import walk
 
-    @property
-    def state(self) -> FloatArray:
-        """Last state, shape (2,)."""
-        return np.asarray(self.states[-1])
+        room = 64 * periods
+        while True:
+            samples = np.empty((periods * points + 1 if points else 0, 2))
+            turns, events = np.empty((room, 5)), np.empty((room, 4))
+            flag, turned, happened = walk(self.arrays, state.copy(), periods, points, samples, turns, events)
+            if flag:
+                raise lost_motion(state, _REASONS[int(flag)])
+            if turned <= room and happened <= room:
+                return samples, turns[:turned], events[:happened]
+            room = max(turned, happened)
+
+    def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
+        """Growth of two directions, made orthonormal every eight cells."""
+        from dynamics.kernels.flow import iterate
+
+        frame, at = np.vstack([np.eye(2), np.zeros((1, 2))]), np.array(state, dtype=np.float64)
+        logs, kept, flag = np.zeros((len(sizes), 2)), [], 0
+        for row, size in zip(logs, sizes, strict=True):
+            part = np.empty((size if keep else min(size, 1), 2))
+            frame[2] = 0.0
+            if size:
+                unseen = np.zeros((len(part), 2), dtype=np.int64)
+                flag = flag or int(iterate(self.arrays, at, size - len(part), 2, frame, part, unseen))
+            row[:] = frame[2]
+            kept.append(part)
+        return Stretches(logs, np.vstack(kept) if keep else at[None], _REASONS.get(flag, ""))
+
+    def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
+        """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
+        from dynamics.kernels.searching import calm
+
+        room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
+        at = np.array(state, dtype=np.float64)
+        waited = int(calm(self.arrays, at, limit, room, tallies, 1e-13))
+        return at, abs(waited), _REASONS.get(-waited, "")
+
+    def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """Follow starts until they stay near known attractors."""
+        from dynamics.kernels.searching import settle
+
+        return int(settle(self.arrays, starts, homes, radius, limit, labels))
+
+    def chain(
+        self, oscillator: GearOscillator, guess: Array, periods: int, limit: int, lost: bool
+    ) -> Chain | None:
+        """Orbit by multiple shooting where one shot is lost, or is not enough for a long one."""
+        if not lost and self.cells * periods <= LONG:
+            return None
+        return shoot_in_stretches(oscillator, self, guess, periods, limit)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Trajectory:
-    """Motion at equal times, and its impacts.
+    """Motion at equal times, and its impacts."""
 
-    Parameters
-    ----------
-    tau : ndarray, shape (n,)
-        Dimensionless time from 0, both ends included.
-    x, v : ndarray, shape (n,)
-        Displacement X and speed dX/dtau.
-    points_per_period : int
-        Samples per excitation period.
-    events : ndarray, shape (m, 4)
-        Time, X (+-D), speed and region entered (1, 0, -1) at every crossing of the backlash's limits.
-    extrema : ndarray, shape (k, 3)
-        Time, X and acceleration at every extremum of X.
-    error : float
-        Difference to the motion on tables with half the cell, largest over the samples, over the largest
-        ``|X|``, ``|V|``.
-    """
+    headline = ("points_per_period",)
 
-    tau: FloatArray
-    x: FloatArray
-    v: FloatArray
-    points_per_period: int
-    events: FloatArray
-    extrema: FloatArray
-    error: float
+    tau: Array = quantity("1", "dimensionless time from 0, both ends included", "sample")
+    x: Array = quantity("1", "displacement X", "sample")
+    v: Array = quantity("1", "speed dX/dtau", "sample")
+    points_per_period: int = quantity("1", "samples per excitation period")
+    events: Array = quantity(
+        "1",
+        "time, X (+-D), speed and region entered (1, 0, -1) at every crossing of the backlash's limits",
+        "event column",
+    )
+    extrema: Array = quantity("1", "time, X and acceleration at every extremum of X", "extremum column")
+    error: float = quantity(
+        "1", "difference to the motion on a finer flow, largest over the samples, over the largest |X|, |V|"
+    )
+    cost: Cost
+
+    converged = True  # a motion that cannot be followed raises
+    message = ""
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
@@ -120,7 +166,7 @@ class Trajectory:
         return np.stack([self.tau, self.x, self.v], axis=1).astype(dtype if dtype is not None else np.float64)
 
     @property
-    def poincare(self) -> FloatArray:
+    def poincare(self) -> Array:
         """States at tau = 0 mod the excitation period, shape (periods + 1, 2)."""
         return np.stack([self.x, self.v], axis=1)[:: self.points_per_period]
 
@@ -164,40 +210,55 @@ def tables(
     InputError
         If an argument is out of range, or both degree and tolerance are given.
     """
-    from dynamics.kernels.tables import tabulate
-
     faults = Faults()
-    faults.whole("refinement", refinement, 1, 1000, "2 is enough for an error estimate")
+    faults.whole("refinement", refinement, *REFINEMENT)
     if degree is not None:
-        faults.whole("degree", degree, 6, 60, "13 leaves rounding alone")
+        faults.whole("degree", degree, *TAYLOR_DEGREE)
     if tolerance is not None:
-        faults.number("tolerance", tolerance, Limit(0.0, low_open=True, remedy="1e-9, say"))
+        faults.number("tolerance", tolerance, POSITIVE)
         if degree is not None:
             faults.add("tolerance", tolerance, "must be left out where the degree is given", "leave one out")
     faults.raise_if_any()
     if degree is None:
         degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
-    packed, order = oscillator.packed(), oscillator.stiffness.order
-    cells = math.ceil(oscillator.cells) * refinement
-    coef, edge = tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree)
-    return Tables(packed, coef, edge)
+    return _tabulated(oscillator.packed(), math.ceil(oscillator.cells) * refinement, degree)
+
+
+def _tabulated(packed: Array, cells: int, degree: int) -> Tables:
+    from dynamics.kernels.tables import tabulate
+
+    order = (len(packed) - 8) // 2
+    return Tables(packed, *tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree))
 
 
 def period_map(
-    oscillator: GearOscillator | Tables, state: npt.ArrayLike, periods: int = 1, skip: int = 0
+    oscillator: Oscillator | Flow,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    skip: int = 0,
+    *,
+    parameters: tuple[str, ...] = (),
+    extrema: bool = False,
+    tolerance: float | None = None,
 ) -> MapResult:
     """Follow a state at tau = 0 over whole excitation periods.
 
     Parameters
     ----------
-    oscillator : GearOscillator or Tables
-        The oscillator; tables made once save their cost in repeated calls.
+    oscillator : Oscillator or Flow
+        The oscillator; its ``flow()`` made once saves the cost of that in repeated calls, and the error estimate.
     state : array_like, shape (2,)
         X and V at tau = 0.
     periods : int
         Number of periods kept.
     skip : int
-        Periods followed before those; the Jacobian covers them too.
+        Periods followed before those; the derivatives cover them too.
+    parameters : tuple of str
+        Parameters to differentiate by, stepwise flow alone; `map_derivatives` serves the exact one.
+    extrema : bool
+        Whether extrema of X are among the events, stepwise flow alone; the exact one has `turning_points`.
+    tolerance : float, optional
+        Of a step, or of one period's map where the flow is exact.
 
     Returns
     -------
@@ -207,55 +268,79 @@ def period_map(
     Raises
     ------
     InputError
-        If the state is not finite or a count out of range.
-    """
-    from dynamics.kernels.flow import iterate
+        If the state is not finite or an argument out of range.
 
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.6, half_backlash=0.2)
+    >>> period_map(oscillator, (0.3, 0.0)).state
+    array([0.3, 0. ])
+    """
+    watch = Stopwatch()
     at = checked_state(state)
     faults = Faults()
-    n = faults.whole("periods", periods, 1, 10**9, "give a positive number of periods")
-    n_skip = faults.whole("skip", skip, 0, 10**9, "give 0 or more")
+    n = faults.whole("periods", periods, *PERIODS)
+    n_skip = faults.whole("skip", skip, *TRANSIENT)
     faults.raise_if_any()
-    t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
-    states, counts, jacobian = np.empty((n, 2)), np.zeros((n, 2), dtype=np.int64), np.eye(2)
-    flag = int(iterate(t.arrays, at, n_skip, 1, jacobian, states, counts))
-    if flag:
-        states[:], jacobian[:] = np.nan, np.nan
-    return MapResult(states, jacobian, counts, _REASONS.get(flag, ""))
+    if isinstance(oscillator, Flow):
+        return oscillator.follow(at, n, n_skip)
+    flow = oscillator.flow(tolerance, parameters, extrema)
+    here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
+    size = max(float(np.max(np.abs(here.states))), oscillator.floor)
+    error = float(np.max(np.abs(here.state - there.state))) / size
+    cost = replace(here.cost + there.cost, seconds=watch.seconds)
+    return replace(here, error=error, cost=cost)
 
 
 def trajectory(
-    oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, points_per_period: int = 200
+    oscillator: Oscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    points_per_period: int = 200,
+    *,
+    tolerance: float | None = None,
 ) -> Trajectory:
     """Sample the motion from a state at tau = 0; for phase portraits and Poincare points.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     state : array_like, shape (2,)
         X and V at tau = 0.
     periods : int
         Excitation periods.
     points_per_period : int
-        Samples per period; they lie on the exact solution, so that more of them are not more accurate.
+        Samples per period; on the exact flow more of them are not more accurate, and a step of the other ends at each.
+    tolerance : float, optional
+        As of `period_map`.
 
     Returns
     -------
     Trajectory
-        The samples, impacts and extrema.
+        The samples, impacts (crossings of the first two surfaces of a law) and extrema.
 
     Raises
     ------
     InputError
-        If an argument is out of range, or the motion grows beyond all bounds.
+        If an argument is out of range, or the motion cannot be followed.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> trajectory(oscillator, (0.5, 0.2), periods=2, points_per_period=50).x.shape
+    (101,)
     """
+    watch = Stopwatch()
     faults = Faults()
-    n = faults.whole("periods", periods, 1, 10**7, "give a positive number of periods")
-    points = faults.whole("points_per_period", points_per_period, 1, 10**6, "200 draws a smooth curve")
+    n = faults.whole("periods", periods, *PERIODS)
+    points = faults.whole("points_per_period", points_per_period, *POINTS)
     faults.raise_if_any()
-    samples, turns, events = _walk(tables(oscillator), checked_state(state), n, points)
-    finer, _, _ = _walk(tables(oscillator, refinement=2), checked_state(state), n, points)
+    flow = oscillator.flow(tolerance)
+    samples, turns, events = flow.sampled(checked_state(state), n, points)
+    finer, _, _ = flow.finer().sampled(checked_state(state), n, points)
     return Trajectory(
         tau=np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points),
         x=samples[:, 0],
@@ -264,10 +349,12 @@ def trajectory(
         events=events,
         extrema=turns[:, :3],
         error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
+        cost=Cost(watch.seconds, periods=2 * n),
     )
 
 
-def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, periods: int = 1) -> FloatArray:
+@exact_only
+def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, periods: int = 1) -> Array:
     """Every extremum of X from a state at tau = 0.
 
     Parameters
@@ -289,12 +376,19 @@ def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, pe
     ------
     InputError
         If the state is not finite, or the motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> turning_points(oscillator, (0.5, 0.2)).shape[1]
+    5
     """
     t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
-    return _walk(t, checked_state(state), periods, 0)[1]
+    return t.sampled(checked_state(state), periods, 0)[1]
 
 
-def checked_state(state: npt.ArrayLike, where: str = "state") -> FloatArray:
+def checked_state(state: npt.ArrayLike, where: str = "state") -> Array:
     """Return a fresh array of X and V, or raise InputError."""
     at = np.array(state, dtype=np.float64)
     if at.shape != (2,) or not np.all(np.isfinite(at)):
@@ -302,28 +396,3 @@ def checked_state(state: npt.ArrayLike, where: str = "state") -> FloatArray:
         faults.add(where, at.tolist(), "must be two finite numbers, X and V", "give the state at tau = 0")
         faults.raise_if_any()
     return at
-
-
-def _walk(
-    t: Tables, state: FloatArray, periods: int, points: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return samples, extrema and impacts; repeat with more room if the last two did not fit."""
-    from dynamics.kernels.walking import walk
-
-    room = 64 * periods
-    while True:
-        samples = np.empty((periods * points + 1 if points else 0, 2))
-        turns, events = np.empty((room, 5)), np.empty((room, 4))
-        flag, turned, happened = walk(t.arrays, state.copy(), periods, points, samples, turns, events)
-        if flag:
-            faults = Faults()
-            faults.add(
-                "state",
-                state.tolist(),
-                "must start a motion that stays bounded",
-                f"{_REASONS[int(flag)]}: check the input",
-            )
-            faults.raise_if_any()
-        if turned <= room and happened <= room:
-            return samples, turns[:turned], events[:happened]
-        room = max(turned, happened)

@@ -14,7 +14,8 @@ from dynamics.arrays import AsArray
 from dynamics.flow import period_map, tables, turning_points
 from dynamics.limits import ordered
 from dynamics.oscillator import GearOscillator
-from dynamics.shooting import EPS, exact_determinant, floquet_multipliers
+from dynamics.protocol import EPS, exact_only
+from dynamics.shooting import exact_determinant, floquet_multipliers
 from dynamics.special import SpecialPoint
 
 __all__ = ["ContactGrazing", "ContactOrbit", "ResonanceError", "contact_grazing", "contact_orbit"]
@@ -117,6 +118,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     )
 
 
+@exact_only
 def contact_grazing(
     oscillator: GearOscillator,
     parameter: str = "frequency",

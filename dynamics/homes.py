@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from base import Array, Integers
-from dynamics.flow import Tables
+from dynamics.protocol import Flow
 
 __all__ = ["Homes"]
 
@@ -17,21 +17,21 @@ class Homes:
 
     Parameters
     ----------
-    table : Tables
-        The oscillator.
+    flow : Flow
+        Of the oscillator.
     points : sequence of ndarray, shape (n, 2), or None
         X and V of each attractor after every excitation period; None for one that is not periodic.
     nearness : float
         Distance that counts as arrived, over the size of the largest of them.
     """
 
-    def __init__(self, table: Tables, points: Sequence[Array | None], nearness: float) -> None:
+    def __init__(self, flow: Flow, points: Sequence[Array | None], nearness: float) -> None:
         rows = [
             np.column_stack([p, np.full(len(p), i), np.full(len(p), len(p))])
             for i, p in enumerate(points)
             if p is not None
         ]
-        self.table, self.number = table, len(points)
+        self.flow, self.number = flow, len(points)
         self.rows = np.vstack(rows) if rows else np.zeros((0, 4))
         self.size = float(np.max(np.abs(self.rows[:, :2]), initial=0.0))
         self.radius = nearness * self.size
@@ -42,8 +42,6 @@ class Homes:
 
         The starts are replaced by their last states. Those with a label other than -1 already are left alone.
         """
-        from dynamics.kernels.searching import settle
-
         found = np.full(len(starts), -1, dtype=np.int64) if labels is None else labels
-        self.periods += int(settle(self.table.arrays, starts, self.rows, self.radius, limit, found))
+        self.periods += self.flow.settle(starts, self.rows, self.radius, limit, found)
         return found

@@ -5,20 +5,40 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from base import Faults, Limit
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Faults, Limit
 
 __all__ = [
+    "AVERAGED",
+    "BATCHES",
     "CONFIDENCE",
+    "KEPT",
+    "LONGEST_PERIOD",
+    "MAX_POINTS",
+    "NEWTON_STEPS",
     "NUMBER",
+    "ORBIT_PERIODS",
     "OSCILLATOR",
+    "PATIENT",
+    "PERIODS",
+    "POINTS",
     "POSITIVE",
     "RADIUS",
+    "REFINEMENT",
+    "STARTS",
     "STEP",
     "STEP_TOLERANCE",
+    "TAYLOR_DEGREE",
+    "TRANSIENT",
     "Whole",
+    "checked_axis",
+    "checked_grid",
     "ordered",
 ]
 
+BATCHES = 20  # parts of a motion that a standard error is estimated from
 NUMBER = Limit(remedy="give a finite number")
 POSITIVE = Limit(0.0, low_open=True, remedy="give a positive number")
 
@@ -49,6 +69,22 @@ class Whole(NamedTuple):
     remedy: str
 
 
+PERIODS = Whole(1, 10**9, "give a positive number of periods")
+ORBIT_PERIODS = Whole(1, 100_000, "give the number of excitation periods")
+AVERAGED = Whole(BATCHES, 10**9, "10 000 gives two digits in chaos")
+TRANSIENT = Whole(0, 10**9, "give 0 or more")
+PATIENT = Whole(1, 10**7, "give more")
+"""Periods that a start is followed for."""
+POINTS = Whole(1, 10**6, "200 draws a smooth curve")
+KEPT = Whole(2, 10**7, "keep at least twice max_period")
+LONGEST_PERIOD = Whole(1, 10_000, "16 is usual")
+NEWTON_STEPS = Whole(1, 100_000, "60 is ample")
+MAX_POINTS = Whole(1, 10**7, "5000 is usual")
+STARTS = Whole(1, 100_000, "give the number of values")
+REFINEMENT = Whole(1, 1000, "2 is enough for an error estimate")
+TAYLOR_DEGREE = Whole(6, 60, "13 leaves rounding alone")
+
+
 def ordered(
     faults: Faults, where: str, given: Sequence[float], remedy: str = "give (low, high)"
 ) -> tuple[float, float]:
@@ -57,3 +93,22 @@ def ordered(
     if not low < high:
         faults.add(where, tuple(given), "must have the lower value first", remedy)
     return low, high
+
+
+def checked_grid(faults: Faults, where: str, given: npt.ArrayLike) -> Array:
+    """Finite numbers in one dimension, at least one; faults are noted."""
+    values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    if values.ndim != 1 or len(values) == 0 or not np.all(np.isfinite(values)):
+        allowed = "must be finite numbers in one dimension"
+        faults.add(where, f"shape {values.shape}", allowed, "give at least one value")
+    return values
+
+
+def checked_axis(faults: Faults, where: str, given: tuple[float, float, int]) -> Array:
+    """Equally spaced values from (first, last, number); faults are noted."""
+    if len(given) != 3:
+        faults.add(where, given, "must be (first, last, number)", "give three numbers")
+        return np.zeros(1)
+    low, high = (faults.number(f"{where}[{i}]", given[i], NUMBER) for i in range(2))
+    count = faults.whole(f"{where}[2]", given[2], *STARTS)
+    return np.linspace(low, high, count) if np.isfinite(low + high) else np.zeros(1)

@@ -15,6 +15,7 @@ from dynamics.corrector import OrbitProblem
 from dynamics.limits import ordered
 from dynamics.locus_tracing import DoublePoint, Tracer
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.shooting import floquet_multipliers, motion_label
 from dynamics.special import SpecialPoint, of_kind
 from dynamics.states import scale_of
@@ -67,6 +68,7 @@ class Locus(AsArray):
         return self.values
 
 
+@exact_only
 def continue_locus(
     oscillator: GearOscillator,
     point: SpecialPoint,

@@ -9,12 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, quantity, record
-from dynamics.branch_problem import Steps
+from dynamics.branch_problem import Steps, match_extrema
 from dynamics.conditions import Condition, special_orbit
 from dynamics.corrector import OrbitProblem, Point, passes
-from dynamics.crossings import match_extrema
+from dynamics.protocol import EPS
 from dynamics.roots import bracketed
-from dynamics.shooting import EPS
 
 __all__ = ["DoublePoint", "Tracer"]
 

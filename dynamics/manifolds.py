@@ -14,6 +14,7 @@ from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow import DEGREE, Tables, period_map, tables
 from dynamics.limits import POSITIVE
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.regions import Region, within
 from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
 
@@ -99,6 +100,7 @@ def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool 
     return np.asarray(at * turn)
 
 
+@exact_only
 def manifold(
     orbit: Orbit,
     kind: str = "stable",

@@ -12,8 +12,9 @@ from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction import basins
 from dynamics.finding import reach
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.states import apart, scale_of
-from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, rest_state, sweep
+from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
 
 __all__ = ["Motion", "MultiSweep", "multi_sweep"]
 
@@ -68,6 +69,7 @@ class MultiSweep:
         return max(len(here) for here in self.motions)
 
 
+@exact_only
 def multi_sweep(
     oscillator: GearOscillator,
     parameter: str = "frequency",
@@ -132,7 +134,9 @@ def multi_sweep(
     faults.raise_if_any()
     met = _Met(oscillator, parameter, grid, max_period)
     for direction, i in (("up", 0), ("down", len(grid) - 1)):
-        met.follow(direction, i, rest_state(oscillator.with_parameter(parameter, float(grid[i]))), whole=True)
+        met.follow(
+            direction, i, oscillator.with_parameter(parameter, float(grid[i])).rest_state(), whole=True
+        )
     for done in range(number):
         i = int((done + 0.5) / number * len(grid))
         here = oscillator.with_parameter(parameter, float(grid[i]))
@@ -154,7 +158,7 @@ class _Met:
     def __init__(self, oscillator: GearOscillator, parameter: str, grid: Array, max_period: int) -> None:
         self.oscillator, self.parameter, self.grid, self.longest = oscillator, parameter, grid, max_period
         self.motions: list[list[Motion]] = [[] for _ in grid]
-        self.size = scale_of(oscillator, rest_state(oscillator.with_parameter(parameter, float(grid[0]))))
+        self.size = scale_of(oscillator, oscillator.with_parameter(parameter, float(grid[0])).rest_state())
         self.sweeps = self.periods = 0
         self.error, self.bounded = 0.0, True
 
@@ -177,7 +181,9 @@ class _Met:
             if not _bounded(state, self.size):
                 if not whole:
                     return
-                state = rest_state(self.oscillator.with_parameter(self.parameter, float(self.grid[part[-1]])))
+                state = self.oscillator.with_parameter(
+                    self.parameter, float(self.grid[part[-1]])
+                ).rest_state()
 
     def knows(self, i: int, label: str, states: Array) -> bool:
         """Tell whether a motion has been met at a value."""

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.flow import Tables
-from dynamics.oscillator import GearOscillator
+from base import Array, Integers
 
-__all__ = ["Chain", "chain_error", "shoot_in_stretches", "stretch_starts"]
+if TYPE_CHECKING:
+    from dynamics.flow import Tables
+    from dynamics.oscillator import GearOscillator
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-CELLS_PER_STRETCH = (
-    8  # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
-)
+__all__ = ["Chain", "shoot_in_stretches"]
+
+# four radians at most of every time scale: a stretch multiplies errors by less than 1e4
+CELLS_PER_STRETCH = 8
 MOST = 250  # stretches: the equations are solved as a dense matrix
 
 
@@ -37,16 +38,19 @@ class Chain:
         Largest gap between a stretch's end and the next node.
     iterations : int
         Newton iterations.
+    error : float
+        Largest Newton step that tables with half the cell would still take, over the size of the motion.
     """
 
-    nodes: FloatArray
-    factors: FloatArray
+    nodes: Array
+    factors: Array
     counts: tuple[int, int]
     residual: float
     iterations: int
+    error: float = math.nan
 
     @property
-    def jacobian(self) -> FloatArray:
+    def jacobian(self) -> Array:
         """Derivative of the map over the whole orbit: the product of the factors."""
         product = np.eye(2)
         for factor in self.factors:
@@ -55,7 +59,7 @@ class Chain:
 
 
 def shoot_in_stretches(
-    oscillator: GearOscillator, table: Tables, guess: FloatArray, periods: int, limit: int
+    oscillator: GearOscillator, table: Tables, guess: Array, periods: int, limit: int
 ) -> Chain | None:
     """Newton's method with step halving on the states at the starts of all stretches; None if it does not arrive.
 
@@ -80,26 +84,24 @@ def shoot_in_stretches(
     for nodes in (_followed(oscillator, table, guess, firsts), _balanced(oscillator, tau)):
         chain = _newton(table, nodes, firsts, limit)
         if chain is not None:
-            return chain
+            return replace(chain, error=_error(table, chain, periods))
     return None
 
 
-def stretch_starts(table: Tables, periods: int) -> IntArray:
+def stretch_starts(table: Tables, periods: int) -> Integers:
     """First cells of the stretches, and the cell after the last; every period begins with a stretch."""
     each = max(1, min(table.cells // CELLS_PER_STRETCH, MOST // periods))
     return np.round(np.linspace(0, table.cells * periods, each * periods + 1)).astype(np.int64)
 
 
-def chain_error(finer: Tables, chain: Chain, firsts: IntArray) -> float:
+def _error(table: Tables, chain: Chain, periods: int) -> float:
     """Largest Newton step that tables with half the cell would still take, over the size of the motion."""
-    ends, factors, _ = stretches(finer, chain.nodes, 2 * firsts)
+    ends, factors, _ = stretches(table.finer(), chain.nodes, 2 * stretch_starts(table, periods))
     step = newton_step(factors, ends - np.roll(chain.nodes, -1, axis=0))
     return float(np.max(np.abs(step))) / max(float(np.max(np.abs(chain.nodes))), 1e-300)
 
 
-def stretches(
-    table: Tables, nodes: FloatArray, firsts: IntArray
-) -> tuple[FloatArray, FloatArray, tuple[int, int]]:
+def stretches(table: Tables, nodes: Array, firsts: Integers) -> tuple[Array, Array, tuple[int, int]]:
     """Ends and Jacobians of all stretches; nan where the motion is lost."""
     from dynamics.kernels.flow import partial
 
@@ -113,7 +115,7 @@ def stretches(
     return ends, factors, (int(counts[0]), int(counts[1]))
 
 
-def newton_step(factors: FloatArray, gap: FloatArray) -> FloatArray:
+def newton_step(factors: Array, gap: Array) -> Array:
     """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic."""
     m = len(gap)
     matrix = np.zeros((2 * m, 2 * m))
@@ -124,7 +126,7 @@ def newton_step(factors: FloatArray, gap: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.solve(matrix, gap.ravel()).reshape(m, 2))
 
 
-def _newton(table: Tables, nodes: FloatArray, firsts: IntArray, limit: int) -> Chain | None:
+def _newton(table: Tables, nodes: Array, firsts: Integers, limit: int) -> Chain | None:
     scale = max(float(np.max(np.abs(nodes))), float(table.packed[6]), 1e-300)
     best, kept, step, factor = math.inf, None, np.zeros_like(nodes), 1.0
     trial = nodes
@@ -153,7 +155,7 @@ def _newton(table: Tables, nodes: FloatArray, firsts: IntArray, limit: int) -> C
     return kept if best <= 1e-14 * 64.0 * stretch * scale else None
 
 
-def _followed(oscillator: GearOscillator, table: Tables, guess: FloatArray, firsts: IntArray) -> FloatArray:
+def _followed(oscillator: GearOscillator, table: Tables, guess: Array, firsts: Integers) -> Array:
     """Nodes on the motion from the guess; where it grows far beyond what drives it, the slow balance."""
     from dynamics.kernels.flow import partial
 
@@ -170,7 +172,7 @@ def _followed(oscillator: GearOscillator, table: Tables, guess: FloatArray, firs
     return nodes
 
 
-def _balanced(oscillator: GearOscillator, tau: npt.NDArray[np.floating]) -> FloatArray:
+def _balanced(oscillator: GearOscillator, tau: npt.NDArray[np.floating]) -> Array:
     """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean."""
     k = oscillator.stiffness(oscillator.frequency * tau)
     mean = abs(oscillator.stiffness.mean)

@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults, InputError
+from base import Array, Faults
 from dynamics.limits import OSCILLATOR
-from dynamics.stiffness import FourierStiffness
+from dynamics.naming import series, series_names
+from dynamics.protocol import Oscillator
+from dynamics.stiffness import FourierStiffness, check_stiffness
+
+if TYPE_CHECKING:
+    from dynamics.continuation import ExactBranch
+    from dynamics.flow import Tables
 
 __all__ = ["PARAMETERS", "GearOscillator"]
 
-FloatArray = npt.NDArray[np.float64]
 PARAMETERS = ("frequency", "error_amplitude", "error_phase", "mean_force", "damping_ratio", "half_backlash")
+# of these and the mean stiffness, in the vector of `GearOscillator.packed`
 _PLACES = {
-    "mean": 0,
+    "stiffness.mean": 0,
     "damping_ratio": 1,
     "mean_force": 2,
     "error_amplitude": 3,
@@ -32,7 +37,7 @@ MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
 
 
 @dataclass(frozen=True)
-class GearOscillator:
+class GearOscillator(Oscillator):
     r"""Dimensionless torsional oscillator of a gear pair with backlash.
 
     .. math::
@@ -66,6 +71,8 @@ class GearOscillator:
         cells.
     """
 
+    is_exact: ClassVar = True
+
     stiffness: FourierStiffness
     damping_ratio: float
     mean_force: float
@@ -78,35 +85,9 @@ class GearOscillator:
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
         faults = Faults()
-        if not isinstance(self.stiffness, FourierStiffness):
-            faults.add(
-                "stiffness",
-                self.stiffness,
-                "must be a FourierStiffness",
-                "build one, or fit one with fit_fourier",
-            )
-        values = {
-            "damping_ratio": faults.number("damping_ratio", self.damping_ratio, OSCILLATOR["damping_ratio"]),
-            "mean_force": faults.number("mean_force", self.mean_force, OSCILLATOR["mean_force"]),
-            "error_amplitude": faults.number(
-                "error_amplitude", self.error_amplitude, OSCILLATOR["error_amplitude"]
-            ),
-            "frequency": faults.number(
-                "frequency",
-                self.frequency,
-                OSCILLATOR["frequency"],
-            ),
-            "half_backlash": faults.number(
-                "half_backlash",
-                self.half_backlash,
-                OSCILLATOR["half_backlash"],
-            ),
-            "error_phase": faults.number("error_phase", self.error_phase, OSCILLATOR["error_phase"]),
-        }
-        if not isinstance(self.one_sided, bool):
-            faults.add(
-                "one_sided", self.one_sided, "must be True or False", "True leaves the second flank out"
-            )
+        check_stiffness(faults, self.stiffness)
+        values = {name: faults.number(name, getattr(self, name), limit) for name, limit in OSCILLATOR.items()}
+        faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         faults.raise_if_any()
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -116,85 +97,93 @@ class GearOscillator:
             faults.raise_if_any()
 
     @property
-    def period(self) -> float:
-        r"""Excitation period :math:`T = 2 \pi / \omega`."""
-        return 2.0 * np.pi / self.frequency
-
-    @property
     def cells(self) -> float:
         """Cells that the exact flow divides a period into, before rounding up."""
         return cells_per_period(self.packed())
 
-    def get(self, parameter: str) -> float:
-        """Value of a parameter named as in `with_parameter`.
+    @property
+    def floor(self) -> float:
+        """Half the backlash."""
+        return max(self.half_backlash, 1e-300)
 
-        Raises
-        ------
-        InputError
-            If there is no such parameter.
-        """
-        name, index = _resolve(self, parameter)
-        if name in PARAMETERS:
-            return float(getattr(self, name))
-        if name == "mean":
-            return self.stiffness.mean
-        return float(getattr(self.stiffness, name)[index])
-
-    def with_parameter(self, parameter: str, value: float) -> GearOscillator:
-        """Return the oscillator with one parameter changed.
-
-        Parameters
-        ----------
-        parameter : str
-            ``"frequency"``, ``"error_amplitude"``, ``"error_phase"``, ``"mean_force"``, ``"damping_ratio"``,
-            ``"half_backlash"``, ``"stiffness.mean"``, ``"stiffness.amplitudes[0]"``,
-            ``"stiffness.phases[0]"``, ...
-        value : float
-            The new value.
-
-        Raises
-        ------
-        InputError
-            If there is no such parameter, or the value is not allowed.
-        """
-        name, index = _resolve(self, parameter)
-        if name in PARAMETERS:
-            return _replaced(self, name, value)
-        if name == "mean":
-            return dataclasses.replace(self, stiffness=dataclasses.replace(self.stiffness, mean=value))
-        series = list(getattr(self.stiffness, name))
-        series[index] = value
-        return dataclasses.replace(self, stiffness=_replaced(self.stiffness, name, tuple(series)))
-
-    def packed(self) -> FloatArray:
+    def packed(self) -> Array:
         """All parameters in one vector, as the kernels take them: `par` (8), amplitudes, phases."""
-        k = self.stiffness
+        mean, *harmonics = series(self.stiffness)
         sides = 1.0 if self.one_sided else 2.0
         own = (
-            k.mean, self.damping_ratio, self.mean_force, self.error_amplitude, self.frequency, self.error_phase,
+            mean, self.damping_ratio, self.mean_force, self.error_amplitude, self.frequency, self.error_phase,
             self.half_backlash, sides,
         )  # fmt: skip
-        return np.array(own + k.amplitudes + k.phases)
+        return np.array([*own, *harmonics])
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of all parameters, as in `with_parameter`."""
-        series = ("amplitudes", "phases")
-        terms = tuple(f"stiffness.{name}[{j}]" for name in series for j in range(self.stiffness.order))
-        return (*PARAMETERS, "stiffness.mean", *terms)
+        """Names of all parameters: ``frequency``, ..., ``stiffness.mean``, ``stiffness.amplitudes[0]``, ..."""
+        return PARAMETERS + series_names(self.stiffness.order)
 
     def place(self, parameter: str) -> int:
-        """Index of a parameter, named as in `with_parameter`, in the vector of `packed`.
+        """Index of a parameter in the vector of `packed`.
 
         Raises
         ------
         InputError
             If there is no such parameter.
         """
-        name, index = _resolve(self, parameter)
-        if name in _PLACES:
-            return _PLACES[name]
-        return 8 + index + (self.stiffness.order if name == "phases" else 0)
+        self._known(parameter)
+        if parameter in _PLACES:
+            return _PLACES[parameter]
+        return 7 + self.parameters.index(parameter) - len(PARAMETERS)
+
+    def flow(
+        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
+    ) -> Tables:
+        """Tables of the exact flow.
+
+        Raises
+        ------
+        InputError
+            If derivatives by parameters or extrema are asked for, which `map_derivatives` and `turning_points` give.
+        """
+        from dynamics.flow import tables
+
+        faults = Faults()
+        if parameters:
+            faults.add(
+                "parameters",
+                parameters,
+                "must be left out for a GearOscillator",
+                "take dynamics.sensitivity.map_derivatives",
+            )
+        if extrema:
+            faults.add(
+                "extrema",
+                extrema,
+                "must be left out for a GearOscillator",
+                "take dynamics.flow.turning_points",
+            )
+        faults.raise_if_any()
+        return tables(self, tolerance=tolerance)
+
+    def orbits(
+        self,
+        parameter: str,
+        periods: int,
+        bounds: tuple[float, float],
+        scale: float,
+        tolerance: float | None = None,
+    ) -> ExactBranch:
+        """Periodic orbits over a range of one parameter; their tables are always the full ones."""
+        from dynamics.continuation import ExactBranch
+
+        low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
+        return ExactBranch(self, (parameter,), periods, low, high, scale)
+
+    def rest_state(self) -> Array:
+        """State at rest with the flanks pressed together by the mean force, at the centre without one."""
+        force, k = self.mean_force, self.stiffness.mean
+        if force == 0.0 or k == 0.0:
+            return np.zeros(2)
+        return np.array([math.copysign(self.half_backlash, force) + force / k, 0.0])
 
     def mirrored(self) -> GearOscillator:
         """Return the oscillator of -X, which has forces and error reversed.
@@ -210,52 +199,22 @@ class GearOscillator:
             faults.raise_if_any()
         return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
 
-    def force(self, tau: npt.ArrayLike) -> FloatArray:
+    def force(self, tau: npt.ArrayLike) -> Array:
         r"""Return :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""
         angle = self.frequency * np.asarray(tau, dtype=np.float64) + self.error_phase
         return np.asarray(self.mean_force + self.error_amplitude * self.frequency**2 * np.cos(angle))
 
-    def deflection(self, x: npt.ArrayLike) -> FloatArray:
+    def deflection(self, x: npt.ArrayLike) -> Array:
         """Deflection f(X) past the backlash, shape of `x`."""
         at = np.asarray(x, dtype=np.float64)
         lower = -np.inf if self.one_sided else -self.half_backlash
         return np.asarray(at - np.clip(at, lower, self.half_backlash))
 
 
-def cells_per_period(packed: FloatArray) -> float:
+def cells_per_period(packed: Array) -> float:
     """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
     order = (len(packed) - 8) // 2
     stiffest = abs(packed[0]) + float(np.sum(np.abs(packed[8 : 8 + order])))
     period = 2.0 * math.pi / float(packed[4])
     drag = 2.0 * float(packed[1]) * period
     return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * max(order, 1), drag)
-
-
-Record = TypeVar("Record", GearOscillator, FourierStiffness)
-
-
-def _replaced(record: Record, name: str, value: float | tuple[float, ...]) -> Record:
-    """Copy of a frozen record with one field changed, checked again."""
-    changed: dict[str, Any] = {name: value}
-    return dataclasses.replace(record, **changed)
-
-
-def _resolve(oscillator: GearOscillator, parameter: str) -> tuple[str, int]:
-    """Attribute and index that a parameter name stands for."""
-    order = oscillator.stiffness.order
-    if parameter in PARAMETERS:
-        return parameter, -1
-    if parameter == "stiffness.mean":
-        return "mean", -1
-    match = re.fullmatch(r"stiffness\.(amplitudes|phases)\[(\d+)\]", str(parameter))
-    if match and int(match[2]) < order:
-        return match[1], int(match[2])
-    faults = Faults()
-    series = f", stiffness.amplitudes[0..{order - 1}], stiffness.phases[0..{order - 1}]" if order else ""
-    faults.add(
-        "parameter",
-        parameter,
-        f"must be one of {', '.join((*PARAMETERS, 'stiffness.mean'))}{series}",
-        "name one of these",
-    )
-    raise InputError(tuple(faults.found))

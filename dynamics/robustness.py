@@ -10,12 +10,14 @@ import numpy.typing as npt
 from base import Faults, quantity, record
 from dynamics.flow import trajectory
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 from dynamics.special import SpecialPoint
 from dynamics.tracking import marked
 
 __all__ = ["ForceRange", "force_range", "special_sensitivities"]
 
 
+@exact_only
 def special_sensitivities(
     oscillator: GearOscillator, parameter: str, point: SpecialPoint, names: Sequence[str] | None = None
 ) -> dict[str, float]:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from base import Fault, Faults, InputError
 from dynamics.flow import checked_state, tables
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import exact_only
 
 __all__ = ["MapDerivatives", "map_derivatives"]
 
@@ -45,6 +46,7 @@ class MapDerivatives:
     counts: tuple[int, int]
 
 
+@exact_only
 def map_derivatives(
     oscillator: GearOscillator,
     state: npt.ArrayLike,

@@ -1,100 +1,77 @@
-"""Periodic orbits by Newton shooting on the exact period map."""
+"""Periodic orbits by Newton shooting on the period map of any flow."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Cost, Faults, Stopwatch
-from dynamics.flow import MapResult, Tables, checked_state, period_map, tables
-from dynamics.multiple_shooting import chain_error, shoot_in_stretches, stretch_starts
-from dynamics.oscillator import GearOscillator
+from base import Array, Cost, Faults, Stopwatch, quantity, record
+from dynamics.flow import checked_state
+from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
+from dynamics.protocol import EPS, Flow, MapResult, Oscillator
 
 __all__ = ["Orbit", "find_orbit", "floquet_multipliers", "motion_label"]
 
-FloatArray = npt.NDArray[np.float64]
-EPS = float(np.finfo(np.float64).eps)
-LONG = 200  # cells of an orbit that multiple shooting is tried for, too, where one shot fails
 FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Orbit:
-    """A periodic motion.
+    """A periodic motion."""
 
-    Parameters
-    ----------
-    oscillator : GearOscillator
-        What moves.
-    state : ndarray, shape (2,)
-        X and V at tau = 0; nan if not converged.
-    periods : int
-        Its least period n, in excitation periods; it may be a divisor of the number asked for.
-    multipliers : ndarray, shape (2,)
-        Floquet multipliers over n periods, the larger modulus first; complex if they are a pair.
-    stable : bool
-        Both multipliers within the unit circle (or a pair on it, without damping).
-    label : str
-        n-p-q: periods, exits from X > D, entries into X < -D; "U" before it if unstable.
-    counts : tuple of int
-        p and q.
-    jacobian : ndarray, shape (2, 2)
-        Derivative of the n-period map.
-    residual : float
-        Largest component of map minus state.
-    error : float
-        Estimated relative error of the state: the Newton step that tables with half the cell would still
-        take.
-    cost : Cost
-        Effort.
-    converged : bool
-        Whether the residual is down to rounding.
-    message : str
-        What happened, with a remedy if it did not converge.
-    history : tuple of float
-        Residual of every iteration; empty after multiple shooting.
-    nodes : ndarray, shape (m, 2)
-        After multiple shooting: X and V at m equal parts of the period, from tau = 0. A motion that starts from
-        `state` alone leaves so unstable an orbit within one period. Else empty.
-    """
+    headline = ("label", "periods", "stable", "residual")
 
-    oscillator: GearOscillator
-    state: FloatArray
-    periods: int
-    multipliers: npt.NDArray[np.complex128] | FloatArray
-    stable: bool
-    label: str
-    counts: tuple[int, int]
-    jacobian: FloatArray
-    residual: float
-    error: float
+    oscillator: Any
+    """What moves: a `GearOscillator` or a `SmoothOscillator`."""
+    state: Array = quantity("1", "X and V at tau = 0; nan if not converged", "coordinate")
+    periods: int = quantity(
+        "1", "least period n, in excitation periods; it may be a divisor of the number asked for"
+    )
+    multipliers: npt.NDArray[np.complex128] | Array = quantity(
+        "1",
+        "Floquet multipliers over n periods, the larger modulus first; complex if they are a pair",
+        "multiplier",
+    )
+    stable: bool = quantity("1", "both multipliers within the unit circle (or a pair on it, without damping)")
+    label: str = quantity(
+        "", "n-p-q: periods, exits from X > D, entries into X < -D; U before it if unstable"
+    )
+    counts: tuple[int, int] = quantity("1", "p and q", "side")
+    jacobian: Array = quantity("1", "derivative of the n-period map", "row column")
+    determinant: float = quantity("1", "determinant of the Jacobian, from all damping along the motion")
+    residual: float = quantity("1", "largest component of map minus state")
+    error: float = quantity(
+        "1", "estimated relative error of the state: the Newton step that a finer flow would still take"
+    )
     cost: Cost
-    converged: bool
-    message: str
-    history: tuple[float, ...]
-    nodes: FloatArray
+    converged: bool = quantity("1", "whether the residual is down to what the flow leaves")
+    message: str = quantity("", "what happened, with a remedy if it did not converge")
+    history: tuple[float, ...] = quantity(
+        "1", "residual of every iteration; empty after many shots", "iteration"
+    )
+    nodes: Array = quantity(
+        "1", "after multiple shooting: X and V at equal parts of the period; a motion from the state alone leaves so "
+        "unstable an orbit within one period", "node coordinate",
+    )  # fmt: skip
+    tolerance: float | None = quantity("1", "of the flow, as asked for; None for its own", default=None)
 
     @cached_property
-    def points(self) -> FloatArray:
+    def points(self) -> Array:
         """X and V after each excitation period, shape (periods, 2)."""
-        return period_map(self.oscillator, self.state, self.periods).states
-
-    @property
-    def determinant(self) -> float:
-        r"""Exact determinant of the Jacobian, :math:`e^{-4 \pi \zeta n / \omega}`."""
-        return exact_determinant(self.oscillator, self.periods)
+        flow: Flow = self.oscillator.flow(self.tolerance)
+        return flow.follow(self.state, self.periods, derivatives=False).states
 
 
-def exact_determinant(oscillator: GearOscillator, periods: int) -> float:
+def exact_determinant(oscillator: Oscillator, periods: int) -> float:
     r"""Return :math:`\det DP^n = e^{-4 \pi \zeta n / \omega}`; the damping is the same in every region."""
     return math.exp(-2.0 * oscillator.damping_ratio * oscillator.period * periods)
 
 
-def floquet_multipliers(trace: float, determinant: float) -> npt.NDArray[np.complex128] | FloatArray:
+def floquet_multipliers(trace: float, determinant: float) -> npt.NDArray[np.complex128] | Array:
     """Eigenvalues of a 2 x 2 map, the larger modulus first.
 
     The smaller one is taken as the determinant over the larger, which keeps its digits when they differ by
@@ -113,8 +90,8 @@ def floquet_multipliers(trace: float, determinant: float) -> npt.NDArray[np.comp
     return np.array([large, determinant / large if large != 0.0 else 0.0])
 
 
-def is_stable(multipliers: npt.NDArray[np.complex128] | FloatArray) -> bool:
-    """Tell whether both multipliers lie within the unit circle, or are a pair on it up to rounding."""
+def is_stable(multipliers: npt.NDArray[np.complex128] | Array) -> bool:
+    """Whether both multipliers lie within the unit circle, or are a pair on it up to rounding."""
     largest = float(np.max(np.abs(multipliers)))
     return largest < 1.0 or (np.iscomplexobj(multipliers) and largest < 1.0 + 4.0 * EPS)
 
@@ -125,18 +102,19 @@ def motion_label(periods: int, counts: tuple[int, int], stable: bool = True) -> 
 
 
 def find_orbit(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     guess: npt.ArrayLike,
     periods: int = 1,
     *,
     max_iterations: int = 60,
     transient: int = 0,
+    tolerance: float | None = None,
 ) -> Orbit:
     """Find a periodic orbit, stable or not, by Newton's method on the period map.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     guess : array_like, shape (2,)
         X and V at tau = 0.
@@ -146,6 +124,8 @@ def find_orbit(
         Newton iterations.
     transient : int
         Periods to follow the motion before Newton starts, to come close to an attractor.
+    tolerance : float, optional
+        Of the flow, as of `period_map`; 1e-12 for steps, rounding for the exact flow.
 
     Returns
     -------
@@ -159,70 +139,72 @@ def find_orbit(
 
     Notes
     -----
-    One shot over an orbit with a multiplier of size m loses the digits of m. Where the map stretches by more than
+    One shot over an orbit with a multiplier of size m loses the digits of m. Where the exact map stretches by more than
     1e6, or the shot is lost altogether, the states at the starts of many stretches are the unknowns (multiple
     shooting); `Orbit.nodes` holds them.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> orbit = find_orbit(oscillator, guess=(0.5, 0.2))
+    >>> orbit.label, orbit.stable, orbit.converged
+    ('1-1-0', True, True)
     """
     watch = Stopwatch()
     faults = Faults()
-    n = faults.whole("periods", periods, 1, 100_000, "give the number of excitation periods")
-    limit = faults.whole("max_iterations", max_iterations, 1, 100_000, "60 is ample")
-    wait = faults.whole("transient", transient, 0, 10**9, "give 0 or more")
+    n = faults.whole("periods", periods, *ORBIT_PERIODS)
+    limit = faults.whole("max_iterations", max_iterations, *NEWTON_STEPS)
+    wait = faults.whole("transient", transient, *TRANSIENT)
     faults.raise_if_any()
-    table = tables(oscillator)
+    flow = oscillator.flow(tolerance)
     state = checked_state(guess, "guess")
+    size = max(float(np.max(np.abs(state))), oscillator.natural_size)
     used = wait
     if wait:
-        state = period_map(table, state, 1, skip=wait - 1).state
-    x, image, history, spent = newton(table, state, n, limit)
+        state = flow.follow(state, 1, wait - 1, derivatives=False).state
+    x, image, history, spent = newton(flow, state, n, limit)
     used += spent
-    scale = max(float(np.max(np.abs(x))), oscillator.half_backlash, 1e-300)
-    rounding = 64.0 * EPS * scale * max(1.0, float(np.max(np.abs(image.jacobian))))
+    scale = max(float(np.max(np.abs(x))), oscillator.floor)
+    stretch = float(np.max(np.abs(image.jacobian)))
     residual = history[-1]
-    good = bool(residual <= rounding and residual <= 1e-6 * scale)
-    lost = image.message or not float(np.max(np.abs(image.jacobian))) < FAR
-    if lost or (not good and table.cells * n > LONG):
-        orbit = _in_stretches(
-            oscillator, table, x if np.all(np.isfinite(x)) else state, n, limit, watch, used
-        )
+    good = bool(residual <= flow.noise * scale * max(1.0, stretch) and residual <= 1e-6 * scale)
+    lost = bool(image.message) or not stretch < FAR
+    if lost or not good:
+        start = x if np.all(np.isfinite(x)) else state
+        orbit = _in_stretches(oscillator, flow, start, n, limit, size, lost, watch, used)
         if orbit is not None:
             return orbit
+    error, message = math.nan, image.message or _remedy(residual, image, scale, flow)
     if good:
-        n, image = least_period(table, x, n, image)
+        n, image = least_period(flow, x, n, image)
         residual = float(np.max(np.abs(image.state - x)))
-    finer = period_map(tables(oscillator, refinement=2), x, n) if good else image
-    used += 2 * n
-    if good:
-        step = newton_step(image.jacobian, finer.state - x)
-        error = float(np.max(np.abs(step))) / scale
-        good = error < 1e-3 and scale < 1e9 * _natural_size(oscillator, guess)
-    if good:
-        message = f"converged in {len(history) - 1} iterations"
-        if n != periods:
-            message += f"; the orbit has period {n}, a divisor of the {periods} asked for"
-    else:
-        error = math.nan
-        message = image.message or _remedy(residual, image, scale, oscillator)
-    cost = Cost(watch.seconds, 2, len(history) - 1, used)
-    return make_orbit(oscillator, x, n, image, residual, error, cost, good, message, tuple(history))
+        finer = flow.finer().follow(x, n, derivatives=False)
+        error = float(np.max(np.abs(newton_step(image.jacobian, finer.state - x)))) / scale
+        good = error < 1e-3 and scale < 1e9 * size
+        if good:
+            message = f"converged in {len(history) - 1} iterations"
+            if n != periods:
+                message += f"; the orbit has period {n}, a divisor of the {periods} asked for"
+        elif scale < 1e6 * size:
+            message = f"the orbit moves by {error:.0e} of its size on a finer flow: lower the tolerance"
+    cost = Cost(watch.seconds, len(x), len(history) - 1, used + 2 * n)
+    return make_orbit(
+        oscillator, x, n, image, residual, error if good else math.nan, cost, good, message, tuple(history),
+        tolerance=tolerance,
+    )  # fmt: skip
 
 
 def _in_stretches(
-    oscillator: GearOscillator,
-    table: Tables,
-    guess: FloatArray,
-    n: int,
-    limit: int,
-    watch: Stopwatch,
+    oscillator: Oscillator, flow: Flow, guess: Array, n: int, limit: int, size: float, lost: bool, watch: Stopwatch,
     used: int,
-) -> Orbit | None:
+) -> Orbit | None:  # fmt: skip
     """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits."""
-    chain = shoot_in_stretches(oscillator, table, guess, n, limit)
+    chain = flow.chain(oscillator, guess, n, limit, lost)
     if chain is None:
         return None
-    error = chain_error(tables(oscillator, refinement=2), chain, stretch_starts(table, n))
     scale = max(float(np.max(np.abs(chain.nodes))), 1e-300)
-    if not (error < 1e-3 and scale < 1e9 * _natural_size(oscillator, guess)):
+    if not (chain.error < 1e-3 and scale < 1e9 * size):
         return None
     each = len(chain.nodes) // n
     starts = chain.nodes[::each]
@@ -230,17 +212,18 @@ def _in_stretches(
         d for d in range(1, n + 1) if n % d == 0 and np.max(np.abs(starts[d % n] - starts[0])) <= 1e-9 * scale
     )
     if least < n:
-        return _in_stretches(oscillator, table, chain.nodes[0], least, limit, watch, used)
-    image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, np.array([chain.counts]), "")
+        return _in_stretches(oscillator, flow, chain.nodes[0], least, limit, size, True, watch, used)
     message = f"converged in {chain.iterations} iterations on {len(chain.nodes)} stretches"
     cost = Cost(watch.seconds, chain.nodes.size, chain.iterations, used + n * chain.iterations)
+    decay = -2.0 * oscillator.damping_ratio * oscillator.period * n
+    image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, decay, np.array([chain.counts]), "", cost)
     return make_orbit(
         oscillator,
         chain.nodes[0].copy(),
         n,
         image,
         chain.residual,
-        error,
+        chain.error,
         cost,
         True,
         message,
@@ -249,60 +232,62 @@ def _in_stretches(
 
 
 def make_orbit(
-    oscillator: GearOscillator, x: FloatArray, n: int, image: MapResult, residual: float, error: float, cost:
-    Cost, converged: bool, message: str, history: tuple[float, ...] = (), nodes: FloatArray | None = None,
+    oscillator: Oscillator, x: Array, n: int, image: MapResult, residual: float, error: float, cost: Cost,
+    converged: bool, message: str, history: tuple[float, ...] = (), nodes: Array | None = None,
+    tolerance: float | None = None,
 ) -> Orbit:  # fmt: skip
-    """Assemble an orbit from its state and the image of the state."""
+    """Assemble an orbit from its state and the image of the state, of nan if it has not converged."""
+    none = np.empty((0, len(x)))
     if not converged:
-        lost = np.full(2, np.nan)
+        lost = np.full(len(x), np.nan)
         return Orbit(
-            oscillator, lost, n, lost.copy(), False, "", (0, 0), np.full((2, 2), np.nan), residual, math.nan,
-            cost, False, message, history, np.empty((0, 2)),
+            oscillator, lost, n, lost.copy(), False, "", (0, 0), np.full((len(x), len(x)), np.nan), math.nan,
+            residual, error, cost, False, message, history, none, tolerance,
         )  # fmt: skip
-    multipliers = floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(oscillator, n))
+    determinant = math.exp(image.log_determinant)
+    multipliers = floquet_multipliers(float(np.trace(image.jacobian)), determinant)
     counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
     stable = is_stable(multipliers)
     return Orbit(
-        oscillator, x, n, multipliers, stable, motion_label(n, counts, stable), counts, image.jacobian,
-        residual, error, cost, True, message, history, np.empty((0, 2)) if nodes is None else nodes,
+        oscillator, x, n, multipliers, stable, motion_label(n, counts, stable), counts, image.jacobian, determinant,
+        residual, error, cost, True, message, history, none if nodes is None else nodes, tolerance,
     )  # fmt: skip
 
 
-def newton_step(jacobian: FloatArray, image_minus_state: FloatArray) -> FloatArray:
+def newton_step(jacobian: Array, image_minus_state: Array) -> Array:
     """Correction of the state; the one of least norm where a multiplier is exactly one."""
-    matrix = np.eye(2) - jacobian
+    matrix = np.eye(len(jacobian)) - jacobian
     if not np.all(np.isfinite(matrix)):
-        return np.full(2, np.nan)
+        return np.full(len(jacobian), np.nan)
     return np.asarray(np.linalg.lstsq(matrix, image_minus_state, rcond=4.0 * EPS)[0], dtype=np.float64)
 
 
-def newton(
-    table: Tables, start: FloatArray, n: int, limit: int
-) -> tuple[FloatArray, MapResult, list[float], int]:
+def newton(flow: Flow, start: Array, n: int, limit: int) -> tuple[Array, MapResult, list[float], int]:
     """Newton's method with step halving; returns state, its image, residuals and periods used.
 
-    It goes on until the residual no longer falls, so that the result is good to rounding, not to a tolerance.
+    It goes on until the residual no longer falls, so that the result is as good as the flow, not as a tolerance.
     """
     x = start
-    image = period_map(table, x, n)
-    history = [_size(image, x)]
+    image = flow.follow(x, n)
+    history = [_gap(image, x)]
     used = n
+    close = max(1e-10, 1e3 * flow.tolerance)  # so short a step that does not help is noise
     while len(history) <= limit and math.isfinite(history[-1]) and history[-1] > 0.0:
         step = newton_step(image.jacobian, image.state - x)
         factor = 1.0
-        best: tuple[float, FloatArray, MapResult] | None = None
+        best: tuple[float, Array, MapResult] | None = None
         while factor >= 1.0 / 64.0:
             trial = x + factor * step
-            there = period_map(table, trial, n) if np.all(np.isfinite(trial)) else None
+            there = flow.follow(trial, n) if np.all(np.isfinite(trial)) else None
             used += n
             if there is not None:
-                size = _size(there, trial)
+                size = _gap(there, trial)
                 if best is None or size < best[0]:
                     best = (size, trial, there)
                 if size < history[-1]:
                     break
-            if float(np.max(np.abs(step))) <= 1e-10 * max(float(np.max(np.abs(x))), 1e-300):
-                break  # this close a step that does not help is rounding
+            if float(np.max(np.abs(step))) <= close * max(float(np.max(np.abs(x))), 1e-300):
+                break
             factor *= 0.5
         if best is None or not best[0] < history[-1]:
             break
@@ -311,36 +296,31 @@ def newton(
     return x, image, history, used
 
 
-def least_period(table: Tables, x: FloatArray, n: int, image: MapResult) -> tuple[int, MapResult]:
+def least_period(flow: Flow, x: Array, n: int, image: MapResult) -> tuple[int, MapResult]:
     """Smallest divisor of n after which the orbit closes."""
-    scale = max(float(np.max(np.abs(image.states))), 1e-300)
+    stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
+    close = max(1e-9, flow.noise * stretch) * max(float(np.max(np.abs(image.states))), 1e-300)
     for divisor in range(1, n // 2 + 1):
-        if n % divisor == 0 and float(np.max(np.abs(image.states[divisor - 1] - x))) <= 1e-9 * scale:
-            return divisor, period_map(table, x, divisor)
+        if n % divisor == 0 and float(np.max(np.abs(image.states[divisor - 1] - x))) <= close:
+            return divisor, flow.follow(x, divisor)
     return n, image
 
 
-def _size(image: MapResult, x: FloatArray) -> float:
+def _gap(image: MapResult, x: Array) -> float:
     return float(np.max(np.abs(image.state - x)))
 
 
-def _natural_size(oscillator: GearOscillator, guess: npt.ArrayLike) -> float:
-    """Size of the displacements that go in."""
-    o = oscillator
-    return max(
-        float(np.max(np.abs(guess))), o.half_backlash, abs(o.mean_force), abs(o.error_amplitude), 1e-300
-    )
-
-
-def _remedy(residual: float, image: MapResult, scale: float, oscillator: GearOscillator) -> str:
+def _remedy(residual: float, image: MapResult, scale: float, flow: Flow) -> str:
     """Why Newton's method stopped, and what to try."""
-    resonant = abs(1.0 - np.trace(image.jacobian) + exact_determinant(oscillator, 1)) < 1e-6
+    resonant = abs(1.0 - np.trace(image.jacobian) + math.exp(image.log_determinant)) < 1e-6
     if resonant and scale > 1e6:
         return "resonance: a multiplier is one and the motion grows without end; change frequency or damping"
     stretch = float(np.max(np.abs(image.jacobian)))
-    if stretch * EPS * 64.0 > 1e-6:
+    if stretch * flow.noise > 1e-6:
+        remedy = "" if flow.tolerance <= EPS else "; lower the tolerance"
         return (
             f"the map stretches by {stretch:.1e}: one shot over so long or unstable a period loses all digits"
+            f"{remedy}"
         )
     return (
         f"stopped at a residual of {residual:.1e} (motion of size {scale:.1e}): start nearer, "

@@ -20,7 +20,7 @@ class SpecialPoint:
 
     headline = ("kind", "parameter", "label")
 
-    kind: str = quantity("", "grazing, saddle-node or period-doubling")
+    kind: str = quantity("", "grazing, saddle-node, period-doubling or neimark-sacker")
     parameter: float = quantity("1", "value of the parameter", error="error")
     state: Array = quantity("1", "X and V at tau = 0", "state")
     multipliers: npt.NDArray[np.complex128] | Array = quantity("1", "Floquet multipliers", "multiplier")

@@ -6,14 +6,14 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array
-from dynamics.oscillator import GearOscillator
+from dynamics.protocol import Oscillator
 
 __all__ = ["apart", "scale_of"]
 
 
-def scale_of(oscillator: GearOscillator, states: npt.ArrayLike) -> float:
-    """Scale of a motion: its largest X or V, or half the backlash if that is more; never zero."""
-    return max(float(np.max(np.abs(states))), oscillator.half_backlash, 1e-300)
+def scale_of(oscillator: Oscillator, states: npt.ArrayLike) -> float:
+    """Scale of a motion: its largest X or V, or what the oscillator's least size is if that is more; never zero."""
+    return max(float(np.max(np.abs(states))), oscillator.floor)
 
 
 def apart(state: npt.ArrayLike, states: Array) -> float:

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults, Limit, RangeWarning
+from base import Array, Faults, Limit, RangeWarning
 from dynamics.limits import NUMBER
 
-__all__ = ["MAX_ORDER", "FourierStiffness"]
+__all__ = ["MAX_ORDER", "FourierStiffness", "check_stiffness"]
 
-FloatArray = npt.NDArray[np.float64]
 MAX_ORDER = 1000  # the cells per period grow with the order; beyond this a series is the wrong description
 
 
@@ -96,7 +95,7 @@ class FourierStiffness:
         """Highest harmonic."""
         return len(self.amplitudes)
 
-    def __call__(self, angle: npt.ArrayLike) -> FloatArray:
+    def __call__(self, angle: npt.ArrayLike) -> Array:
         r"""Stiffness at the excitation angle :math:`\omega \tau` [rad]; same shape as the angle."""
         theta = np.asarray(angle, dtype=np.float64)
         total = np.full(theta.shape, self.mean)
@@ -120,3 +119,11 @@ class FourierStiffness:
         )
         faults.raise_if_any()
         return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)
+
+
+def check_stiffness(faults: Faults, stiffness: object) -> None:
+    """Note a fault of what is no `FourierStiffness`."""
+    if not isinstance(stiffness, FourierStiffness):
+        faults.add(
+            "stiffness", stiffness, "must be a FourierStiffness", "build one, or fit one with fit_fourier"
+        )

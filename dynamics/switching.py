@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from base import Faults
-from dynamics.corrector import OrbitProblem
-from dynamics.flow import period_map, tables
-from dynamics.oscillator import GearOscillator
+from dynamics.protocol import Oscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
 from dynamics.states import scale_of
 
 __all__ = ["doubled_orbit"]
 
-FloatArray = npt.NDArray[np.float64]
 AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-4, 3e-2, 1e-4, 0.1)  # over the size of the motion
 
 
 def doubled_orbit(
-    oscillator: GearOscillator, parameter: str, point: SpecialPoint, bounds: tuple[float, float]
+    oscillator: Oscillator,
+    parameter: str,
+    point: SpecialPoint,
+    bounds: tuple[float, float],
+    *,
+    tolerance: float | None = None,
 ) -> Orbit | None:
     """Orbit of twice the period next to a period doubling, or None if none is found.
 
@@ -29,14 +30,16 @@ def doubled_orbit(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator; its value of the parameter is not used.
     parameter : str
-        As in `GearOscillator.with_parameter`.
+        One of its `parameters`.
     point : SpecialPoint
         A period doubling on a branch in this parameter.
     bounds : tuple of float
         Range of the parameter.
+    tolerance : float, optional
+        Of the flow, as of `find_orbit`.
 
     Raises
     ------
@@ -58,11 +61,9 @@ def doubled_orbit(
     faults.raise_if_any()
     n = point.periods
     scale = scale_of(oscillator, point.state)
-    low, high = np.array([bounds[0]]), np.array([bounds[1]])
-    problem = OrbitProblem(oscillator, (parameter,), 2 * n, low, high, scale)
+    problem = oscillator.orbits(parameter, 2 * n, bounds, scale, tolerance)
     here = oscillator.with_parameter(parameter, point.parameter)
-    jacobian = period_map(tables(here), point.state, n).jacobian
-    values, vectors = np.linalg.eig(jacobian)
+    values, vectors = np.linalg.eig(here.flow(tolerance).follow(point.state, n).jacobian)
     along = np.append(np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]), 0.0)
     along /= np.linalg.norm(along)
     origin = problem.unknowns(point.state, point.parameter)
@@ -72,7 +73,8 @@ def doubled_orbit(
             continue
         if float(np.max(np.abs(problem.half_way(found) - found.u[:2]))) < 0.5 * amplitude:
             continue  # the orbit of half the period
-        orbit = find_orbit(problem.at(found.u), found.state, periods=2 * n)
+        there = oscillator.with_parameter(parameter, found.value)
+        orbit = find_orbit(there, found.u[:2] * scale, periods=2 * n, tolerance=tolerance)
         if orbit.converged and orbit.periods == 2 * n:
             return orbit
     return None

@@ -11,6 +11,7 @@ import pytest
 
 PACKAGES: tuple[str, ...] = (
     "base",
+    "dynamics",
     "dynamics.inverse",
     "ehl",
     "gears",

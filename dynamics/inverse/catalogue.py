@@ -17,7 +17,6 @@ from dynamics.inverse.refinement import Fit
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
-from dynamics.sweeps import rest_state
 from dynamics.tracking import marked
 
 __all__ = ["CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
@@ -130,7 +129,7 @@ class Catalogue:
 
     def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
         start = here.with_parameter(self.problem.parameter, value)
-        return find_orbit(start, rest_state(start), transient=transient)
+        return find_orbit(start, start.rest_state(), transient=transient)
 
     def _upper(self, here: GearOscillator, value: float) -> list[Orbit]:
         """Motion at the upper bound; where that is chaos, from which Newton's method may go anywhere, all orbits."""

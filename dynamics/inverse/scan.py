@@ -12,7 +12,6 @@ from dynamics.inverse.events import Event, Problem, Ranged
 from dynamics.inverse.reduction import FORCE
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit
-from dynamics.sweeps import rest_state
 
 __all__ = ["Trial", "anchored", "ranked", "scan", "solved_name"]
 
@@ -68,7 +67,7 @@ def anchored(catalogue: Catalogue, here: GearOscillator, event: Event, name: str
     if event.periods in (1, None):
         for end in (span[1], span[0]):
             there = start.with_parameter(name, end)
-            found += catalogue.values_along(find_orbit(there, rest_state(there)), name, span, event)
+            found += catalogue.values_along(find_orbit(there, there.rest_state()), name, span, event)
             if found:
                 break
     if not found and event.periods != 1:

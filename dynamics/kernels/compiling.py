@@ -21,9 +21,8 @@ Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 F = TypeVar("F", bound=Callable[..., Any])
 
 MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES = range(8)
-FINE, DIVERGED, CROWDED, LOST = range(
-    4
-)  # all well, not finite, too many events in a cell, Newton's method failed
+# all well, not finite, too many events in a cell, Newton's method failed
+FINE, DIVERGED, CROWDED, LOST = range(4)
 # a literal would have numba compile callees twice
 ZERO, ONE, TWO = cast(int, np.int64(0)), cast(int, np.int64(1)), cast(int, np.int64(2))
 YES, NO = cast(bool, np.bool_(True)), cast(bool, np.bool_(False))
@@ -40,8 +39,9 @@ hide_compilation()
 def sources_digest() -> str:
     """Digest of all kernel sources."""
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.name.encode())
+    folder = Path(__file__).parent
+    for source in sorted(folder.rglob("*.py")):
+        digest.update(str(source.relative_to(folder)).encode())
         digest.update(source.read_bytes())
     return digest.hexdigest()
 
@@ -72,8 +72,13 @@ def maker(function: F) -> F:
     return cast(F, njit(**_INNER)(function))
 
 
-def kernel(function: F) -> F:
+def kept(function: F, **options: Any) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    compiled = njit(**_OPTIONS)(function)
+    compiled = njit(**options)(function)
     compiled._cache = _Kept(function)
     return cast(F, compiled)
+
+
+def kernel(function: F) -> F:
+    """Compile for callers in Python, kept on disk."""
+    return kept(function, **_OPTIONS)

@@ -31,7 +31,6 @@ from dynamics import (
     SpecialPoint,
     TabulatedContact,
     fit_fourier,
-    smooth,
 )
 from dynamics.flow import turning_points
 from gears import BasicRack, Gear, GearPair, Material
@@ -175,14 +174,10 @@ def oscillators(given: Setting, order: int) -> dict[str, GearOscillator | Smooth
 def curve(name: str, osc: GearOscillator | SmoothOscillator, given: Setting) -> Curve:
     """Follow the motion of period 1 from the lowest speed."""
     low, high = (given.scales.frequency_from_rpm(rpm) for rpm in SPEEDS)
-    start = (osc.size if isinstance(osc, SmoothOscillator) else osc.half_backlash + osc.mean_force, 0.0)
-    if isinstance(osc, SmoothOscillator):
-        orbit = smooth.find_orbit(osc, start, transient=300, tolerance=1e-10)
-        branch = smooth.continue_branch(orbit, "frequency", (low, high))
-    else:
-        branch = dynamics.continue_branch(
-            dynamics.find_orbit(osc, start, transient=300), "frequency", (low, high)
-        )
+    smooth = isinstance(osc, SmoothOscillator)
+    start = (osc.floor if smooth else osc.floor + osc.mean_force, 0.0)
+    orbit = dynamics.find_orbit(osc, start, transient=300, tolerance=1e-10 if smooth else None)
+    branch = dynamics.continue_branch(orbit, "frequency", (low, high))
     ends = np.array([extent(osc, w, x) for w, x in zip(branch.values, branch.states, strict=True)])
     um = 1e6 * given.scales.length * ends
     folds = branch.special("saddle-node")
@@ -203,7 +198,7 @@ def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Arra
     """Least and greatest X of the motion of period 1 through a state."""
     here = osc.with_parameter("frequency", float(frequency))
     if isinstance(here, SmoothOscillator):
-        events = smooth.period_map(here, state, extrema=True, tolerance=1e-8).events
+        events = dynamics.period_map(here, state, extrema=True, tolerance=1e-8).events
         x = events[events[:, 1] == events[:, 1].max(), 3]
     else:
         x = turning_points(here, state)[:, 1]

@@ -47,18 +47,18 @@ def stepwise() -> tuple[Case, ...]:
 
 def _case(name: str, osc: Any) -> Case:
     from dynamics import period_map
-    from dynamics.smooth.flow import follow
-    from dynamics.smooth.oscillator import Engine
+    from dynamics.stepwise.flow import StepwiseFlow
 
     quantity, start = "state", np.array(START)
 
-    def run(engine: Engine, derivatives: bool) -> Engine:
-        follow(engine, start, MANY, derivatives=derivatives)
-        return engine
+    def run(flow: StepwiseFlow, derivatives: bool) -> StepwiseFlow:
+        flow.follow(start, MANY, derivatives=derivatives)
+        return flow
 
-    def answer(engine: Engine) -> Answer:
-        found = follow(engine, start, PERIODS, derivatives=False)
-        return Answer(found.evaluations / PERIODS, {quantity: Value(found.state, None, over_largest=True)})
+    def answer(flow: StepwiseFlow) -> Answer:
+        found = flow.follow(start, PERIODS, derivatives=False)
+        evaluations = found.cost.counts["evaluations of the law"]
+        return Answer(evaluations / PERIODS, {quantity: Value(found.state, None, over_largest=True)})
 
     def exact(_: object) -> Answer:
         state = period_map(oscillator(), START, PERIODS).state
@@ -67,7 +67,7 @@ def _case(name: str, osc: Any) -> Case:
     finest = (
         level("exact flow", lambda: None, exact)
         if name == "exponent 1"
-        else level("tolerance 3e-15", Engine, answer, osc, 3e-15)
+        else level("tolerance 3e-15", StepwiseFlow, answer, osc, 3e-15)
     )
     return Case(
         f"motion_stepwise_{name.split()[-1].replace('/', '_')}",
@@ -79,7 +79,7 @@ def _case(name: str, osc: Any) -> Case:
             Series(
                 words,
                 tuple(
-                    level(f"{t:g}", run, answer, Engine(osc, t, ("frequency",)), derivatives)
+                    level(f"{t:g}", run, answer, StepwiseFlow(osc, t, ("frequency",)), derivatives)
                     for t in TOLERANCES
                 ),
             )

@@ -20,7 +20,6 @@ from dynamics.inverse.refinement import Fit, fit
 from dynamics.inverse.rounding import rounded
 from dynamics.inverse.scan import anchored, ranked, scan
 from dynamics.inverse.scoring import directions, left_out, unseen
-from dynamics.sweeps import rest_state
 from dynamics.tracking import marked
 from tests.validation.article_motion import starved
 
@@ -33,7 +32,7 @@ RANGES = {ZETA: Ranged(0.01, 0.08), KAPPA: Ranged(0.05, 0.3), FORCE: Ranged(0.02
 
 def contact_branch(here, bounds=BOUNDS):
     start = here.with_parameter("frequency", bounds[0])
-    return continue_branch(find_orbit(start, rest_state(start)), "frequency", bounds, max_step=0.05)
+    return continue_branch(find_orbit(start, start.rest_state()), "frequency", bounds, max_step=0.05)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics import SmoothOscillator, smooth
+from dynamics import SmoothOscillator, restoring_force
 from tests.example_scripts import example
 
 
@@ -78,7 +78,7 @@ def test_loaded_law_gives_back_the_finite_elements():
     angles = 2 * np.pi * (np.arange(40) + 0.5) / 40
     for k in (4, 7, 10):
         x = law.half_backlash + here.deflection[:, k] / here.scales.length
-        force = here.scales.force(smooth.force(osc, angles, x)[:, 0])
+        force = here.scales.force(restoring_force(osc, angles, x)[:, 0])
         assert force == pytest.approx(here.force[k], rel=2e-3)
 
 

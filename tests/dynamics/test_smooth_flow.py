@@ -20,13 +20,13 @@ from dynamics import (
     SmoothedBacklash,
     SmoothOscillator,
     SqueezeFilm,
+    Surface,
     TabulatedContact,
-    smooth,
+    period_map,
     trajectory,
 )
+from dynamics.kernels.stepwise import tableau
 from dynamics.sensitivity import map_derivatives
-from dynamics.smooth import Surface
-from dynamics.smooth.kernels import tableau
 
 SERIES = FourierStiffness(1.0, (0.3, 0.1), (0.4, -1.1))
 
@@ -100,8 +100,8 @@ def test_error_falls_with_the_eighth_power_of_the_work_or_faster():
     exact = duffing_motion(1.3, 6 * np.pi)
     work, errors = [], []
     for tolerance in 10.0 ** np.arange(-12, -5):
-        done = smooth.period_map(osc, (1.3, 0.0), 3, tolerance=tolerance)
-        work.append(done.evaluations)
+        done = period_map(osc, (1.3, 0.0), 3, tolerance=tolerance)
+        work.append(done.cost.counts["evaluations of the law"])
         errors.append(np.max(np.abs(done.state - exact)))
     assert np.polyfit(np.log(work), np.log(errors), 1)[0] < -7.7
 
@@ -111,9 +111,7 @@ def test_duffing_period(size):
     """A free undamped motion returns after 4 K(m)/sqrt(1 + a^2)."""
     period = 4 * ellipk(size**2 / (2 * (1 + size**2))) / np.sqrt(1 + size**2)
     law = CompiledLaw(duffing, (("a", 1.0), ("b", 1.0)), size=size)
-    done = smooth.period_map(
-        SmoothOscillator(law, 0.0, 0.0, 0.0, 2 * np.pi / period), (size, 0.0), tolerance=1e-13
-    )
+    done = period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 2 * np.pi / period), (size, 0.0), tolerance=1e-13)
     assert np.max(np.abs(done.state - (size, 0.0))) < 3e-12 * size * np.sqrt(1 + size**2)
 
 
@@ -125,7 +123,7 @@ def test_period_of_a_power_law(n, d):
     inside = 4 * np.sqrt((n + 1) / 2) * a ** ((1 - n) / 2) * beta(1 / (n + 1), 0.5) / (n + 1)
     law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=d, exponent=n)
     osc = SmoothOscillator(law, 0.0, 0.0, 0.0, 2 * np.pi / (inside + 4 * d / touch))
-    done = smooth.period_map(osc, (a + d, 0.0), 3, tolerance=1e-13)
+    done = period_map(osc, (a + d, 0.0), 3, tolerance=1e-13)
     assert np.max(np.abs(done.state - (a + d, 0.0))) < 1e-11
     assert done.counts.tolist() == [[1, 1]] * 3
 
@@ -133,7 +131,7 @@ def test_period_of_a_power_law(n, d):
 def test_energy_is_kept():
     law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=0.1, exponent=1.5)
     osc = SmoothOscillator(law, 0.0, 0.0, 0.0, 0.3)
-    path = smooth.trajectory(osc, (0.8, 0.1), 20, 30, tolerance=1e-13)
+    path = trajectory(osc, (0.8, 0.1), 20, 30, tolerance=1e-13)
     depth = np.maximum(np.abs(path.x) - 0.1, 0.0)
     energy = 0.5 * path.v**2 + depth**2.5 / 2.5
     assert np.ptp(energy) < 1e-10 * energy[0]
@@ -156,7 +154,7 @@ def test_exponent_one_is_the_exact_flow(case):
     osc = SmoothOscillator(law, z, f, e, w, phase)
     names = GearOscillator(series, z, f, e, w, d, phase, one_sided).parameters
     exact = map_derivatives(GearOscillator(series, z, f, e, w, d, phase, one_sided), start, periods=2)
-    done = smooth.period_map(osc, start, 2, parameters=names, tolerance=1e-13)
+    done = period_map(osc, start, 2, parameters=names, tolerance=1e-13)
     size = max(1.0, np.max(np.abs(exact.jacobian)))
     assert np.max(np.abs(done.state - exact.state)) < 1e-11 * size
     assert done.error < 1e-11 * size
@@ -182,7 +180,7 @@ def test_hard_cases_against_the_exact_flow(kappa, zeta, frequency, d):
     exact = map_derivatives(GearOscillator(series, zeta, 0.1, 0.2, frequency, d), (0.5, 0.2), ("mean_force",))
     law = PowerContact(stiffness=series, half_backlash=d, exponent=1.0)
     osc = SmoothOscillator(law, zeta, 0.1, 0.2, frequency)
-    done = smooth.period_map(osc, (0.5, 0.2), parameters=("mean_force",), tolerance=1e-13)
+    done = period_map(osc, (0.5, 0.2), parameters=("mean_force",), tolerance=1e-13)
     stretch = max(1.0, np.max(np.abs(exact.jacobian)))
     assert np.max(np.abs(done.state - exact.state)) < 1e-11 * stretch
     assert np.max(np.abs(done.jacobian - exact.jacobian)) < 1e-10 * stretch
@@ -214,13 +212,13 @@ def test_derivatives_against_differences(name):
     """Jacobian and slopes by central differences of the map; det by Liouville's equation, jumps included."""
     osc = SmoothOscillator(laws()[name], 0.03, 0.1, 0.25, 0.7, 0.3)
     start = np.array([0.5, 0.2])
-    done = smooth.period_map(osc, start, parameters=osc.parameters, tolerance=1e-13)
+    done = period_map(osc, start, parameters=osc.parameters, tolerance=1e-13)
     assert done.message == ""
     h = 1e-5
 
     def image(state, parameter=None, change=0.0):
         here = osc if parameter is None else osc.with_parameter(parameter, osc.get(parameter) + change)
-        return smooth.period_map(here, state, tolerance=1e-14).state
+        return period_map(here, state, tolerance=1e-14).state
 
     for j in range(2):
         step = h * np.eye(2)[j]
@@ -241,14 +239,14 @@ def test_derivatives_against_differences(name):
 def test_friction_in_closed_form():
     """Dry friction on a free oscillator takes 2 mu from the amplitude every half turn."""
     law = CompiledLaw(friction, (("mu", 0.01),), (Surface((0.0, 1.0)),))
-    done = smooth.period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 1.0 / 1.5), (1.0, -1e-9), tolerance=1e-13)
+    done = period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 1.0 / 1.5), (1.0, -1e-9), tolerance=1e-13)
     ends = np.abs(done.events[done.events[:, 1] == 0, 3])
     assert ends == pytest.approx(1.0 - 0.02 * np.arange(1, 4), abs=1e-12)
 
 
 def test_a_motion_that_sticks_is_refused():
     law = CompiledLaw(friction, (("mu", 0.5),), (Surface((0.0, 1.0)),))
-    done = smooth.period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 0.1), (1.0, 0.0))
+    done = period_map(SmoothOscillator(law, 0.0, 0.0, 0.0, 0.1), (1.0, 0.0))
     assert "sticks" in done.message
     assert np.all(np.isnan(done.states))
 
@@ -260,7 +258,7 @@ def test_shallow_double_crossing_is_not_missed(depth):
     osc = SmoothOscillator(law, 0.0, 0.3, 0.0, 1.0)
 
     def counts(dip):
-        return smooth.period_map(osc, (0.2 + 0.6 + dip, 0.0), tolerance=1e-14).counts[0, 0]
+        return period_map(osc, (0.2 + 0.6 + dip, 0.0), tolerance=1e-14).counts[0, 0]
 
     assert counts(depth) == 1
     assert counts(-depth) == 0
@@ -273,13 +271,13 @@ def test_touch_in_one_long_step(depth):
     osc = SmoothOscillator(law, 0.0, -1.0, 0.0, 1.0)
     for sign, expected in ((1.0, 1), (-1.0, 0)):
         speed = np.sqrt(2 * (1.0 + sign * depth))
-        done = smooth.period_map(osc, (-0.5, speed), tolerance=1e-6)
+        done = period_map(osc, (-0.5, speed), tolerance=1e-6)
         assert done.counts[0, 0] == expected
 
 
 def test_trajectory_has_the_exact_events():
     exact = GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, 0.2)
-    ours = smooth.trajectory(SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 3, 40)
+    ours = trajectory(SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 3, 40)
     theirs = trajectory(exact, (0.5, 0.2), 3, 40)
     for name in ("tau", "x", "v", "events", "extrema"):
         assert getattr(ours, name) == pytest.approx(getattr(theirs, name), abs=2e-11), name
@@ -291,7 +289,7 @@ def test_tolerance_governs_the_error():
     exact = map_derivatives(GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, 0.2), (0.5, 0.2), ("frequency",), 3)
     osc = SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6)
     for tolerance in (1e-5, 1e-7, 1e-9, 1e-11, 1e-13):
-        done = smooth.period_map(osc, (0.5, 0.2), 3, tolerance=tolerance)
+        done = period_map(osc, (0.5, 0.2), 3, tolerance=tolerance)
         true = np.max(np.abs(done.state - exact.state)) / np.max(np.abs(done.states))
         assert true < 100 * tolerance
         assert true < 5 * done.error + 1e-14
@@ -308,7 +306,6 @@ def test_building_an_oscillator_compiles_nothing():
 
 INTERPRETED = """
 import json, numpy as np, dynamics as d
-from dynamics import smooth
 series, film = d.FourierStiffness(1.0, (0.18,), (0.3,)), d.SqueezeFilm(0.1, 0.05)
 depths, angles = np.linspace(0, 1, 9) ** 2 * 1.5, 2 * np.pi * np.arange(5) / 5
 forces = (1 + 0.2 * np.cos(angles))[:, None] * depths**1.2
@@ -319,7 +316,7 @@ for law in (
     d.TabulatedContact.from_forces(depths, forces, half_backlash=0.2, order=2),
 ):
     osc = d.SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6, 0.1)
-    done = smooth.period_map(osc, (0.5, 0.2), parameters=osc.parameters, extrema=True, tolerance=1e-8)
+    done = d.period_map(osc, (0.5, 0.2), parameters=osc.parameters, extrema=True, tolerance=1e-8)
     found += [*done.state, *done.jacobian.ravel(), *done.slope.ravel(), *done.events.ravel(), *done.counts.ravel()]
 print(json.dumps([float(v) for v in found]))
 """

@@ -17,13 +17,13 @@ from dynamics import (
     PowerContact,
     SmoothOscillator,
     SqueezeFilm,
+    Surface,
     TabulatedContact,
-    smooth,
 )
 from dynamics.branch import MEETS
 from dynamics.flow import turning_points
 from dynamics.sensitivity import map_derivatives
-from dynamics.smooth import MapPoint, Surface
+from dynamics.stepwise.problem import MapPoint, PeriodMap
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
 
@@ -59,8 +59,8 @@ def assert_same_points(branch, reference, tolerance):
 
 def test_branch_has_the_exact_special_points(exact_branch):
     """Exponent 1: folds, grazings and the period doubling of the lubricated scan, to 1e-12."""
-    orbit = smooth.find_orbit(ours(), (0.4, 0.0))
-    branch = smooth.continue_branch(orbit, "frequency", (0.5, 0.95))
+    orbit = dynamics.find_orbit(ours(), (0.4, 0.0))
+    branch = dynamics.continue_branch(orbit, "frequency", (0.5, 0.95))
     assert branch.converged
     assert branch.error < 1e-11
     assert len(branch.special("saddle-node")) == 4
@@ -70,11 +70,11 @@ def test_branch_has_the_exact_special_points(exact_branch):
 
 def test_doubled_branch():
     """From the period doubling at 1.7687 on to period 2, the exact flow's orbit."""
-    orbit = smooth.find_orbit(ours(1.8), (0.3, 0.3), transient=300)
-    (point,) = smooth.continue_branch(orbit, "frequency", (1.75, 1.82)).special("period-doubling")
-    doubled = smooth.doubled_orbit(ours(1.8), "frequency", point, (1.6, 1.9))
+    orbit = dynamics.find_orbit(ours(1.8), (0.3, 0.3), transient=300)
+    (point,) = dynamics.continue_branch(orbit, "frequency", (1.75, 1.82)).special("period-doubling")
+    doubled = dynamics.doubled_orbit(ours(1.8), "frequency", point, (1.6, 1.9))
     assert doubled.periods == 2
-    branch = smooth.continue_branch(doubled, "frequency", (1.72, 1.82), max_step=0.05)
+    branch = dynamics.continue_branch(doubled, "frequency", (1.72, 1.82), max_step=0.05)
     assert MEETS in branch.ended
     assert branch.values.max() == pytest.approx(point.parameter, abs=1e-3)
     at = int(np.argmin(np.abs(branch.values - 1.74)))
@@ -84,7 +84,7 @@ def test_doubled_branch():
 
 
 @dataclass(frozen=True)
-class ExactMap:
+class ExactMap(PeriodMap):
     """The exact flow as a `PeriodMap`."""
 
     oscillator: GearOscillator
@@ -93,7 +93,6 @@ class ExactMap:
     low: float
     high: float
     scale: float
-    noise: float = 1e-13
 
     def evaluate(self, u):
         width, n = self.high - self.low, self.periods
@@ -117,20 +116,17 @@ class ExactMap:
         here = self.oscillator.with_parameter(self.parameter, point.value)
         return dynamics.period_map(here, point.u[:2] * self.scale, self.periods).states / self.scale
 
-    def refined(self):
-        return replace(self)
-
 
 def test_continuation_serves_any_period_map(exact_branch):
     problem = ExactMap(exact(), "frequency", 1, 0.5, 0.95, 0.4)
     start = dynamics.find_orbit(exact(), (0.4, 0.0))
-    assert_same_points(smooth.follow_branch(problem, start.state, 0.55), exact_branch, 1e-12)
+    assert_same_points(dynamics.follow_branch(problem, start.state, 0.55), exact_branch, 1e-12)
 
 
 def test_orbits_are_the_exact_ones():
     for frequency, guess, periods in ((0.6, (0.5, 0.2), 1), (0.62, (0.1, 0.6), 1), (1.0, (0.3, 0.5), 3)):
         theirs = dynamics.find_orbit(exact(frequency), guess, periods, transient=300)
-        orbit = smooth.find_orbit(ours(frequency), theirs.state + 1e-5, periods)
+        orbit = dynamics.find_orbit(ours(frequency), theirs.state + 1e-5, periods)
         assert theirs.converged
         assert orbit.converged
         assert orbit.label == theirs.label
@@ -142,11 +138,11 @@ def test_orbits_are_the_exact_ones():
 
 
 def test_an_orbit_that_is_not_found_says_so():
-    orbit = smooth.find_orbit(ours(), (50.0, 30.0), max_iterations=1)
+    orbit = dynamics.find_orbit(ours(), (50.0, 30.0), max_iterations=1)
     assert not orbit.converged
     assert np.all(np.isnan(orbit.state))
     with pytest.raises(InputError, match="converged orbit"):
-        smooth.continue_branch(orbit, "frequency", (0.5, 0.6))
+        dynamics.continue_branch(orbit, "frequency", (0.5, 0.6))
 
 
 A, RATE, DAMPING = 0.8, 0.37, 0.05
@@ -162,12 +158,12 @@ def manufactured(theta, x, v, region, q):
 def test_neimark_sacker_where_it_is_known():
     """Along A cos theta the mean damping 2 zeta - mu (1 - A^2/2) vanishes at a known mu."""
     osc = SmoothOscillator(CompiledLaw(manufactured, (("mu", 0.1),)), DAMPING, 0.0, 0.0, RATE)
-    orbit = smooth.find_orbit(osc, (0.7, 0.01))
+    orbit = dynamics.find_orbit(osc, (0.7, 0.01))
     assert orbit.state == pytest.approx((A, 0.0), abs=1e-12)
     assert orbit.determinant == pytest.approx(
         math.exp(-(2 * DAMPING - 0.1 * (1 - A**2 / 2)) * osc.period), rel=1e-12
     )
-    branch = smooth.continue_branch(orbit, "mu", (0.05, 0.3))
+    branch = dynamics.continue_branch(orbit, "mu", (0.05, 0.3))
     (point,) = branch.special("neimark-sacker")
     assert [p.kind for p in branch.points] == ["neimark-sacker"]
     assert point.parameter == pytest.approx(2 * DAMPING / (1 - A**2 / 2), abs=1e-13)
@@ -176,9 +172,9 @@ def test_neimark_sacker_where_it_is_known():
     assert not branch.stable[branch.values > point.parameter + 1e-9].any()
     # beyond it the motion turns on a torus: no period, and an exponent that is zero
     beyond = osc.with_parameter("mu", point.parameter + 0.03)
-    swept = smooth.sweep(beyond, "mu", [point.parameter + 0.03], initial=(0.8, 0.05), transient=400)
+    swept = dynamics.sweep(beyond, "mu", [point.parameter + 0.03], initial=(0.8, 0.05), transient=400)
     assert swept.labels == ("aperiodic",)
-    exponents = smooth.lyapunov_exponents(beyond, 1000, state=(0.8, 0.05), transient=400)
+    exponents = dynamics.lyapunov_exponents(beyond, 1000, state=(0.8, 0.05), transient=400)
     assert abs(exponents.exponents[0]) < 3e-3
     assert exponents.exponents[1] < -0.01
 
@@ -187,7 +183,7 @@ def test_sweeps_meet_the_same_motions():
     values = np.linspace(0.52, 1.0, 9)
     for direction in ("up", "down"):
         theirs = dynamics.sweep(exact(), "frequency", values, direction)
-        mine = smooth.sweep(ours(), "frequency", values, direction, tolerance=1e-8)
+        mine = dynamics.sweep(ours(), "frequency", values, direction, tolerance=1e-8)
         assert mine.labels == theirs.labels
         assert mine.converged
         assert mine.error < 1e-6
@@ -197,14 +193,14 @@ def test_sweeps_meet_the_same_motions():
 
 @pytest.mark.parametrize("frequency", [0.6, 1.05])
 def test_sum_of_exponents(frequency):
-    result = smooth.lyapunov_exponents(ours(frequency), 200, tolerance=1e-10)
+    result = dynamics.lyapunov_exponents(ours(frequency), 200, tolerance=1e-10)
     assert np.sum(result.exponents) == pytest.approx(-0.1, abs=1e-10)
 
 
 def test_sum_of_exponents_with_a_film_is_the_mean_damping():
     osc = ours(0.6, film=SqueezeFilm(0.3, 0.05))
-    orbit = smooth.find_orbit(osc, (0.5, 0.0), transient=100)
-    result = smooth.lyapunov_exponents(osc, 200, state=orbit.state, transient=50, tolerance=1e-10)
+    orbit = dynamics.find_orbit(osc, (0.5, 0.0), transient=100)
+    result = dynamics.lyapunov_exponents(osc, 200, state=orbit.state, transient=50, tolerance=1e-10)
     assert np.sum(result.exponents) == pytest.approx(math.log(orbit.determinant) / osc.period, abs=1e-9)
     assert orbit.determinant < math.exp(-0.1 * osc.period)
 
@@ -212,7 +208,7 @@ def test_sum_of_exponents_with_a_film_is_the_mean_damping():
 def test_film_damps_in_the_gap_by_its_law():
     """In a symmetric gap the film takes c [..] V: the force and its derivatives at a few places."""
     osc = ours(film=SqueezeFilm(0.3, 0.05))
-    at = smooth.force(osc, 0.3, np.array([0.0, 0.1, -0.1, 0.3]), 0.7)
+    at = dynamics.restoring_force(osc, 0.3, np.array([0.0, 0.1, -0.1, 0.3]), 0.7)
     gap = np.array([[0.2, 0.2], [0.1, 0.3], [0.3, 0.1], [0.0, 0.5]])
     film = 0.3 * (0.05 / (0.05 + gap)) ** 1.5
     contact = KAPPA(0.3) * np.array([0.0, 0.0, 0.0, 0.1])
@@ -237,10 +233,10 @@ def test_table_gives_back_its_law():
     depth = np.linspace(0.05, 1.2, 40)
     theta = 0.7
     stiff = 1.0 + 0.2 * np.cos(theta) + 0.05 * np.sin(2 * theta)
-    got = smooth.force(osc, theta, 0.2 + depth)
+    got = dynamics.restoring_force(osc, theta, 0.2 + depth)
     assert got[:, 0] == pytest.approx(stiff * depth**1.15, rel=1e-3)
     assert got[:, 1] == pytest.approx(1.15 * stiff * depth**0.15, rel=5e-3)
-    assert smooth.force(osc, theta, -0.2 - depth)[:, 0] == pytest.approx(-got[:, 0], rel=1e-13)
+    assert dynamics.restoring_force(osc, theta, -0.2 - depth)[:, 0] == pytest.approx(-got[:, 0], rel=1e-13)
     finer = TabulatedContact.from_deflections(
         np.geomspace(1e-3, 2.0, 48),
         (np.geomspace(1e-3, 2.0, 48) / (forces[0] / deflections[:, :1] ** 1.15)) ** (1 / 1.15),
@@ -249,7 +245,7 @@ def test_table_gives_back_its_law():
         first_angle=angles[0],
         intervals=96,
     )
-    better = smooth.force(replace_law(osc, finer), theta, 0.2 + depth)
+    better = dynamics.restoring_force(replace_law(osc, finer), theta, 0.2 + depth)
     error = [np.max(np.abs(f[:, 0] / (stiff * depth**1.15) - 1)) for f in (got, better)]
     assert error[1] < error[0] / 8
 
@@ -267,7 +263,7 @@ def test_table_is_twice_differentiable():
     osc = SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6)
     knots = law.knots[1:]
     h = 1e-7 * knots
-    below, at, above = (smooth.force(osc, 0.7, knots + s * h) for s in (-1.0, 0.0, 1.0))
+    below, at, above = (dynamics.restoring_force(osc, 0.7, knots + s * h) for s in (-1.0, 0.0, 1.0))
     assert np.max(np.abs(above[:, 0] - below[:, 0]) / at[:, 0]) < 1e-6
     left, right = (at[:, 1] - below[:, 1]) / h, (above[:, 1] - at[:, 1]) / h
     scale = at[:, 1] / knots
@@ -283,7 +279,7 @@ def test_straight_table_is_the_exact_flow():
         forces, forces / series(angles)[:, None], half_backlash=0.2, order=4
     )
     # a stiffness of two harmonics from its inverse: nine angles fix the four harmonics of the product
-    done = smooth.period_map(SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 2)
+    done = dynamics.period_map(SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6), (0.5, 0.2), 2)
     reference = dynamics.period_map(exact(0.6, stiffness=series), (0.5, 0.2), 2)
     assert done.state == pytest.approx(reference.state, abs=1e-10)
 
@@ -299,7 +295,7 @@ def test_bad_input_is_refused():
     with pytest.raises(InputError, match="must be one of"):
         ours().with_parameter("kappa", 1.0)
     with pytest.raises(InputError, match="tolerance"):
-        smooth.period_map(ours(), (0.5, 0.2), tolerance=1e-17)
+        dynamics.period_map(ours(), (0.5, 0.2), tolerance=1e-17)
     with pytest.raises(InputError, match="rising with the force"):
         TabulatedContact.from_deflections(forces, deflections[:, ::-1], half_backlash=0.2)
     with pytest.raises(InputError, match="below half the angles"):
@@ -325,4 +321,4 @@ def corner(theta, x, v, region, q):
 @pytest.mark.parametrize("function", [cube, corner])
 def test_a_function_whose_derivative_is_wrong_is_refused(function):
     with pytest.raises(InputError, match="derivatives off"):
-        smooth.period_map(SmoothOscillator(CompiledLaw(function), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2))
+        dynamics.period_map(SmoothOscillator(CompiledLaw(function), 0.05, 0.1, 0.2, 0.6), (0.5, 0.2))

@@ -14,7 +14,9 @@ from dynamics import (
     PowerContact,
     SmoothedBacklash,
     SmoothOscillator,
-    smooth,
+    continue_branch,
+    find_orbit,
+    period_map,
 )
 
 TRACES = [  # mpmath at 30 digits, as in test_mathieu
@@ -33,7 +35,7 @@ def test_mathieu(a, q, trace):
         series = FourierStiffness(a, (2.0 * q,), (np.pi,))
     law = PowerContact(stiffness=series, half_backlash=0.0, exponent=1.0)
     osc = SmoothOscillator(law, 0.0, 0.0, 0.0, 2.0)
-    done = smooth.period_map(osc, (0.3, 0.1), tolerance=1e-14)
+    done = period_map(osc, (0.3, 0.1), tolerance=1e-14)
     assert np.trace(done.jacobian) == pytest.approx(trace, rel=1e-11)
     assert np.linalg.det(done.jacobian) == pytest.approx(1.0, abs=1e-11)
 
@@ -47,10 +49,8 @@ def special(kind: str, start: float, guess, bounds) -> tuple[float, list[float]]
     found = []
     for width in WIDTHS:
         law = SmoothedBacklash(stiffness=series, half_backlash=0.2, width=width)
-        rounded = smooth.find_orbit(
-            SmoothOscillator(law, 0.05, 0.1, 0.2, start), orbit.state, tolerance=1e-10
-        )
-        branch = smooth.continue_branch(rounded, "frequency", bounds, step=0.02, max_step=0.05)
+        rounded = find_orbit(SmoothOscillator(law, 0.05, 0.1, 0.2, start), orbit.state, tolerance=1e-10)
+        branch = continue_branch(rounded, "frequency", bounds, step=0.02, max_step=0.05)
         found.append(branch.special(kind)[0].parameter)
     return exact, found
 

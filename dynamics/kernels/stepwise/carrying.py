@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.kernels.compiling import ONE, ZERO, FloatArray, IntArray
 from dynamics.kernels.roots import copy, first_exit
-from dynamics.smooth.kernels.compiling import (
+from dynamics.kernels.stepwise.compiling import (
     CROWDED,
     DIVERGED,
     FINE,
@@ -20,7 +20,7 @@ from dynamics.smooth.kernels.compiling import (
     helper,
     kernel,
 )
-from dynamics.smooth.kernels.stepping import (
+from dynamics.kernels.stepwise.stepping import (
     COLUMNS,
     attempt,
     attempt_state,

@@ -7,8 +7,8 @@ holds X and V alone, or X, V, the logarithm of the determinant of the flow, and 
 import math
 
 from dynamics.kernels.compiling import FloatArray, IntArray
-from dynamics.smooth.kernels.compiling import ERROR, FORCE, FREQUENCY, OWN, PHASE, ZETA, Model, helper
-from dynamics.smooth.kernels.tableau import DENSE, E3, E5, STAGES, A, B, C
+from dynamics.kernels.stepwise.compiling import ERROR, FORCE, FREQUENCY, OWN, PHASE, ZETA, Model, helper
+from dynamics.kernels.stepwise.tableau import DENSE, E3, E5, STAGES, A, B, C
 
 COLUMNS = 3  # where the pairs of derivatives begin
 FLOOR = 1e-3  # a derivative smaller than this is computed to an absolute tolerance

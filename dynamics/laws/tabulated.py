@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base import Faults, Limit
-from dynamics.smooth.laws import ContactLaw
+from base import Array, Faults, Limit
+from dynamics.laws.contacts import ContactLaw
 
 __all__ = ["TabulatedContact"]
 
-FloatArray = npt.NDArray[np.float64]
 INTERVALS = 32
 
 
@@ -53,7 +52,7 @@ class TabulatedContact(ContactLaw):
         With every fault found; also if the force falls anywhere while the depth grows.
     """
 
-    coefficients: FloatArray
+    coefficients: Array
     reach: float
     remainder: float = 0.0
     factor: float = 1.0
@@ -216,11 +215,11 @@ class TabulatedContact(ContactLaw):
         return (int(np.shape(self.coefficients)[1]) - 2) // 6
 
     @property
-    def knots(self) -> FloatArray:
+    def knots(self) -> Array:
         """Depths at which the splines' pieces meet."""
         return self.reach * (np.arange(self.intervals + 1) / self.intervals) ** 2
 
-    def slopes(self, angles: FloatArray) -> FloatArray:
+    def slopes(self, angles: Array) -> Array:
         """Stiffness at four places of each interval, shape (angles, 4 intervals)."""
         n = self.intervals
         share = np.arange(4) / 3.0 * np.diff(self.knots)[:, None]
@@ -238,25 +237,20 @@ class TabulatedContact(ContactLaw):
         return ("half_backlash", "film.damping", "film.thickness", "factor")
 
     @property
-    def values(self) -> FloatArray:
-        """Their values."""
-        return np.array([self.half_backlash, self.film.damping, self.film.thickness, self.factor])
-
-    @property
-    def data(self) -> FloatArray:
+    def data(self) -> Array:
         """Splines, as the kernel reads them."""
-        head = [self.sides, float(self.order), float(self.intervals), self.reach]
+        head = [*super().data, float(self.order), float(self.intervals), self.reach]
         return np.concatenate([head, self.coefficients.ravel()])
 
     @property
     def compiled(self) -> Any:
         """Function pointer."""
-        from dynamics.smooth.kernels.laws import tabulated_contact
+        from dynamics.kernels.stepwise.laws import tabulated_contact
 
         return tabulated_contact
 
 
-def _checked_table(load: FloatArray, table: FloatArray, order: int, intervals: int) -> None:
+def _checked_table(load: Array, table: Array, order: int, intervals: int) -> None:
     """Raise InputError with every fault of the samples."""
     faults = Faults()
     if load.ndim != 1 or len(load) < 4 or not np.all(np.diff(load, prepend=0.0) > 0.0):

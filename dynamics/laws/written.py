@@ -9,15 +9,13 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Faults
+from base import Array, Faults
 from dynamics.limits import NUMBER
-from dynamics.smooth.naming import unknown
+from dynamics.naming import unknown
 
 __all__ = ["CompiledLaw", "Surface"]
 
-FloatArray = npt.NDArray[np.float64]
 STEP = 1e-40  # imaginary, so that nothing is lost to cancellation
 
 
@@ -51,7 +49,7 @@ class CompiledLaw:
         complex numbers too: derivatives are taken by an imaginary step, exact to rounding, so that within a region
         the function must be analytic (no abs, max, comparison of x), and powers must be written as products, since a
         complex power of a negative number loses the step. Both are checked against differences. Or a numba ``cfunc``
-        of the type `dynamics.smooth.kernels.compiling.LAW`, which gives its own derivatives and is faster.
+        of the type `dynamics.kernels.stepwise.compiling.LAW`, which gives its own derivatives and is faster.
     parameters : tuple of (str, float)
         Names and values of q.
     surfaces : tuple of Surface
@@ -107,17 +105,17 @@ class CompiledLaw:
         return tuple(name for name, _ in self.parameters)
 
     @property
-    def values(self) -> FloatArray:
+    def values(self) -> Array:
         """Their values."""
         return np.array([value for _, value in self.parameters], dtype=np.float64)
 
     @property
-    def data(self) -> FloatArray:
+    def data(self) -> Array:
         """Nothing."""
         return np.empty(0)
 
     @property
-    def surfaces(self) -> FloatArray:
+    def surfaces(self) -> Array:
         """Rows n_X, n_V, sign, place."""
         rows = [
             (*s.normal, s.sign, float(self.names.index(s.parameter)) if s.parameter else -1.0)
@@ -149,7 +147,7 @@ def _compiled(force: Callable[..., Any]) -> tuple[Any, Any]:
     """Function pointer with derivatives by imaginary steps, and the function alone."""
     from numba import cfunc, njit
 
-    from dynamics.smooth.kernels.compiling import LAW
+    from dynamics.kernels.stepwise.compiling import LAW
 
     inner = force if hasattr(force, "py_func") else njit(error_model="numpy")(force)
 

@@ -1,4 +1,4 @@
-"""Restoring forces as function pointers; what a law takes and gives is told in `dynamics.smooth.kernels`.
+"""Restoring forces as function pointers; what a law takes and gives is told in `dynamics.kernels.stepwise`.
 
 Parameters q of the laws with contacts begin with half the backlash, the film's damping and the film's thickness.
 Helpers live here too, because compiled laws are kept on disk by the date of this file.
@@ -7,7 +7,7 @@ Helpers live here too, because compiled laws are kept on disk by the date of thi
 import math
 
 from dynamics.kernels.compiling import FloatArray
-from dynamics.smooth.kernels.compiling import helper, law_kernel
+from dynamics.kernels.stepwise.compiling import helper, law_kernel
 
 
 @helper

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from dynamics.shooting import EPS, floquet_multipliers, is_stable, motion_label
-from dynamics.smooth.problem import MapPoint, PeriodMap, correct
+from dynamics.branch_problem import match_extrema
+from dynamics.protocol import EPS
+from dynamics.roots import along_chord
+from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
+from dynamics.stepwise.problem import MapPoint, PeriodMap
 
 __all__ = ["Sign", "find_crossings", "locate"]
-
-FloatArray = npt.NDArray[np.float64]
-NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Sign], bool]:
     change = [0, 0]
     if len(a.levels) == 2 and min(a.levels[0], b.levels[0]) == 0.0:
         return found, True
-    for i, j in _pairs(a, b):
+    for i, j in match_extrema(a, b):
         kindred = 1 if a.extrema[i, 2] > 0.0 else -1
         for surface in range(len(a.levels)):
             before = a.extrema[i, 1] - a.levels[surface]
@@ -96,7 +94,7 @@ def locate(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[Sp
     if sign.kind == "neimark-sacker" and abs(point.trace) >= 2.0:
         return None, True
     finer = problem.refined()
-    ends = [correct(finer, p.u, (b.u - a.u) / np.linalg.norm(b.u - a.u)) for p in (a, b)]
+    ends = [finer.correct(p.u, (b.u - a.u) / np.linalg.norm(b.u - a.u)) for p in (a, b)]
     error = math.inf
     if ends[0] is not None and ends[1] is not None:
         there, _ = _bracket(finer, ends[0], ends[1], sign)
@@ -114,43 +112,7 @@ def locate(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[Sp
     return special, True
 
 
-def _pairs(a: MapPoint, b: MapPoint) -> list[tuple[int, int]]:
-    """Extrema of two neighbours that are each other's nearest in phase, and of one kind."""
-    if len(a.extrema) == 0 or len(b.extrema) == 0:
-        return []
-    gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
-    gap = np.minimum(gap, 1.0 - gap)
-    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
-    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
-    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
-
-
 def _bracket(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[MapPoint | None, float]:
     """Root search along the chord, each trial corrected on to the branch."""
-    from scipy.optimize import brentq
-
-    chord = b.u - a.u
-    row = chord / np.linalg.norm(chord)
-    points: dict[float, MapPoint] = {0.0: replace(a), 1.0: replace(b)}
-
-    def measure(fraction: float) -> float:
-        point = points.get(fraction) or correct(problem, a.u + fraction * chord, row)
-        if point is None:
-            raise _LostError
-        points[fraction] = point
-        value = sign.measure(point, fraction)
-        if not np.isfinite(value):
-            raise _LostError
-        return value
-
-    search: Callable[..., float] = brentq
-    try:
-        root = float(search(measure, 0.0, 1.0, xtol=1e-14, rtol=4.0 * EPS, maxiter=100))
-        measure(root)
-    except (_LostError, ValueError):  # ValueError: the sign did not change after all
-        return None, math.nan
-    return points[root], root
-
-
-class _LostError(Exception):
-    """The branch could not be followed to a point between two neighbours."""
+    found = along_chord(problem.correct, sign.measure, a, b, 1e-14)
+    return (None, math.nan) if found is None else found

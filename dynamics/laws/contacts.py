@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
-from base import Faults, Limit
-from dynamics.smooth.naming import changed, series, series_names
-from dynamics.stiffness import FourierStiffness
+from base import Array, Faults, Limit
+from dynamics.limits import OSCILLATOR, POSITIVE
+from dynamics.naming import series_names, unknown, value_at, with_value
+from dynamics.stiffness import FourierStiffness, check_stiffness
 
 __all__ = ["Law", "PowerContact", "SmoothedBacklash", "SqueezeFilm"]
 
-FloatArray = npt.NDArray[np.float64]
 L = TypeVar("L", bound="ContactLaw")
 
 
@@ -37,20 +37,20 @@ class Law(Protocol):
     size : float
         Natural size of a displacement.
     compiled : object
-        The numba function pointer, see `dynamics.smooth.kernels`.
+        The numba function pointer, see `dynamics.kernels.stepwise`.
     """
 
     @property
     def names(self) -> tuple[str, ...]: ...  # noqa: D102
 
     @property
-    def values(self) -> FloatArray: ...  # noqa: D102
+    def values(self) -> Array: ...  # noqa: D102
 
     @property
-    def data(self) -> FloatArray: ...  # noqa: D102
+    def data(self) -> Array: ...  # noqa: D102
 
     @property
-    def surfaces(self) -> FloatArray: ...  # noqa: D102
+    def surfaces(self) -> Array: ...  # noqa: D102
 
     @property
     def damped(self) -> bool: ...  # noqa: D102
@@ -90,12 +90,12 @@ class SqueezeFilm:
         """Check."""
         faults = Faults()
         faults.number("film.damping", self.damping, Limit(0.0, remedy="0 is no film"))
-        faults.number("film.thickness", self.thickness, Limit(0.0, low_open=True, remedy="give h over b_c"))
+        faults.number("film.thickness", self.thickness, POSITIVE)
         faults.raise_if_any()
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactLaw:
+class ContactLaw(ABC):
     """What laws with contacts on one or two sides have in common."""
 
     half_backlash: float
@@ -104,17 +104,29 @@ class ContactLaw:
 
     def _check(self) -> Faults:
         faults = Faults()
-        faults.number("half_backlash", self.half_backlash, Limit(0.0, remedy="give half the play"))
+        faults.number("half_backlash", self.half_backlash, OSCILLATOR["half_backlash"])
         if not isinstance(self.film, SqueezeFilm):
             faults.add("film", self.film, "must be a SqueezeFilm", "leave it out for none")
-        if not isinstance(self.one_sided, bool):
-            faults.add(
-                "one_sided", self.one_sided, "must be True or False", "True leaves the second flank out"
-            )
+        faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         return faults
 
     @property
-    def surfaces(self) -> FloatArray:
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """Parameters."""
+
+    @property
+    def data(self) -> Array:
+        """Number of sides with play."""
+        return np.array([1.0 if self.one_sided else 2.0])
+
+    @property
+    def values(self) -> Array:
+        """Values of the parameters."""
+        return np.array([value_at(self, name) for name in self.names])
+
+    @property
+    def surfaces(self) -> Array:
         """X = D and X = -D."""
         both = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]])
         return both[:1] if self.one_sided else both
@@ -129,11 +141,6 @@ class ContactLaw:
         """Half the backlash."""
         return self.half_backlash
 
-    @property
-    def sides(self) -> float:
-        """1 or 2, as the kernels take it."""
-        return 1.0 if self.one_sided else 2.0
-
     def with_value(self: L, name: str, value: float) -> L:
         """Return the law with one parameter changed.
 
@@ -142,7 +149,9 @@ class ContactLaw:
         InputError
             If there is no such parameter or the value is not allowed.
         """
-        new: L = changed(self, name, value)
+        if name not in self.names:
+            raise unknown(name, self.names)
+        new: L = with_value(self, name, float(value))
         return new
 
 
@@ -181,28 +190,18 @@ class SmoothedBacklash(ContactLaw):
             faults.add(
                 "film, one_sided", "given", "must be left out", "PowerContact with exponent 1 has both"
             )
-        _check_stiffness(faults, self.stiffness)
+        check_stiffness(faults, self.stiffness)
         faults.raise_if_any()
 
     @property
     def names(self) -> tuple[str, ...]:
         """Parameters."""
-        return ("half_backlash", "width", *series_names(self.stiffness))
-
-    @property
-    def values(self) -> FloatArray:
-        """Their values."""
-        return np.array([self.half_backlash, self.width, *series(self.stiffness)])
-
-    @property
-    def data(self) -> FloatArray:
-        """Nothing."""
-        return np.empty(0)
+        return ("half_backlash", "width", *series_names(self.stiffness.order))
 
     @property
     def compiled(self) -> Any:
         """Function pointer."""
-        from dynamics.smooth.kernels.laws import smoothed_backlash
+        from dynamics.kernels.stepwise.laws import smoothed_backlash
 
         return smoothed_backlash
 
@@ -242,7 +241,7 @@ class PowerContact(ContactLaw):
         """Check."""
         faults = self._check()
         faults.number("exponent", self.exponent, Limit(1.0, remedy="10/9 for a line contact"))
-        _check_stiffness(faults, self.stiffness)
+        check_stiffness(faults, self.stiffness)
         faults.raise_if_any()
 
     @property
@@ -253,30 +252,12 @@ class PowerContact(ContactLaw):
             "film.damping",
             "film.thickness",
             "exponent",
-            *series_names(self.stiffness),
+            *series_names(self.stiffness.order),
         )
-
-    @property
-    def values(self) -> FloatArray:
-        """Their values."""
-        own = (self.half_backlash, self.film.damping, self.film.thickness, self.exponent)
-        return np.array([*own, *series(self.stiffness)])
-
-    @property
-    def data(self) -> FloatArray:
-        """Number of sides."""
-        return np.array([self.sides])
 
     @property
     def compiled(self) -> Any:
         """Function pointer."""
-        from dynamics.smooth.kernels.laws import power_contact
+        from dynamics.kernels.stepwise.laws import power_contact
 
         return power_contact
-
-
-def _check_stiffness(faults: Faults, stiffness: object) -> None:
-    if not isinstance(stiffness, FourierStiffness):
-        faults.add(
-            "stiffness", stiffness, "must be a FourierStiffness", "build one, or fit one with fit_fourier"
-        )

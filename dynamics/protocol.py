@@ -1,0 +1,295 @@
+"""What an oscillator and its flow offer; every function that takes any oscillator asks for no more.
+
+There are two kinds of flow: the exact one of `GearOscillator` and the stepwise one of `SmoothOscillator`. A state is
+a vector with X first; nothing here says how long it is.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
+
+import numpy as np
+
+from base import Array, Cost, Faults, InputError, Integers, quantity, record
+from dynamics.naming import natural_size, unknown, value_at, with_value
+
+if TYPE_CHECKING:
+    from dynamics.branch_problem import BranchProblem
+    from dynamics.multiple_shooting import Chain
+
+__all__ = ["EPS", "Flow", "MapResult", "Oscillator", "Stretches", "exact_only", "lost_motion"]
+
+EPS = float(np.finfo(np.float64).eps)
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+@record
+class MapResult:
+    """Image of a state under n periods."""
+
+    headline = ("log_determinant",)
+
+    states: Array = quantity("1", "X and V after each period", "period coordinate")
+    jacobian: Array = quantity("1", "derivative of the last state with respect to the first", "row column")
+    log_determinant: float = quantity(
+        "1", "logarithm of the determinant of the Jacobian, minus all damping on the way"
+    )
+    counts: Integers = quantity(
+        "1", "exits from X > D and entries into X < -D during each period", "period side"
+    )
+    message: str = quantity("", "empty, or why the motion could not be followed; the figures are then nan")
+    cost: Cost
+    slope: Array = quantity(
+        "1",
+        "derivative of the last state by the parameters asked for",
+        "row parameter",
+        default_factory=lambda: np.empty((2, 0)),
+    )
+    events: Array = quantity(
+        "1", "stepwise flow: angle, surface, side entered, X, V, X'', derivatives of X at crossings", "event column",
+        default_factory=lambda: np.empty((0, 8)),
+    )  # fmt: skip
+    error: float | None = quantity(
+        "1",
+        "difference to a finer flow over the size of the motion; None where a prepared flow was followed",
+        default=None,
+    )
+
+    @property
+    def state(self) -> Array:
+        """Last state, shape (2,)."""
+        return np.asarray(self.states[-1])
+
+    @property
+    def converged(self) -> bool:
+        """Whether the motion could be followed."""
+        return not self.message
+
+
+class Stretches(NamedTuple):
+    """Logarithms by which two directions grew along stretches of a motion.
+
+    Attributes
+    ----------
+    logs : ndarray, shape (stretches, 2)
+        Of the length of the first direction, and of the second one across it.
+    states : ndarray, shape (periods, 2)
+        States after every period if asked for, else the last one alone.
+    message : str
+        Empty, or why the motion could not be followed.
+    """
+
+    logs: Array
+    states: Array
+    message: str
+
+
+class Flow(ABC):
+    """An oscillator made ready to be followed."""
+
+    tolerance: float
+    """Of a step, over the size of the motion; rounding where the flow is exact."""
+    noise: float
+    """Residual, over the size of the motion and the stretch of the map, below which nothing gets."""
+
+    @abstractmethod
+    def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
+        """Follow a state at tau = 0 over `skip` periods, then over `periods` that are kept; nothing is checked."""
+
+    @abstractmethod
+    def finer(self) -> Flow:
+        """The same, more accurately, for an error estimate."""
+
+    @abstractmethod
+    def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
+        """Samples (X, V), extrema (tau, X, X'', ...) and events (tau, X, V, region entered) of a motion.
+
+        Raises
+        ------
+        InputError
+            If the motion cannot be followed.
+        """
+
+    @abstractmethod
+    def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
+        """Growth of two directions along a motion, over stretches of so many periods each."""
+
+    def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
+        """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
+        if limit == 0:
+            return state, 0, ""
+        image = self.follow(state, 1, limit - 1, derivatives=False)
+        return image.state, limit, image.message
+
+    def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """Follow every start with the label -1 until it stays near a known attractor; `starts` become the last states.
+
+        Parameters
+        ----------
+        starts : ndarray, shape (k, 2)
+            Starting states.
+        homes : ndarray, shape (m, 4)
+            X, V, attractor and its period for every point of every attractor.
+        radius : float
+            A motion has arrived when it is so near to a point, in the largest norm, and no farther one round later.
+        limit : int
+            Periods.
+        labels : ndarray of int, shape (k,)
+            Becomes the attractor, -2 where the motion was lost.
+
+        Returns
+        -------
+        int
+            Periods used.
+        """
+        used = 0
+        for i in np.flatnonzero(labels == -1):
+            home, wait, distance, period = 0, 0, 0.0, 0
+            while labels[i] == -1 and period < limit:
+                image = self.follow(starts[i], min(16, limit - period), derivatives=False)
+                if image.message:
+                    labels[i] = -2
+                for state in image.states:
+                    starts[i] = state
+                    period, wait = period + 1, wait - 1
+                    gaps = np.max(np.abs(homes[:, :2] - state), axis=1)
+                    if wait == 0 and gaps[home] <= distance:
+                        labels[i] = int(homes[home, 2])
+                        break
+                    if wait < 0 and len(gaps) and gaps.min() < radius:
+                        home = int(gaps.argmin())
+                        distance, wait = float(gaps[home]), int(homes[home, 3])
+            used += period
+        return used
+
+    def chain(self, oscillator: Any, guess: Array, periods: int, limit: int, lost: bool) -> Chain | None:
+        """Orbit by multiple shooting; None where the flow has none, or one shot is enough."""
+        return None
+
+
+class Oscillator(ABC):
+    """What moves: a frozen record of parameters, each with a name."""
+
+    is_exact: ClassVar = False
+    """Whether the flow is the exact one in the plane, which many functions need."""
+
+    damping_ratio: float
+    mean_force: float
+    error_amplitude: float
+    frequency: float
+
+    @property
+    @abstractmethod
+    def parameters(self) -> tuple[str, ...]:
+        """Names of all parameters, as `get` and `with_parameter` take them."""
+
+    @property
+    @abstractmethod
+    def floor(self) -> float:
+        """Least size that a motion is measured by."""
+
+    @abstractmethod
+    def flow(
+        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
+    ) -> Flow:
+        """Make ready to be followed.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            Of a step (stepwise flow) or of one period's map (exact flow).
+        parameters : tuple of str
+            Parameters to differentiate by.
+        extrema : bool
+            Whether extrema of X are among the events.
+        """
+
+    @abstractmethod
+    def orbits(
+        self,
+        parameter: str,
+        periods: int,
+        bounds: tuple[float, float],
+        scale: float,
+        tolerance: float | None = None,
+    ) -> BranchProblem:
+        """Periodic orbits over a range of one parameter, as continuation takes them."""
+
+    @abstractmethod
+    def rest_state(self) -> Array:
+        """State at rest under the mean force."""
+
+    @property
+    def period(self) -> float:
+        r"""Excitation period :math:`T = 2 \pi / \omega`."""
+        return 2.0 * math.pi / self.frequency
+
+    @property
+    def natural_size(self) -> float:
+        """Size of the displacements that go in."""
+        return natural_size(self.floor, self.mean_force, self.error_amplitude)
+
+    def get(self, parameter: str) -> float:
+        """Value of a parameter.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter.
+        """
+        self._known(parameter)
+        return value_at(self, parameter)
+
+    def with_parameter(self, parameter: str, value: float) -> Self:
+        """Return the oscillator with one parameter changed.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter, or the value is not allowed.
+        """
+        self._known(parameter)
+        changed: Self = with_value(self, parameter, value)
+        return changed
+
+    def _known(self, parameter: str) -> None:
+        if parameter not in self.parameters:
+            raise unknown(parameter, self.parameters)
+
+
+def lost_motion(state: Array, reason: str) -> InputError:
+    """Error of a motion that cannot be followed."""
+    faults = Faults()
+    faults.add(
+        "state",
+        str(np.asarray(state).tolist()),
+        "must start a motion that can be followed",
+        f"{reason}: check the input",
+    )
+    return InputError(faults.found)
+
+
+def exact_only(function: Callable[P, R]) -> Callable[P, R]:
+    """Have a function refuse, by name, an oscillator that is no `GearOscillator`, or what moves by another one."""
+
+    @functools.wraps(function)
+    def checked(*args: P.args, **kwargs: P.kwargs) -> R:
+        given: Any = args[0] if args else next(iter(kwargs.values()), None)
+        oscillator = given if isinstance(given, Oscillator) else getattr(given, "oscillator", None)
+        if isinstance(oscillator, Oscillator) and not oscillator.is_exact:
+            faults = Faults()
+            name = type(oscillator).__name__
+            faults.add(
+                "oscillator", name, f"must be a GearOscillator in {function.__name__}",
+                "period_map, trajectory, find_orbit, continue_branch, doubled_orbit, sweep, lyapunov_exponents and "
+                f"basins take a {name} too",
+            )  # fmt: skip
+            faults.raise_if_any()
+        return function(*args, **kwargs)
+
+    return checked

@@ -1,0 +1,201 @@
+"""The oscillator with any restoring force."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Faults
+from dynamics.laws.contacts import Law
+from dynamics.limits import NUMBER, OSCILLATOR
+from dynamics.naming import natural_size
+from dynamics.protocol import Oscillator
+
+if TYPE_CHECKING:
+    from dynamics.stepwise.flow import StepwiseFlow
+    from dynamics.stepwise.problem import FlowProblem
+
+__all__ = ["SmoothOscillator", "restoring_force"]
+
+OWN = ("damping_ratio", "mean_force", "error_amplitude", "frequency", "error_phase")
+
+
+@dataclass(frozen=True)
+class SmoothOscillator(Oscillator):
+    r"""Oscillator with a smooth or piecewise smooth restoring force.
+
+    .. math::
+
+        \ddot X + 2 \zeta \dot X + f(\omega\tau, X, \dot X)
+        = F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)
+
+    Parameters
+    ----------
+    law : Law
+        :math:`f`, periodic in its first argument.
+    damping_ratio : float
+        :math:`\zeta`; negative values are allowed, a law may hold damping of its own.
+    mean_force, error_amplitude : float
+        :math:`F_m, \varepsilon`.
+    frequency : float
+        :math:`\omega > 0`.
+    error_phase : float
+        :math:`\varphi_e` [rad].
+
+    Raises
+    ------
+    InputError
+        With every fault found.
+    """
+
+    law: Law
+    damping_ratio: float
+    mean_force: float
+    error_amplitude: float
+    frequency: float
+    error_phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check; every fault is listed."""
+        faults = Faults()
+        if not all(hasattr(self.law, name) for name in ("names", "values", "data", "surfaces")):
+            laws = "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw"
+            faults.add("law", self.law, "must be a law", laws)
+        for name in OWN:
+            faults.number(name, getattr(self, name), NUMBER if name == "damping_ratio" else OSCILLATOR[name])
+        faults.raise_if_any()
+        if not np.all(np.isfinite(self.law.values)):
+            faults.add("law", self.law.values.tolist(), "must have finite parameters", "correct the law")
+        faults.raise_if_any()
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of all parameters: its own and those of the law."""
+        return (*OWN, *self.law.names)
+
+    @property
+    def floor(self) -> float:
+        """Natural size of a displacement."""
+        return natural_size(self.law.size, self.mean_force, self.error_amplitude)
+
+    @property
+    def own(self) -> Array:
+        """Values of the parameters that are not the law's."""
+        return np.array([getattr(self, name) for name in OWN], dtype=np.float64)
+
+    def get(self, parameter: str) -> float:
+        """Value of a parameter.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter.
+        """
+        return float(np.concatenate([self.own, self.law.values])[self.place(parameter)])
+
+    def place(self, parameter: str) -> int:
+        """Index of a parameter among all.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter.
+        """
+        self._known(parameter)
+        return self.parameters.index(parameter)
+
+    def with_parameter(self, parameter: str, value: float) -> SmoothOscillator:
+        """Return the oscillator with one parameter changed.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter, or the value is not allowed.
+        """
+        self._known(parameter)
+        change: dict[str, Any] = {parameter: float(value)}
+        if parameter not in OWN:
+            change = {"law": self.law.with_value(parameter, value)}
+        return dataclasses.replace(self, **change)
+
+    def flow(
+        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
+    ) -> StepwiseFlow:
+        """Make ready for the kernels."""
+        from dynamics.stepwise.flow import StepwiseFlow
+
+        return StepwiseFlow(self, tolerance, parameters, extrema)
+
+    def orbits(
+        self,
+        parameter: str,
+        periods: int,
+        bounds: tuple[float, float],
+        scale: float,
+        tolerance: float | None = None,
+    ) -> FlowProblem:
+        """Periodic orbits over a range of one parameter."""
+        from dynamics.stepwise.flow import TOLERANCE
+        from dynamics.stepwise.problem import FlowProblem
+
+        return FlowProblem(
+            self, parameter, periods, *bounds, scale, TOLERANCE if tolerance is None else tolerance
+        )
+
+    def rest_state(self) -> Array:
+        """State at rest where the mean of the force over the angle balances the mean force; zeros if there is none."""
+        angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+        side = math.copysign(1.0, self.mean_force)
+
+        def excess(x: float) -> float:
+            mean = float(restoring_force(self, angles, np.full(64, side * x))[:, 0].mean())
+            return side * (mean - self.mean_force)
+
+        low, high = 0.0, self.floor
+        for _ in range(60):
+            if excess(high) > 0.0:
+                break
+            low, high = high, 2.0 * high
+        else:
+            return np.zeros(2)
+        if excess(low) > 0.0:
+            return np.zeros(2)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if excess(middle) > 0.0 else (middle, high)
+        return np.array([side * high, 0.0])
+
+
+def restoring_force(
+    oscillator: SmoothOscillator, angle: npt.ArrayLike, x: npt.ArrayLike, v: npt.ArrayLike = 0.0
+) -> Array:
+    """Restoring force of a law and its derivatives with respect to X and V, last axis 3.
+
+    Parameters
+    ----------
+    oscillator : SmoothOscillator
+        Whose law is meant.
+    angle, x, v : array_like
+        Angle omega tau [rad], X and V, broadcast against each other.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, PowerContact, SmoothOscillator
+    >>> law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=0.2, exponent=1.0)
+    >>> oscillator = SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6)
+    >>> restoring_force(oscillator, 0.0, [0.1, 0.5])[:, 0]
+    array([0. , 0.3])
+    """
+    from dynamics.kernels.stepwise.carrying import probe
+
+    theta, place, speed = np.broadcast_arrays(angle, x, v)
+    flow = oscillator.flow()
+    out = np.empty((theta.size, 3 + len(flow.model[2])))
+    points = np.column_stack([np.asarray(a, dtype=np.float64).ravel() for a in (theta, place, speed)])
+    probe(flow.model, flow.surfaces, points, out)
+    return out[:, :3].reshape(*theta.shape, 3)
