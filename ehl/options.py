@@ -94,18 +94,17 @@ def _in_order(domain: object) -> bool:
 
 def warn_of_range(contact: LineContact) -> None:
     """Warn where the model leaves its range."""
-    limit = contact.lubricant.law.reliable_below
+    limit, film = contact.lubricant.law.reliable_below, moes_central(contact)
+    messages = []
     if contact.peak_pressure > limit:
-        warnings.warn(
+        messages.append(
             f"Hertz pressure {contact.peak_pressure / 1e9:.2f} GPa: above about {limit / 1e9:g} GPa the "
-            "viscosity law is an extrapolation; film thickness, decided in the inlet, suffers little",
-            RangeWarning,
-            stacklevel=4,
+            "viscosity law is an extrapolation; film thickness, decided in the inlet, suffers little"
         )
-    if moes_central(contact) > 1e-3 * contact.radius:
-        warnings.warn(
-            f"film of about {moes_central(contact):.2g} m at a radius of {contact.radius:.2g} m: the "
-            "parabola that stands for the cylinders no longer holds over the whole inlet",
-            RangeWarning,
-            stacklevel=4,
+    if film > 1e-3 * contact.radius:
+        messages.append(
+            f"film of about {film:.2g} m at a radius of {contact.radius:.2g} m: the parabola that stands for "
+            "the cylinders no longer holds over the whole inlet"
         )
+    for message in messages:
+        warnings.warn(message, RangeWarning, stacklevel=3)

@@ -14,8 +14,35 @@ from ehl.plan import Plan
 from ehl.response import slopes
 from ehl.run import DRY, Run
 
-_GRID_FACTOR = 0.4  # as for the film
+_GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
+
+
+def film_error(coarse: Level, fine: Level) -> float:
+    """Estimated relative error of central and minimum film on the finer of two grids.
+
+    The changes of central film, of minimum film, of the film between them (root mean square over the dry
+    contact's width) and of the separation are added, since any one of them may be small by accident.
+    """
+    before, after = figures(coarse), figures(fine)
+    at = coarse.grid.nodes
+    weights = np.where(np.abs(at) <= 1.0, coarse.grid.weights, 0.0)
+    change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
+    profile = math.sqrt(float(weights @ change**2 / weights.sum()))
+    central, minimum = before.central / after.central - 1.0, before.minimum / after.minimum - 1.0
+    return _GRID_FACTOR * (
+        abs(central) + abs(minimum) + profile + abs(before.separation / after.separation - 1.0)
+    )
+
+
+def spike_error(coarse: Level, fine: Level) -> float:
+    """Relative change of the spike's pressure between two grids laid around it; 0 without a spike."""
+    before, after = spike_of(coarse), spike_of(fine)
+    if after is None:
+        return 0.0 if before is None else math.inf
+    if before is None or fine.plan.spike is None:
+        return math.inf
+    return abs(before.height / after.height - 1.0)
 
 
 def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
@@ -66,16 +93,15 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
 
 def _spike(coarse: Level, fine: Level) -> Spike | None:
     """Return the spike in SI; its error is known only where both grids were laid around it."""
-    tip = spike_of(fine)
+    tip, contact = spike_of(fine), fine.contact
     if tip is None:
         return None
-    before, contact = spike_of(coarse), fine.contact
-    known = before is not None and coarse.plan.spike is not None and fine.plan.spike is not None
+    off = math.inf if coarse.plan.spike is None else spike_error(coarse, fine)
     return Spike(
         position=tip.position * contact.half_width,
         pressure=tip.height * contact.peak_pressure,
         width=tip.width * contact.half_width,
-        error=abs(before.height / tip.height - 1.0) if known and before is not None else math.nan,
+        error=off if off < math.inf else math.nan,
     )
 
 

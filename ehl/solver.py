@@ -7,13 +7,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from ehl.contact import LineContact
 from ehl.film import Film
-from ehl.levels import Level, figures, spike_of
+from ehl.levels import Level, State
 from ehl.options import Options, warn_of_range
-from ehl.outcome import failed_film, film_of
+from ehl.outcome import failed_film, film_error, film_of, spike_error
 from ehl.plan import Plan
 from ehl.run import Run
 from ehl.supply import OilLayer, Supply
@@ -24,9 +22,6 @@ _SHARP_NODES = 257
 _MOST_NODES = 2049
 _REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
-_GRID_FACTOR = (
-    0.4  # error of N nodes over its difference from (N+1)/2 nodes: 1/3 at second order, with a margin
-)
 
 
 def solve(
@@ -101,7 +96,7 @@ def solve(
     """
     options = Options(tolerance, nodes, domain, grid, supply, spike).checked(contact)
     warn_of_range(contact)
-    return solve_checked(contact, options, start)
+    return solve_checked(contact, options, None if start is None else start.state)
 
 
 def solve_path(
@@ -138,49 +133,40 @@ def solve_path(
     return tuple(films)
 
 
-def solve_checked(contact: LineContact, options: Options, start: Film | None) -> Film:
+def solve_checked(contact: LineContact, options: Options, start: State | None) -> Film:
     """Solve with arguments that were checked."""
+    if options.supply is not None:
+        return _starved(contact, options, options.supply, start)
     reach = max(_REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
     flooded = Plan.of(contact, options.grid, options.domain, reach)
-    if options.supply is None:
-        return _solve(Run(contact, flooded, None, whole_spike=options.spike is not None), options, start)
-    return _starved(contact, flooded, options, options.supply, start)
+    return _solve(Run(contact, flooded, None, whole_spike=options.spike is not None), options, start)
 
 
-def _starved(
-    contact: LineContact, flooded: Plan, options: Options, supply: Supply, start: Film | None
-) -> Film:
+def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> Film:
     """Solve with a supply: flooded first, since that decides how much of it the contact takes."""
-    full = solve_checked(contact, replace(options, supply=None, spike=None), _if_open(start))
+    held = start if start is not None and start.plan.fixed else None
+    full = solve_checked(contact, replace(options, supply=None, spike=None), start if held is None else None)
     if not full.converged:
         return full
     enough = full.flow * (1.0 - full.error)
     if isinstance(supply, OilLayer) and supply.thickness >= enough:
         if options.spike is not None:
-            sharp = solve_checked(contact, replace(options, supply=None), full)
+            sharp = solve_checked(contact, replace(options, supply=None), full.state)
             full = replace(sharp, cost=full.cost + sharp.cost)
         message = "converged; the layer is thicker than what the inlet takes: flooded"
         return replace(full, supply=supply, message=message) if full.converged else full
     plan = Plan.fed(contact, options.grid, supply, full.flow)
-    old = start if start is not None and start.state is not None and start.state.plan.fixed else None
-    if old is not None and isinstance(supply, OilLayer):
-        assert old.state is not None
-        plan = plan.with_inlet(old.state.plan.domain[0])
-    film = _solve(Run(contact, plan, supply, whole_spike=options.spike is not None), options, old)
+    if held is not None and isinstance(supply, OilLayer):
+        plan = plan.with_inlet(held.plan.domain[0])
+    film = _solve(Run(contact, plan, supply, whole_spike=options.spike is not None), options, held)
     return replace(film, cost=full.cost + film.cost)
 
 
-def _if_open(start: Film | None) -> Film | None:
-    """Return a start that has no meniscus, which a flooded contact can use."""
-    return start if start is not None and start.state is not None and not start.state.plan.fixed else None
-
-
-def _solve(run: Run, options: Options, start: Film | None) -> Film:
+def _solve(run: Run, options: Options, old: State | None) -> Film:
     """Solve a first pair of grids, then refine.
 
     A start gives films on the first pair alone: on finer ones a film of another load is often too far off.
     """
-    old = start.state if start is not None else None
     if old is not None and old.plan.serves(run.plan):
         run.plan = old.plan
     n = 2 * _FIRST_NODES - 1
@@ -241,31 +227,3 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
             left = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
             return failed_film(run, fine, f"{left} left on {fine.grid.nodes.size} nodes", worst)
         coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)
-
-
-def film_error(coarse: Level, fine: Level) -> float:
-    """Estimated relative error of central and minimum film on the finer of two grids.
-
-    The changes of central film, of minimum film, of the film between them (root mean square over the dry
-    contact's width) and of the separation are added, since any one of them may be small by
-    accident.
-    """
-    before, after = figures(coarse), figures(fine)
-    at = coarse.grid.nodes
-    weights = np.where(np.abs(at) <= 1.0, coarse.grid.weights, 0.0)
-    change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
-    profile = math.sqrt(float(weights @ change**2 / weights.sum()))
-    central, minimum = before.central / after.central - 1.0, before.minimum / after.minimum - 1.0
-    return _GRID_FACTOR * (
-        abs(central) + abs(minimum) + profile + abs(before.separation / after.separation - 1.0)
-    )
-
-
-def spike_error(coarse: Level, fine: Level) -> float:
-    """Relative change of the spike's pressure between two grids laid around it; 0 without a spike."""
-    before, after = spike_of(coarse), spike_of(fine)
-    if after is None:
-        return 0.0 if before is None else math.inf
-    if before is None or fine.plan.spike is None:
-        return math.inf
-    return abs(before.height / after.height - 1.0)
