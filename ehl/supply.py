@@ -18,7 +18,7 @@ from base import Array, Faults, Limit
 _FLOODED = "leave the supply out for a flooded inlet"
 LIMITS = {
     "position": Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True),
-    "thickness": Limit(1e-10, 0.01, "m", f"h_oil in m; {_FLOODED}"),
+    "thickness": Limit(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}", low_open=True),
 }
 """What the numbers of a supply may be."""
 
