@@ -17,14 +17,13 @@ try:
     import numba
     import numpy as np
     from numba import njit
-    from scipy.integrate._ivp import dop853_coefficients as tableau
+    from scipy.integrate import DOP853
 except ImportError as error:
     print(json.dumps({"missing": str(error)}))
     sys.exit()
 
-STAGES = tableau.N_STAGES
-A, B, C = tableau.A[:STAGES, :STAGES].copy(), tableau.B.copy(), tableau.C[:STAGES].copy()
-E3, E5 = tableau.E3.copy(), tableau.E5.copy()
+STAGES = 12
+A, B, C, E3, E5 = (part.copy() for part in (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5))
 
 
 SAME = {"error_model": "numpy", "fastmath": {"contract"}}  # compiled with the options of the exact flow
