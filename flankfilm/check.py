@@ -25,27 +25,27 @@ def check_scene(scene: Scene) -> list[str]:
     InputError
         With every fault of the geometry, or of the oil.
     """
-    told = [f"{scene.title or 'The scene'} is in order."]
+    lines = [f"{scene.title or 'The scene'} is valid."]
     if scene.pair is not None:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             pair = gear_pair(scene)
-        told.append(
+        lines.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
         )
-        told += [f"Warning: {warning.message}" for warning in caught]
+        lines += [f"Warning: {warning.message}" for warning in caught]
     if scene.lubricant is not None:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             oil = lubricant(scene)
-        told.append(
+        lines.append(
             f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
-        told += [f"Warning: {warning.message}" for warning in caught]
+        lines += [f"Warning: {warning.message}" for warning in caught]
     if DRY_CYCLE in (wanted := goals(scene)) or (scene.stiffness.model != "given" and FOURIER in wanted):
         plan = Engine(scene, Cache(None))[PLAN]  # models and shares, from cheap estimates
-        told += [decision.line for decision in plan.decisions]
-        told.append(plan.line)
-    told.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
-    return told
+        lines += [decision.line for decision in plan.decisions]
+        lines.append(plan.line)
+    lines.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
+    return lines

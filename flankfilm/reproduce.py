@@ -36,8 +36,8 @@ def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
         return read_scene(path), ()
     held = _attributes(path)
     if "design" in held:
-        told = "holds a study"
-        raise InputError([Fault(str(path), "", told, "Run its study file, or a results.nc")])
+        allowed = "holds a study"
+        raise InputError([Fault(str(path), "", allowed, "Run its study file, or a results.nc")])
     text = held.get("scene_json", "")
     if not text:
         raise InputError([Fault(str(path), "", "holds no scene", "Name a results.nc that flankfilm wrote")])
@@ -56,8 +56,8 @@ def _attributes(path: Path) -> dict[str, str]:
             names = ("scene_json", "versions_json", "code_sha256", "design")
             return {name: str(file.attrs[name])[: LARGEST_FILE + 1] for name in names if name in file.attrs}
     except (OSError, UnicodeDecodeError) as fault:
-        told = f"cannot be read as netCDF: {shorten(str(fault))}"
-        raise InputError([Fault(str(path), "", told, "Name a scene or a results.nc")]) from fault
+        allowed = f"cannot be read as netCDF: {shorten(str(fault))}"
+        raise InputError([Fault(str(path), "", allowed, "Name a scene or a results.nc")]) from fault
 
 
 def _scene(text: str, name: str) -> Scene:
@@ -84,7 +84,7 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
     from flankfilm.dataset import provenance
 
     here = provenance("")
-    told = []
+    found = []
     try:
         theirs: dict[str, Any] = json.loads(held.get("versions_json", "{}"))
         own: dict[str, Any] = json.loads(here["versions_json"])
@@ -93,7 +93,7 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
     changed = [f"{name} {theirs.get(name, '?')}, here {version}" for name, version in own.items()]
     changed = [text for text, name in zip(changed, own, strict=True) if theirs.get(name) != own[name]]
     if changed:
-        told.append(f"made with {'; '.join(changed)}")
+        found.append(f"made with {'; '.join(changed)}")
     if held.get("code_sha256") != here["code_sha256"]:
-        told.append("made by other source code of flankfilm: numbers may differ")
-    return tuple(told)
+        found.append("made by other source code of flankfilm: numbers may differ")
+    return tuple(found)

@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 from base import Fault
+from flankfilm.scene.gears import GearSection, PairSection
+from flankfilm.scene.section import Section
+from flankfilm.scene.template import toml
 
 OPEN = math.nan
 """Stands for a value that the file lacks: no scene takes it, so that it cannot be overlooked."""
@@ -95,18 +98,18 @@ def scene_text(draft: Draft) -> str:
     lines = [
         f"# From {_comment(draft.source)}",
         *(f"# {_comment(note)}" for note in draft.notes),
-        f"title = {_quoted(draft.title[:200])}",
+        f"title = {toml(draft.title[:200])}",
         'wants = ["geometry"]                # more need [operating]: see "flankfilm new"',
         "",
         "[pair]",
         _line("module_mm", draft.module_mm),
         _line("face_width_mm", draft.face_width_mm),
-        "rack = { " + ", ".join(f"{key} = {_number(v)}" for key, v in vars(draft.rack).items()) + " }",
+        f"rack = {toml(vars(draft.rack))}",
     ]
     if draft.centre_distance_mm is not None:
         lines.append(_line("centre_distance_mm", draft.centre_distance_mm, "the backlash follows"))
     else:
-        lines.append("# centre_distance_mm =             # not in the file: the axes stand free of backlash")
+        lines.append(_absent("centre_distance_mm", PairSection))
     for role, gear in (("pinion", draft.pinion), ("wheel", draft.wheel)):
         lines += ["", f"{f'[pair.{role}]':<35}# {_comment(gear.name)}", *_gear_lines(gear)]
     lines += _material_lines(draft)
@@ -115,15 +118,10 @@ def scene_text(draft: Draft) -> str:
 
 
 def _gear_lines(gear: GearDraft) -> list[str]:
-    optional = {
-        "tip_alteration": "not in the file: the tip stands at r + m (h_aP + x)",
-        "bore_mm": "not in the file: half the root diameter",
-        "tip_chamfer_mm": "not in the file: none",
-    }
     lines = [_line("teeth", gear.teeth), _line("profile_shift", gear.profile_shift)]
-    for key, told in optional.items():
+    for key in ("tip_alteration", "bore_mm", "tip_chamfer_mm"):
         value = getattr(gear, key)
-        lines.append(f"# {key + ' =':<33}# {told}" if value is None else _line(key, value))
+        lines.append(_absent(key, GearSection) if value is None else _line(key, value))
     return lines
 
 
@@ -145,20 +143,15 @@ def _elastic_lines(material: MaterialDraft) -> list[str]:
 
 def _line(key: str, value: Number, remark: str = "") -> str:
     remark = "NOT IN THE FILE: give it" if math.isnan(value) else remark
-    text = f"{key} = {_number(value)}"
+    text = f"{key} = {toml(value)}"
     return f"{text:<35}# {remark}" if remark else text
 
 
-def _number(value: Number) -> str:
-    return str(value) if isinstance(value, int) else repr(value)
-
-
-def _quoted(text: str) -> str:
-    """A TOML basic string."""
-    escaped = "".join(
-        f"\\u{ord(c):04x}" if ord(c) < 32 or ord(c) == 127 else "\\" + c if c in '"\\' else c for c in text
-    )
-    return f'"{escaped}"'
+def _absent(key: str, section: type[Section]) -> str:
+    """A key that the file lacks, with its default and its meaning."""
+    field = section.model_fields[key]
+    value = "" if field.default is None else toml(field.default)
+    return f"{f'# {key} = {value}':<35}# not in the file: {field.description}"
 
 
 def _comment(text: str) -> str:

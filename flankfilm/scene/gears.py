@@ -184,7 +184,7 @@ class PairSection(Section):
         example=50,
     )
     centre_distance_mm: float | None = key(
-        "distance of the axes instead of the backlash, which then follows", None, such_as=76.0
+        "distance of the axes, if not by the backlash, which then follows", None, such_as=76.0
     )
 
 

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from base import Fault, InputError
 from flankfilm.scene.explain import explain_all
-from flankfilm.scene.needs import missing_sections
+from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.schema import Scene
 
 LARGEST_FILE = 1_000_000
@@ -56,8 +56,10 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
     """Read TOML; `name` is what a fault calls the file."""
     # the parser keeps every beginning of a dotted key, and looks each up from its first part
     if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_SQUARED_DOTS:
-        told = "has a line with thousands of dots"
-        raise InputError([Fault(name, "", told, "Break long lists into lines; no key has that many parts")])
+        allowed = "has a line with thousands of dots"
+        raise InputError(
+            [Fault(name, "", allowed, "Break long lists into lines; no key has that many parts")]
+        )
     try:
         raw = tomllib.loads(text)
     except ValueError as fault:  # also a number of more digits than Python reads
@@ -114,8 +116,8 @@ def validated(raw: dict[str, Any]) -> Scene:
         scene = Scene.model_validate(raw)
     except ValidationError as error:
         listed = explain_all(error.errors(), Scene)
-        raise InputError([*listed, *missing_sections(raw)]) from error
-    if missing := missing_sections(raw):
+        raise InputError([*listed, *faults_between_sections(raw)]) from error
+    if missing := faults_between_sections(raw):
         raise InputError(missing)
     return scene
 
@@ -123,8 +125,8 @@ def validated(raw: dict[str, Any]) -> Scene:
 def refuse_long_lists(raw: Any, where: str = "") -> None:
     """Refuse lists of thousands before each of their entries is judged."""
     if isinstance(raw, list) and len(raw) > LONGEST_LIST:
-        told = f"must have at most {LONGEST_LIST} entries"
-        raise InputError([Fault(where or "the scene", f"{len(raw):,} entries", told, "Shorten it")])
+        allowed = f"must have at most {LONGEST_LIST} entries"
+        raise InputError([Fault(where or "the scene", f"{len(raw):,} entries", allowed, "Shorten it")])
     if isinstance(raw, dict):
         for key, value in raw.items():
             refuse_long_lists(value, f"{where}.{key}"[:200] if where else str(key)[:200])

@@ -38,16 +38,23 @@ def template() -> str:
 def toml(value: Any) -> str:
     """Write a value as TOML, tables in one line."""
     if isinstance(value, str):
-        return f'"{value}"'
+        return _quoted(value)
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{name} = {toml(item)}" for name, item in value.items()) + " }"
     if isinstance(value, tuple):
         return f"[{', '.join(map(toml, value))}]"
-    if isinstance(value, float) and abs(value) >= 1e6:
-        return f"{value:g}".replace("e+0", "e")
-    return repr(value)
+    short = f"{value:g}"
+    return short.replace("e+0", "e") if "e+" in short and float(short) == value else repr(value)
+
+
+def _quoted(text: str) -> str:
+    """A TOML basic string."""
+    escaped = "".join(
+        f"\\u{ord(c):04x}" if ord(c) < 32 or ord(c) == 127 else "\\" + c if c in '"\\' else c for c in text
+    )
+    return f'"{escaped}"'
 
 
 def _section(name: str, field: FieldInfo, model: type[BaseModel]) -> Iterator[str]:

@@ -107,7 +107,7 @@ class TestResultsReproduceThemselves:
         told = flankfilm("check", "old.nc", cwd=tmp_path)
         assert "numpy 1.0, here" in told
         assert "other source code" in told
-        assert "is in order" in told
+        assert "is valid" in told
 
     @pytest.mark.parametrize("text", ["", "{", "[1]", "[" * 100_000, '{"wants": 3}', '{"wants": ["sweep"]}'])
     def test_a_damaged_scene_in_it_is_refused(self, small_run, tmp_path, text):
