@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 import numpy.typing as npt
 
-from base import Array
+from base import Array, Integers
 
 __all__ = ["AsArray"]
 
@@ -16,11 +16,11 @@ class AsArray(ABC):
     """What `numpy.asarray` makes a table of: the columns that a plot needs."""
 
     @abstractmethod
-    def columns(self) -> Array:
+    def columns(self) -> Array | Integers:
         """The table."""
 
     def __array__(
         self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
     ) -> npt.NDArray[np.generic]:
         """The table as an array of numpy."""
-        return self.columns().astype(np.float64 if dtype is None else dtype)
+        return np.array(self.columns(), dtype=dtype)

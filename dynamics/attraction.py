@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.exponents import stretch_rate
 from dynamics.homes import Homes
 from dynamics.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
@@ -44,7 +44,7 @@ class Attractor:
 
 
 @record
-class BasinResult:
+class BasinResult(AsArray):
     """Which attractor every start comes to."""
 
     x: Array = quantity("1", "starting values of X", "x")
@@ -57,11 +57,9 @@ class BasinResult:
     converged: bool = quantity("1", "whether every start has settled")
     message: str = quantity("", "what was found, with a remedy if some starts have not settled")
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Integers:
         """Return the labels."""
-        return self.labels.astype(dtype if dtype is not None else np.int64)
+        return self.labels
 
 
 def basins(
@@ -116,7 +114,7 @@ def basins(
     >>> from dynamics import FourierStiffness, GearOscillator
     >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     >>> [attractor.label for attractor in basins(oscillator, x=(-1, 1, 6), v=(-1, 1, 6)).attractors]
-    ['1-1-0']
+    ['1-1-1', '1-0-0']
     """
     watch = Stopwatch()
     faults = Faults()

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Booleans, Cost, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["GOOD_ENDS", "KINDS", "MEETS", "UNBOUNDED", "Branch"]
@@ -17,7 +18,7 @@ KINDS = ("saddle-node", "period-doubling", "grazing")
 
 
 @record
-class Branch:
+class Branch(AsArray):
     """A branch of periodic orbits."""
 
     headline = ("parameter", "periods")
@@ -55,8 +56,6 @@ class Branch:
         """
         return of_kind(self.points, kind, (*KINDS, "neimark-sacker"))
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Columns parameter, X, V."""
-        return np.column_stack([self.values, self.states]).astype(dtype if dtype is not None else np.float64)
+        return np.column_stack([self.values, self.states])

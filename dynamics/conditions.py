@@ -6,15 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array
 from dynamics.corrector import OrbitProblem, Point, rounding
 from dynamics.oscillator import GearOscillator
 from dynamics.special import SpecialPoint
 
 __all__ = ["Condition", "special_orbit"]
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -67,13 +65,13 @@ class Condition:
         x = float(point.extrema[at, 1])
         return (x - self.boundary * float(problem.packed(point.u)[6])) / problem.scale
 
-    def gradient(self, problem: OrbitProblem, point: Point) -> FloatArray:
+    def gradient(self, problem: OrbitProblem, point: Point) -> Array:
         """Its derivative with respect to the unknowns."""
         if self.kind == "saddle-node":
             return point.determinant_slope - point.trace_slope
         if self.kind == "period-doubling":
             return point.determinant_slope + point.trace_slope
-        slope: FloatArray = point.extrema_slope[self.nearest(point)].copy()
+        slope: Array = point.extrema_slope[self.nearest(point)].copy()
         slope[2:] -= self.boundary * problem.ways[:, 6] / problem.scale
         return slope
 
@@ -81,8 +79,8 @@ class Condition:
 def special_orbit(
     problem: OrbitProblem,
     condition: Condition,
-    guess: FloatArray,
-    across: FloatArray | None = None,
+    guess: Array,
+    across: Array | None = None,
     refinement: int = 1,
     limit: int = 12,
 ) -> Point | None:

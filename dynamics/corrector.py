@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from base import Array, Integers
 from dynamics.branch_problem import PlanePoint
-from dynamics.flow import DEGREE, period_map
+from dynamics.flow import DEGREE, period_map, tabulated
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.protocol import EPS
 
@@ -192,15 +192,9 @@ class OrbitProblem:
 
     def half_way(self, point: Point) -> Array:
         """Unknowns X and V after half the orbit's period; n must be even."""
-        from dynamics.kernels.flow import iterate
-        from dynamics.kernels.tables import tabulate
-
-        q, order = self.packed(point.u), self._order
-        coef, edge = tabulate(q[:8], q[8 : 8 + order], q[8 + order :], self._cells(point.u, 1), DEGREE)
         half = self.periods // 2
-        states, counts, state = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64), point.state.copy()
-        iterate((q[:8], coef, edge), state, half - 1, 0, np.empty((3, 2)), states, counts)
-        return state / self.scale
+        flow = tabulated(self.packed(point.u), self._cells(point.u, 1))
+        return flow.follow(point.state, 1, half - 1, derivatives=False).state / self.scale
 
     @cached_property
     def _order(self) -> int:

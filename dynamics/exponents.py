@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.flow import checked_state
 from dynamics.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
 from dynamics.protocol import Flow, Oscillator, lost_motion
@@ -18,7 +19,7 @@ __all__ = ["LyapunovResult", "LyapunovScan", "lyapunov_exponents", "lyapunov_sca
 
 
 @record
-class LyapunovResult:
+class LyapunovResult(AsArray):
     """Lyapunov exponents, per unit of dimensionless time."""
 
     headline = ("standard_error",)
@@ -45,11 +46,9 @@ class LyapunovResult:
         """Of the larger exponent."""
         return float(self.standard_errors[0])
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Return the two exponents."""
-        return self.exponents.astype(dtype if dtype is not None else np.float64)
+        return self.exponents
 
 
 def lyapunov_exponents(
@@ -120,7 +119,7 @@ def lyapunov_exponents(
 
 
 @record
-class LyapunovScan:
+class LyapunovScan(AsArray):
     """Both Lyapunov exponents over a parameter."""
 
     headline = ("parameter", "defect")
@@ -141,12 +140,9 @@ class LyapunovScan:
     converged: bool = quantity("1", "whether the sign of the larger exponent is certain everywhere")
     message: str = quantity("", "what to know about the result")
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Columns value, larger exponent, smaller exponent, their standard errors."""
-        table = np.column_stack([self.values, self.exponents, self.standard_errors])
-        return table.astype(dtype if dtype is not None else np.float64)
+        return np.column_stack([self.values, self.exponents, self.standard_errors])
 
 
 def lyapunov_scan(

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.limits import PERIODS, POINTS, POSITIVE, REFINEMENT, TAYLOR_DEGREE, TRANSIENT
 from dynamics.multiple_shooting import Chain, shoot_in_stretches
 from dynamics.oscillator import GearOscillator
@@ -22,6 +23,7 @@ __all__ = [
     "Trajectory",
     "period_map",
     "tables",
+    "tabulated",
     "trajectory",
     "turning_points",
 ]
@@ -63,7 +65,7 @@ class Tables(Flow):
 
     def finer(self) -> Tables:
         """Tables with half the cell."""
-        return _tabulated(self.packed, 2 * self.cells, DEGREE)
+        return tabulated(self.packed, 2 * self.cells)
 
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the Jacobian covers the periods skipped, too."""
@@ -136,7 +138,7 @@ class Tables(Flow):
 
 
 @record
-class Trajectory:
+class Trajectory(AsArray):
     """Motion at equal times, and its impacts."""
 
     headline = ("points_per_period",)
@@ -159,11 +161,9 @@ class Trajectory:
     converged = True  # a motion that cannot be followed raises
     message = ""
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """Columns tau, X, V."""
-        return np.stack([self.tau, self.x, self.v], axis=1).astype(dtype if dtype is not None else np.float64)
+        return np.stack([self.tau, self.x, self.v], axis=1)
 
     @property
     def poincare(self) -> Array:
@@ -221,10 +221,11 @@ def tables(
     faults.raise_if_any()
     if degree is None:
         degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
-    return _tabulated(oscillator.packed(), math.ceil(oscillator.cells) * refinement, degree)
+    return tabulated(oscillator.packed(), math.ceil(oscillator.cells) * refinement, degree)
 
 
-def _tabulated(packed: Array, cells: int, degree: int) -> Tables:
+def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> Tables:
+    """Tables of a packed oscillator, with so many cells per period."""
     from dynamics.kernels.tables import tabulate
 
     order = (len(packed) - 8) // 2
@@ -274,7 +275,7 @@ def period_map(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator
     >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.6, half_backlash=0.2)
-    >>> period_map(oscillator, (0.3, 0.0)).state
+    >>> period_map(oscillator, (0.3, 0.0)).state.round(12) + 0.0
     array([0.3, 0. ])
     """
     watch = Stopwatch()

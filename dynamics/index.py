@@ -6,15 +6,14 @@ import dataclasses
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from base import Array
 from dynamics.flow import Tables, period_map, tables
 from dynamics.manifolds import carried
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["index_at_infinity", "winding"]
 
-FloatArray = npt.NDArray[np.float64]
 LARGE = (1e3, 1e4)  # radii, over the larger of D and the shift by the forces, at which the turns must agree
 TURN = 0.5  # rad: neighbours on the circle between which the displacement turns by more are halved
 MOST = 100_000  # points on the circle
@@ -70,7 +69,7 @@ def winding(oscillator: GearOscillator, n: int, radius: float) -> int | None:
     """
     table = tables(oscillator)
 
-    def directions(angles: FloatArray) -> FloatArray:
+    def directions(angles: Array) -> Array:
         at = radius * np.column_stack([np.cos(angles), np.sin(angles)])
         move = carried(table, at, n) - at
         return np.asarray(np.arctan2(move[:, 1], move[:, 0]))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow import DEGREE, Tables, period_map, tables
+from dynamics.flow import Tables, period_map, tables, tabulated
 from dynamics.limits import POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
@@ -66,15 +66,12 @@ def reversed_tables(oscillator: GearOscillator) -> Tables:
     With time and speed reversed about tau = 0 the equation keeps its form; the damping and all phases change their
     signs. So the inverse of the period map is as exact as the map: carry (X, -V) and reverse V again.
     """
-    from dynamics.kernels.tables import tabulate
-
     packed, order = oscillator.packed(), oscillator.stiffness.order
     packed[1] = -packed[1]
     packed[5] = -packed[5]
     packed[8 + order :] *= -1.0
     cells = math.ceil(oscillator.cells)
-    coef, edge = tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, DEGREE)
-    return Tables(packed, coef, edge)
+    return tabulated(packed, cells)
 
 
 def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:

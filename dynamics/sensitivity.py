@@ -2,48 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
-from base import Fault, Faults, InputError
+from base import Array, Faults, quantity, record
 from dynamics.flow import checked_state, tables
+from dynamics.limits import PERIODS
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import exact_only
+from dynamics.protocol import exact_only, lost_motion
 
 __all__ = ["MapDerivatives", "map_derivatives"]
 
-FloatArray = npt.NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class MapDerivatives:
-    """Image of a state under n periods, with derivatives.
+    """Image of a state under n periods, with derivatives."""
 
-    Parameters
-    ----------
-    parameters : tuple of str
-        The parameters, in the order of the columns.
-    state : ndarray, shape (2,)
-        Image of X and V.
-    jacobian : ndarray, shape (2, 2)
-        Its derivative with respect to the state.
-    slope : ndarray, shape (2, m)
-        Its derivative with respect to the parameters; the image is that of the same state, at the changed period
-        if the frequency changes.
-    second : ndarray, shape (2 + m, 2, 2)
-        Derivatives of the Jacobian with respect to X, V and the parameters. Infinite at a grazing.
-    counts : tuple of int
-        Exits from X > D and entries into X < -D.
-    """
-
-    parameters: tuple[str, ...]
-    state: FloatArray
-    jacobian: FloatArray
-    slope: FloatArray
-    second: FloatArray
-    counts: tuple[int, int]
+    parameters: tuple[str, ...] = quantity("", "the parameters, in the order of the columns", "parameter")
+    state: Array = quantity("1", "image of X and V", "coordinate")
+    jacobian: Array = quantity("1", "its derivative with respect to the state", "row column")
+    slope: Array = quantity(
+        "1",
+        "its derivative with respect to the parameters; of the same state, at the changed period",
+        "row parameter",
+    )
+    second: Array = quantity(
+        "1",
+        "derivatives of the Jacobian by X, V and the parameters; infinite at a grazing",
+        "by row column",
+    )
+    counts: tuple[int, int] = quantity("1", "exits from X > D and entries into X < -D", "side")
 
 
 @exact_only
@@ -79,7 +67,7 @@ def map_derivatives(
     from dynamics.kernels.tables import differentiate
 
     faults = Faults()
-    n = faults.whole("periods", periods, 1, 10**7, "give a positive number of periods")
+    n = faults.whole("periods", periods, *PERIODS)
     faults.raise_if_any()
     at = checked_state(state)
     names = oscillator.parameters if parameters is None else tuple(parameters)
@@ -94,8 +82,5 @@ def map_derivatives(
     counts, turns = np.empty(2, dtype=np.int64), np.empty((0, 5 + m))
     flag, _ = probe(table.arrays, slopes, ways, at, n, lin, second, counts, turns)
     if flag != 0:
-        fault = Fault("state", repr(state), "must start a motion that stays bounded", "check the parameters")
-        raise InputError((fault,))
-    return MapDerivatives(
-        names, at, lin[:, :2], lin[:, 2:], second, (int(counts[0]), int(counts[1]))
-    )  # fmt: skip
+        raise lost_motion(at, "the motion grows without bound")
+    return MapDerivatives(names, at, lin[:, :2], lin[:, 2:], second, (int(counts[0]), int(counts[1])))

@@ -149,7 +149,7 @@ def find_orbit(
     >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     >>> orbit = find_orbit(oscillator, guess=(0.5, 0.2))
     >>> orbit.label, orbit.stable, orbit.converged
-    ('1-1-0', True, True)
+    ('U1-1-0', False, True)
     """
     watch = Stopwatch()
     faults = Faults()

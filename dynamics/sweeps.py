@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
 from dynamics.flow import checked_state
 from dynamics.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
 from dynamics.protocol import EPS, Flow, Oscillator
@@ -26,7 +27,7 @@ MOST_PATIENT = 20_000  # periods a creeping motion is followed on
 
 
 @record
-class SweepResult:
+class SweepResult(AsArray):
     """Motions met by a sweep."""
 
     headline = ("parameter", "direction")
@@ -56,11 +57,9 @@ class SweepResult:
     converged: bool = quantity("1", "whether every motion could be followed")
     message: str = quantity("", "what to know about the result")
 
-    def __array__(
-        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
-    ) -> npt.NDArray[np.generic]:
+    def columns(self) -> Array:
         """States, shape (values, kept, 2)."""
-        return self.states.astype(dtype if dtype is not None else np.float64)
+        return self.states
 
 
 def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -> int:
@@ -128,7 +127,7 @@ def sweep(
     >>> from dynamics import FourierStiffness, GearOscillator
     >>> oscillator = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     >>> sweep(oscillator, "frequency", [0.5, 0.6]).labels
-    ('1-1-0', '1-1-0')
+    ('1-0-0', '1-0-0')
     """
     watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)

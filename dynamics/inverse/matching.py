@@ -6,14 +6,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.inverse.events import Event
 from dynamics.special import SpecialPoint
 
 __all__ = ["Line", "match"]
 
-FloatArray = npt.NDArray[np.float64]
 Line = Sequence[SpecialPoint]  # special points of one branch, in their order along it
 Partners = tuple[SpecialPoint | None, ...]
 

@@ -1,0 +1,89 @@
+"""One protocol: any oscillator is taken by what needs no more, and refused by name by the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import dynamics
+from base import InputError, quantities
+from dynamics import FourierStiffness, GearOscillator, PowerContact, SmoothOscillator
+
+SERIES = FourierStiffness(1.0, (0.18,), (0.0,))
+EXACT = GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+STEPWISE = SmoothOscillator(
+    PowerContact(stiffness=SERIES, half_backlash=0.2, exponent=1.0), 0.05, 0.1, 0.2, 0.6
+)
+
+
+def test_basins_are_those_of_the_exact_flow():
+    ours, theirs = (
+        dynamics.basins(o, x=(-0.9, 0.9, 4), v=(-0.9, 0.9, 4), limit=60) for o in (STEPWISE, EXACT)
+    )
+    assert np.array_equal(ours.labels, theirs.labels)
+    for mine, other in zip(ours.attractors, theirs.attractors, strict=True):
+        assert mine.label == other.label
+        assert mine.orbit.state == pytest.approx(other.orbit.state, abs=1e-7)
+
+
+def test_scan_of_exponents_is_that_of_the_exact_flow():
+    ours, theirs = (
+        dynamics.lyapunov_scan(o, "frequency", [0.5, 0.7], 60, transient=60) for o in (STEPWISE, EXACT)
+    )
+    assert ours.exponents == pytest.approx(theirs.exponents, abs=1e-5)
+    assert ours.defect < 1e-6
+
+
+def test_states_at_rest_agree():
+    assert STEPWISE.rest_state() == pytest.approx(EXACT.rest_state(), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "more"),
+    [
+        ("find_orbits", ()),
+        ("diagram", ()),
+        ("multi_sweep", ("frequency", [0.5])),
+        ("contact_grazing", ()),
+        ("edge_saddles", (None,)),
+        ("basin_boundary", ((), ((0.0, 1.0), (0.0, 1.0)))),
+        ("continue_locus", (None, ("frequency", "mean_force"))),
+    ],
+)
+def test_what_needs_the_exact_flow_says_so(name, more):
+    with pytest.raises(InputError, match=f"must be a GearOscillator in {name}") as raised:
+        getattr(dynamics, name)(STEPWISE, *more)
+    assert "SmoothOscillator" in str(raised.value)
+
+
+def test_what_starts_from_an_orbit_says_so_too():
+    orbit = dynamics.find_orbit(STEPWISE, (0.5, 0.2))
+    with pytest.raises(InputError, match="must be a GearOscillator in manifold"):
+        dynamics.manifold(orbit)
+
+
+def test_exact_flow_names_what_gives_derivatives_and_extrema():
+    with pytest.raises(InputError, match="map_derivatives"):
+        dynamics.period_map(EXACT, (0.5, 0.2), parameters=("frequency",))
+    with pytest.raises(InputError, match="turning_points"):
+        dynamics.period_map(EXACT, (0.5, 0.2), extrema=True)
+
+
+@pytest.mark.parametrize("oscillator", [EXACT, STEPWISE], ids=["exact", "stepwise"])
+def test_results_describe_their_figures(oscillator):
+    orbit = dynamics.find_orbit(oscillator, (0.5, 0.2))
+    results = (
+        orbit,
+        dynamics.period_map(oscillator, (0.5, 0.2)),
+        dynamics.trajectory(oscillator, (0.5, 0.2), 1, 10),
+        dynamics.continue_branch(orbit, "frequency", (0.59, 0.61)),
+        dynamics.sweep(oscillator, "frequency", [0.6], transient=20),
+        dynamics.lyapunov_exponents(oscillator, 20, transient=0),
+    )
+    for result in results:
+        assert len(repr(result)) <= 200
+        assert result.error is not None
+        assert result.cost.seconds > 0.0
+        assert isinstance(result.converged, bool)
+        assert isinstance(result.message, str)
+        assert all(q.figure.meaning for q in quantities(result).values())
