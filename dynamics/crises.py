@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Cost, Faults, Stopwatch, quantity, record
 from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
 from dynamics.diagrams import Diagram
@@ -122,19 +122,18 @@ def boundary_crisis(
     number = faults.whole("points", points, 10, 10**6, "2000 is usual")
     longest = faults.whole("periods", periods, 1, 10**6, "240 is usual")
     if not saddle.converged or not is_direct_saddle(saddle.multipliers):
-        faults.add(
-            "saddle", saddle.label, "must be a saddle with a multiplier above 1", "take one of find_orbits"
-        )
+        allowed = "must be a saddle with a multiplier above 1"
+        faults.add("saddle", saddle.label, allowed, "take one of find_orbits")
     elif not low <= saddle.oscillator.get(parameter) <= high and low < high:
         faults.add("bounds", bounds, "must be a range with the saddle in it", "widen the bounds")
     faults.raise_if_any()
     branch = continue_branch(saddle, parameter, (low, high))
     value = saddle.oscillator.get(parameter)
-    run = next((r for r in _runs(branch) if _holds(branch.values[r], value)), slice(0, 0))
-    if run.stop - run.start < 2:
+    runs = [r for r in _runs(branch) if branch.values[r].min() <= value <= branch.values[r].max()]
+    if not runs:
         faults.add("saddle", saddle.label, "must exist over a range of the bounds", "narrow the bounds")
-        faults.raise_if_any()
-    search = Passing(saddle.oscillator, branch, run, number, longest)
+    faults.raise_if_any()
+    search = Passing(saddle.oscillator, branch, runs[0], number, longest)
     low, high = max(low, float(search.values[0])), min(high, float(search.values[-1]))
     ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
@@ -261,8 +260,3 @@ def _runs(branch: Branch) -> Iterator[slice]:
             if i - start >= 2 and saddle[start]:
                 yield slice(start, i)
             start = i - 1 if turns and not ends else i
-
-
-def _holds(values: Array, value: float) -> bool:
-    """Tell whether a value lies within a range of values."""
-    return bool(values.min() <= value <= values.max())

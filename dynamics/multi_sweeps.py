@@ -134,12 +134,10 @@ def multi_sweep(
     faults.raise_if_any()
     met = _Met(oscillator, parameter, grid, max_period)
     for direction, i in (("up", 0), ("down", len(grid) - 1)):
-        met.follow(
-            direction, i, oscillator.with_parameter(parameter, float(grid[i])).rest_state(), whole=True
-        )
+        met.follow(direction, i, met.at(i).rest_state(), whole=True)
     for done in range(number):
         i = int((done + 0.5) / number * len(grid))
-        here = oscillator.with_parameter(parameter, float(grid[i]))
+        here = met.at(i)
         (x0, x1), (v0, v1) = reach(here)
         found = basins(here, (x0, x1, side), (v0, v1, side), limit=limit, max_period=max_period)
         met.periods += found.cost.periods
@@ -158,14 +156,17 @@ class _Met:
     def __init__(self, oscillator: GearOscillator, parameter: str, grid: Array, max_period: int) -> None:
         self.oscillator, self.parameter, self.grid, self.longest = oscillator, parameter, grid, max_period
         self.motions: list[list[Motion]] = [[] for _ in grid]
-        self.size = scale_of(oscillator, oscillator.with_parameter(parameter, float(grid[0])).rest_state())
+        self.size = scale_of(oscillator, self.at(0).rest_state())
         self.sweeps = self.periods = 0
         self.error, self.bounded = 0.0, True
 
+    def at(self, i: int) -> GearOscillator:
+        """Oscillator at a value."""
+        return self.oscillator.with_parameter(self.parameter, float(self.grid[i]))
+
     def follow(self, direction: str, i: int, state: Array, whole: bool) -> None:
         """Sweep from a value on; unless the whole range is wanted, until a chunk of values brings nothing new."""
-        step = 1 if direction == "up" else -1
-        path = np.arange(i, len(self.grid)) if step == 1 else np.arange(i, -1, -1)
+        path = np.arange(i, len(self.grid)) if direction == "up" else np.arange(i, -1, -1)
         self.sweeps += 1
         for part in np.split(path, range(CHUNK, len(path), CHUNK)):
             found = sweep(
@@ -181,9 +182,7 @@ class _Met:
             if not _bounded(state, self.size):
                 if not whole:
                     return
-                state = self.oscillator.with_parameter(
-                    self.parameter, float(self.grid[part[-1]])
-                ).rest_state()
+                state = self.at(part[-1]).rest_state()
 
     def knows(self, i: int, label: str, states: Array) -> bool:
         """Tell whether a motion has been met at a value."""

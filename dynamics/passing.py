@@ -68,18 +68,19 @@ class Passing:
     def saddle(self, value: float) -> Orbit:
         """The saddle at a value, by Newton's method from between its neighbours."""
         guess = [float(np.interp(value, self.values, self.states[:, k])) for k in range(2)]
-        return find_orbit(
-            self.oscillator.with_parameter(self.parameter, value), guess, periods=self.branch.periods
+        here = self.oscillator.with_parameter(self.parameter, value)
+        return find_orbit(here, guess, periods=self.branch.periods)
+
+    def holds(self, orbit: Orbit) -> bool:
+        """Whether an orbit is still the saddle."""
+        return (
+            orbit.converged and orbit.periods == self.branch.periods and is_direct_saddle(orbit.multipliers)
         )
 
     def overshoot(self, value: float, side: int) -> float:
         """Largest u of returning motions, over the size of the saddle; -1 if none returns, nan without a saddle."""
         orbit = self.saddle(value)
-        if (
-            not orbit.converged
-            or orbit.periods != self.branch.periods
-            or not is_direct_saddle(orbit.multipliers)
-        ):
+        if not self.holds(orbit):
             return math.nan
         n, multiplier = orbit.periods, float(np.real(orbit.multipliers[0]))
         size = _size(orbit)
@@ -176,7 +177,7 @@ class Passing:
     def beside(self, value: float, side: int, distance: float = 1e-3) -> Array | None:
         """A state beside the saddle on one branch of its unstable manifold; None without a saddle."""
         orbit = self.saddle(value)
-        if not orbit.converged or not is_direct_saddle(orbit.multipliers):
+        if not self.holds(orbit):
             return None
         along, _ = _directions(orbit.jacobian, float(np.real(orbit.multipliers[0])))
         size = _size(orbit)
