@@ -138,8 +138,8 @@ def boundary_crisis(
     ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
     if len(sides) != 1:
-        told = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
-        message = f"no crisis of this saddle: overshoots at the bounds {told}"
+        found = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
+        message = f"no crisis of this saddle: overshoots at the bounds {found}"
         cost = Cost(watch.seconds, 2, 0, search.periods)
         return Crisis(saddle, cost, message)
     return _closed_in(search, (low, high), ends[sides[0]], sides[0], watch)

@@ -136,5 +136,5 @@ def _saddle(oscillator: GearOscillator, homes: Homes, edge: Array, longest: int)
 
 
 def _same(a: Orbit, b: Orbit, size: float) -> bool:
-    """Tell whether two orbits are one, perhaps from another period on."""
+    """Whether two orbits are one, perhaps from another period on."""
     return a.periods == b.periods and apart(b.state, a.points) < 1e-7 * size

@@ -141,17 +141,17 @@ class Gathering:
             self.ends.append((branch.periods, value))
 
     def _taken(self, periods: int, value: float) -> bool:
-        """Tell whether a branch of this period ends at the value by meeting that of half its period."""
+        """Whether a branch of this period ends at the value by meeting that of half its period."""
         near = 1e-7 * (self.bounds[1] - self.bounds[0])
         return any(periods == n and abs(end - value) < near for n, end in self.ends)
 
     def holds(self, orbit: Orbit) -> bool:
-        """Tell whether an orbit lies on one of the branches."""
+        """Whether an orbit lies on one of the branches."""
         return any(lies_on(branch, orbit, self.bounds) for branch in self.branches)
 
 
 def lies_on(branch: Branch, orbit: Orbit, bounds: tuple[float, float]) -> bool:
-    """Tell whether a branch passes through an orbit, perhaps from another period on.
+    """Whether a branch passes through an orbit, perhaps from another period on.
 
     Parameters
     ----------

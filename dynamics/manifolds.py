@@ -50,13 +50,13 @@ class Manifold:
 
 
 def is_saddle(multipliers: npt.ArrayLike) -> bool:
-    """Tell whether one real multiplier is outside the unit circle and the other within."""
+    """Whether one real multiplier is outside the unit circle and the other within."""
     first, second = np.asarray(multipliers, dtype=np.complex128).tolist()
     return bool(first.imag == 0.0 and abs(first) > 1.0 > abs(second))
 
 
 def is_direct_saddle(multipliers: npt.ArrayLike) -> bool:
-    """Tell whether one multiplier is above 1 and the other within the unit circle."""
+    """Whether one multiplier is above 1 and the other within the unit circle."""
     return is_saddle(multipliers) and bool(np.real(np.asarray(multipliers)[0]) > 1.0)
 
 

@@ -185,11 +185,11 @@ class _Met:
                 state = self.at(part[-1]).rest_state()
 
     def knows(self, i: int, label: str, states: Array) -> bool:
-        """Tell whether a motion has been met at a value."""
+        """Whether a motion has been met at a value."""
         return any(_same(m, label, states) for m in self.motions[i])
 
     def _note(self, i: int, found: SweepResult, j: int, direction: str) -> bool:
-        """Note a motion; tell whether it is new."""
+        """Note a motion; whether it is new."""
         here, label, n = self.motions[i], found.labels[j], int(found.periods[j])
         if not _bounded(found.states[j], self.size):
             label, n, self.bounded = DIVERGED, 0, False
@@ -217,12 +217,12 @@ class _Met:
 
 
 def _bounded(states: Array, size: float) -> bool:
-    """Tell whether states are finite and of no size that only unlimited growth leads to."""
+    """Whether states are finite and of no size that only unlimited growth leads to."""
     return bool(np.max(np.abs(states)) <= ENDLESS * size)  # False for nan
 
 
 def _same(motion: Motion, label: str, states: Array) -> bool:
-    """Tell whether a motion has the label and the states of another."""
+    """Whether a motion has the label and the states of another."""
     if motion.label != label or label == DIVERGED:
         return motion.label == label
     if label == APERIODIC:

@@ -21,7 +21,7 @@ from dynamics.shooting import Orbit, find_orbit
 __all__ = ["Passing"]
 
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
-NEAR = 0.04  # of the size of the saddle: nearness at which a passing motion's side is told
+NEAR = 0.04  # of the size of the saddle: nearness at which the side of a passing motion is measured
 ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured
 STRAIGHT = 0.3  # of its size, how far the saddle's neighbourhood is straight enough for that
 LOBES = 3  # lobes whose tops are looked for
@@ -136,7 +136,7 @@ class Passing:
         return largest
 
     def first(self, bounds: tuple[float, float], side: int, closed: int) -> tuple[float, float, float, int]:
-        """The change of sign next to the closed one of the bounds, as `root` tells it.
+        """The change of sign next to the closed one of the bounds, as of `root`.
 
         Farther in other lobes may cross and turn back again; they are looked for at distances halved.
         """

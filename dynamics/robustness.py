@@ -31,7 +31,7 @@ def special_sensitivities(
     ----------
     oscillator : GearOscillator
         The oscillator; its value of the parameter is not used. A harmonic of amplitude zero may be among its series:
-        the derivative tells what that harmonic would do.
+        the derivative is then what that harmonic would do.
     parameter : str
         The parameter in which the point was found.
     point : SpecialPoint

@@ -155,7 +155,7 @@ class Catalogue:
 
 
 def _same(a: SpecialPoint, b: SpecialPoint, width: float) -> bool:
-    """Tell whether two points are one: the states may be those of different phases of one orbit."""
+    """Whether two points are one: the states may be those of different phases of one orbit."""
     near = abs(a.parameter - b.parameter) < 1e-9 * width
     touch = math.isnan(a.acceleration) or abs(a.acceleration - b.acceleration) <= 1e-6 * abs(a.acceleration)
     multipliers = np.allclose(a.multipliers, b.multipliers, rtol=1e-5, atol=1e-5)

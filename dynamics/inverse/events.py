@@ -72,11 +72,11 @@ class Event:
         return self.fields[2] == "0"
 
     def fits(self, point: SpecialPoint) -> bool:
-        """Tell whether a special point is of this kind and label."""
+        """Whether a special point is of this kind and label."""
         return point.kind == self.kind and self.names(point.label)
 
     def names(self, label: str) -> bool:
-        """Tell whether a label, stable or not, is the one meant."""
+        """Whether a label, stable or not, is the one meant."""
         parts = label.removeprefix("U").split("-")
         return all(mine in ("*", theirs) for mine, theirs in zip(self.fields, parts, strict=True))
 

@@ -35,7 +35,7 @@ class Reduction:
     rescaled : bool
         Whether the play is known and the scale of F_m and eps is what is really sought.
     held : tuple of str
-        Unknowns that no event can tell; they keep the middle of their range.
+        Unknowns that no event depends on; they keep the middle of their range.
     message : str
         What was left out.
     """
@@ -53,7 +53,7 @@ class Reduction:
         return tuple(name for name in self.problem.unknowns if name not in self.held)
 
     def whole(self, here: GearOscillator) -> GearOscillator:
-        """Oscillator of the whole problem for one of the first; without back flank where no event tells its place."""
+        """Oscillator of the whole problem for one of the first; without back flank where no event depends on its place."""
         if PLAY in self.held:
             return here.with_parameter(PLAY, _middle(self.problem.unknowns[PLAY]))
         return dataclasses.replace(here, one_sided=self.problem.oscillator.one_sided)

@@ -62,7 +62,7 @@ class Candidate:
 
 @record
 class Identification:
-    """What the events say about the parameters."""
+    """What the events say about the parameters; the iterations of its cost are branches followed."""
 
     headline = ("trials", "by_chance")
 
@@ -71,7 +71,11 @@ class Identification:
     reduction: str = quantity("", "what was left out at first, and why")
     cost: Cost
     message: str
-    converged: bool = False
+    converged: bool = quantity(
+        "1",
+        "whether more events agree than there are unknowns, those not fitted included, and by_chance is below 0.01",
+        default=False,
+    )
     best: Candidate | None = quantity(
         "",
         "refined, with round values; None if no trial has any of the events that were tried as the exact one",

@@ -117,7 +117,7 @@ def scan(
 def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:
     """How far branches are followed in every trial, and the events that may lie there.
 
-    As far as gives one event for every unknown, the anchor among them, or three: trials need only be told apart.
+    As far as gives one event for every unknown, the anchor among them, or three: trials need only be distinguished.
     """
     wanted = min(len(problem.unknowns) - 1, 2)
     for depth, periods in ((CONTACT, (1,)), (DOUBLED, (1, 2, 4))):
