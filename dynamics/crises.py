@@ -251,11 +251,11 @@ def _motion(search: Passing, value: float, side: int) -> str:
 def _runs(branch: Branch) -> Iterator[slice]:
     """Stretches of a branch on which it is a saddle and the parameter rises or falls throughout."""
     saddle = [is_direct_saddle(m) for m in branch.multipliers]
-    way = np.sign(np.diff(branch.values))
+    rising = np.sign(np.diff(branch.values))
     start = 0
     for i in range(1, len(saddle) + 1):
         ends = i == len(saddle) or not saddle[i] or not saddle[i - 1]
-        turns = i < len(saddle) and i - start >= 2 and way[i - 1] != way[start]
+        turns = i < len(saddle) and i - start >= 2 and rising[i - 1] != rising[start]
         if ends or turns:
             if i - start >= 2 and saddle[start]:
                 yield slice(start, i)

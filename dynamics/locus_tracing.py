@@ -121,8 +121,8 @@ class Tracer:
     def _tangent(self, point: Point, along: Array) -> Array:
         """Null vector of the three equations, turned to the side of `along`."""
         rows = np.array([*(point.derivative - np.eye(2, 4)), self.condition.gradient(self.problem, point)])
-        way = np.linalg.svd(rows)[2][-1]
-        return np.asarray(way if way @ along >= 0.0 else -way)
+        null = np.linalg.svd(rows)[2][-1]
+        return np.asarray(null if null @ along >= 0.0 else -null)
 
     def _tests(self, a: Point, b: Point) -> list[tuple[str, float, float]]:
         """Functions of codimension two at two neighbours, with their kinds."""

@@ -158,7 +158,7 @@ class Passing:
         """Value below and above a change of sign of the overshoot, the jump between them, and the trials.
 
         Brent's method: the overshoot has kinks where another lobe leads. At a tangency no jump is left; it is infinite
-        if the saddle gets lost on the way.
+        if the saddle is lost between them.
         """
         seen: dict[float, float] = {}
 

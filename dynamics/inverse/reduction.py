@@ -53,7 +53,7 @@ class Reduction:
         return tuple(name for name in self.problem.unknowns if name not in self.held)
 
     def whole(self, here: GearOscillator) -> GearOscillator:
-        """Oscillator of the whole problem for one of the first; without back flank where no event depends on its place."""
+        """Oscillator of the whole problem for one of the first; without back flank where no event depends on it."""
         if PLAY in self.held:
             return here.with_parameter(PLAY, _middle(self.problem.unknowns[PLAY]))
         return dataclasses.replace(here, one_sided=self.problem.oscillator.one_sided)
