@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import math
 
 import numpy as np
@@ -49,16 +50,35 @@ RESULTS = {
     "BasinBoundary": lambda: dynamics.basin_boundary(
         OSC, grid().attractors, ((-1.0, 1.0), (-1.0, 1.0)), cells=4, levels=2
     ),
+    "BasinResult": grid,
+    "Branch": branch,
     "ContactGrazing": lambda: dynamics.contact_grazing(OSC, "frequency", BOUNDS, points=20),
     "Crisis": lambda: dynamics.boundary_crisis(saddle(), "frequency", (0.59, 0.61), points=20, periods=12),
     "Diagram": lambda: dynamics.diagram(OSC, "frequency", BOUNDS, periods=(1,), searches=1, swept=0),
     "FourierFit": lambda: dynamics.fit_fourier([1.2, 1.1, 0.9, 0.8]),
     "Identification": identified,
     "Locus": locus,
+    "LyapunovResult": lambda: dynamics.lyapunov_exponents(OSC, 50),
+    "LyapunovScan": lambda: dynamics.lyapunov_scan(OSC, "frequency", [0.6, 0.61], 50),
     "Manifold": lambda: dynamics.manifold(saddle(), "stable", length=3.0),
+    "MapResult": lambda: dynamics.period_map(OSC, (0.35, 0.0)),
     "MultiSweep": lambda: dynamics.multi_sweep(OSC, "frequency", [0.6, 0.61], seeds=1, starts=3),
+    "Orbit": lambda: dynamics.find_orbit(OSC, (0.35, 0.0)),
     "OrbitSet": orbits,
+    "SweepResult": lambda: dynamics.sweep(OSC, "frequency", [0.6, 0.61]),
+    "Trajectory": lambda: dynamics.trajectory(OSC, (0.35, 0.0)),
 }
+
+
+def test_every_public_result_is_among_them():
+    """A record with a cost is a result."""
+    public = {
+        name
+        for package in (dynamics, dynamics.inverse)
+        for name in package.__all__
+        if inspect.isclass(value := getattr(package, name)) and "cost" in inspect.get_annotations(value)
+    }
+    assert public <= set(RESULTS)
 
 
 @pytest.mark.parametrize("name", sorted(RESULTS))
@@ -71,12 +91,12 @@ def test_results_say_what_they_are_in_one_line(name: str):
     assert "\n" not in line
     assert isinstance(result, Result)
     assert isinstance(result.cost, Cost)
-    assert result.message
+    assert isinstance(result.message, str)
     assert isinstance(result.converged, bool)
     assert result.error is None or math.isnan(result.error) or result.error >= 0.0
     described = quantities(result)
-    plain = {"cost", "message", "converged", "error"}
-    assert {f.name for f in dataclasses.fields(result)} - plain <= set(described)
+    arrays = {f.name for f in dataclasses.fields(result) if isinstance(getattr(result, f.name), np.ndarray)}
+    assert arrays <= set(described)
     for figure in described.values():
         assert figure.figure.meaning
         dims = figure.figure.dims
