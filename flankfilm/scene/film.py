@@ -10,7 +10,6 @@ from base import Limit
 from ehl.asperities import LIMITS as ROUGHNESS
 from ehl.grades import LIMITS as GRADE
 from ehl.lubricant import LIMITS as OIL
-from ehl.supply import LIMITS as SUPPLY
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 
@@ -19,14 +18,23 @@ BY_GRADE = ("iso_vg", "temperature_C", "viscosity_index", "base", "density_15_kg
 SUPPLIES = {"meniscus": ("meniscus_mm", "meniscus_half_widths"), "oil-layer": ("oil_layer_um",)}
 """Keys of which one gives the value of a supply."""
 
-# the solver takes any viscosity, for contacts that are given by Moes' numbers; an oil's is within these
-_VISCOSITY = Limit(1e-5, 1e3, "Pa s")
+# the solver takes more, for contacts given by Moes' numbers and films that go to zero; what is made lies within these
+_OIL = {
+    "viscosity": Limit(1e-5, 1e3, "Pa s"),
+    "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa"),
+    "density": Limit(100.0, 5000.0, "kg/m3"),
+}
+_ROUGHNESS = {
+    "deviation": Limit(1e-10, 1e-4, "m"),
+    "density": Limit(1e6, 1e15, "1/m2"),
+    "tip_radius": Limit(1e-9, 0.1, "m"),
+}
 
 
 class LubricantSection(Section):
     """Oil at the temperature of the contact's inlet: by its numbers, or by its ISO grade and temperature."""
 
-    ground = OIL | GRADE | {"viscosity": _VISCOSITY}
+    ground = OIL | GRADE | _OIL
 
     viscosity_Pa_s: float | None = key(
         "viscosity at the inlet's temperature and ambient pressure", None, example=0.075
@@ -102,7 +110,7 @@ class LubricantSection(Section):
 class RoughnessSection(Section):
     """Roughness of both flanks together: makes the film mixed."""
 
-    ground = ROUGHNESS
+    ground = ROUGHNESS | _ROUGHNESS
 
     sigma_um: float = key("standard deviation of heights, both flanks together", of="deviation", example=0.3)
     density_per_mm2: float = key("asperities per area", example=25000)
@@ -118,9 +126,10 @@ class RoughnessSection(Section):
 class FilmSection(Section):
     """The oil film."""
 
-    ground: ClassVar[Limits] = SUPPLY | {
+    ground: ClassVar[Limits] = {
         "meniscus": Limit(0.0, 1.0, "m", low_open=True),
         "meniscus_half_widths": Limit(1.00001, 1e6),
+        "thickness": Limit(1e-10, 0.01, "m"),
     }
 
     model: Literal["ehl", "dowson", "none", "auto"] = key(
