@@ -7,7 +7,7 @@ from runs import EXAMPLES, example, results, save
 from base import SolverError
 from flankfilm import figures
 from flankfilm.scene.reader import validated
-from flankfilm.study.plan import read_plan
+from flankfilm.studies.plan import read_plan
 
 
 def main() -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 from base import Fault, InputError, SolverError
-from flankfilm.study.execution import Execution
+from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
@@ -94,7 +94,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     _prepare()
     from flankfilm.progress import console_progress
     from flankfilm.report.contents import summary
-    from flankfilm.run import run_scene
+    from flankfilm.running import run_scene
 
     wanted = _read(scene, options.tolerance)
     # a results file is called like all others: its folder tells it apart
@@ -120,8 +120,8 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     from rich.console import Console
 
     from flankfilm.progress import console_progress
-    from flankfilm.verify.run import verify_scene
-    from flankfilm.verify.tables import costs, table, write_verification
+    from flankfilm.verification.run import verify_scene
+    from flankfilm.verification.tables import costs, table, write_verification
 
     wanted = _read(scene, options.tolerance)
     folder = options.out or Path(f"{scene.stem}-verify")
@@ -148,9 +148,9 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
     """
     _prepare()
     from flankfilm.progress import console_rows
-    from flankfilm.study.files import summary, write_study
-    from flankfilm.study.plan import read_plan
-    from flankfilm.study.run import run_study
+    from flankfilm.studies.files import summary, write_study
+    from flankfilm.studies.plan import read_plan
+    from flankfilm.studies.run import run_study
 
     plan = read_plan(study)
     with console_rows() as progress:
@@ -169,9 +169,9 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> i
         The optimisation file (TOML): a scene, ranges of its keys, outputs to minimise or maximise, limits.
     """
     _prepare()
-    from flankfilm.optimise.files import summary, write_optimum
-    from flankfilm.optimise.run import optimise as find
-    from flankfilm.optimise.task import read_task
+    from flankfilm.optimisation.files import summary, write_optimum
+    from flankfilm.optimisation.run import optimise as find
+    from flankfilm.optimisation.task import read_task
     from flankfilm.progress import console_rows
 
     asked = read_task(task)

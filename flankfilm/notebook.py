@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flankfilm.report.text import number
@@ -10,7 +11,7 @@ from gears.notebook import table
 
 if TYPE_CHECKING:
     from flankfilm.results import Results
-    from flankfilm.study.run import StudyResults
+    from flankfilm.studies.run import StudyResults
 
 MOST_ROWS = 12
 """Rows of a study that are shown."""
@@ -21,9 +22,10 @@ def results_html(results: Results) -> str:
     from flankfilm.report.contents import headlines
 
     rows = [(line.name, line.told, line.note) for line in headlines(results)]
-    files = ", ".join(str(path.relative_to(results.folder)) for path in results.files[:20])
+    folder = results.folder or Path()
+    files = ", ".join(str(path.relative_to(folder)) for path in results.files[:20])
     more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""
-    told = f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s: {files}{more}"
+    told = f"{results.written} after {results.seconds:.1f} s{': ' if files else ''}{files}{more}"
     title = escape(results.scene.title or "flankfilm")
     return f"<p><b>{title}</b></p>{table((), rows)}<p>{escape(told)}</p>"
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from base import Cost, record
 from flankfilm.scene import Scene
 from flankfilm.stages.decisions import decisions
-from flankfilm.stages.engine import StageRun
+from flankfilm.stages.engine import Stage, StageRun
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     from flankfilm.stages.decisions import Decision
 
 
-@dataclass(frozen=True)
+T = TypeVar("T")
+
+
+@record
 class Results:
     """What a run gave.
 
@@ -26,8 +29,8 @@ class Results:
     ----------
     scene : Scene
         What was asked for.
-    folder : Path
-        Where the files are.
+    folder : Path or None
+        Where the files are; None where none were written.
     values : mapping
         Stage name to result.
     runs : mapping
@@ -40,13 +43,39 @@ class Results:
         What ``results.nc`` holds; the functions of `flankfilm.figures` draw from it.
     """
 
+    headline = ("title", "stages", "written")
+
     scene: Scene
-    folder: Path
+    folder: Path | None
     values: Mapping[str, Any]
     runs: Mapping[str, StageRun]
     files: tuple[Path, ...]
     seconds: float
     dataset: xr.Dataset
+
+    def get(self, stage: Stage[T]) -> T | None:
+        """Result of a stage, such as `flankfilm.stages.catalogue.DRY_CYCLE`; None where the scene did not need it."""
+        return self.values.get(stage.name)
+
+    @property
+    def title(self) -> str:
+        """Title of the scene."""
+        return self.scene.title or "untitled"
+
+    @property
+    def stages(self) -> int:
+        """Number of stages that ran."""
+        return len(self.runs)
+
+    @property
+    def written(self) -> str:
+        """Number of files and where they are."""
+        return f"{len(self.files)} files in {self.folder}" if self.folder else "no files"
+
+    @property
+    def cost(self) -> Cost:
+        """Cost of the whole run."""
+        return Cost(self.seconds, parts={name: run.seconds for name, run in self.runs.items()})
 
     @property
     def plan(self) -> Plan | None:

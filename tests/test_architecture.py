@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -41,6 +42,23 @@ def test_imports_only_go_downwards(package: str):
         if (found := imported(source) & (MAY_IMPORT.keys() - MAY_IMPORT[package] - {package}))
     }
     assert climbing == {}
+
+
+def test_the_coupling_knows_no_scene_and_no_files():
+    reached = set()
+    for source in (ROOT / "flankfilm" / "coupling").glob("*.py"):
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("flankfilm"):
+                whole = [f"{node.module}.{alias.name}" for alias in node.names]
+                reached |= {name for name in whole if not name.startswith("flankfilm.coupling.")}
+    assert reached == set()
+
+
+@pytest.mark.parametrize("package", ["flankfilm", "flankfilm.coupling"])
+def test_the_front_door_shows_public_names_alone_and_loads_nothing_before_use(package: str):
+    module = importlib.import_module(package)
+    assert dir(module) == sorted(module.__all__)
+    assert loaded_by(f"import {package}") & (HEAVY | {"numpy", "scipy", "pydantic"}) == set()
 
 
 @pytest.mark.parametrize("package", sorted(MAY_IMPORT))

@@ -14,6 +14,8 @@ PACKAGES: tuple[str, ...] = (
     "dynamics",
     "dynamics.inverse",
     "ehl",
+    "flankfilm",
+    "flankfilm.coupling",
     "gears",
     "gears.closed_form",
 )

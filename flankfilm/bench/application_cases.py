@@ -31,10 +31,10 @@ samples = {rows}
 def application(quick: bool) -> tuple[Case, ...]:
     """Rows computed here and by the command on two processes; the report of the scene that they vary."""
     from flankfilm.report.contents import write_report
-    from flankfilm.run import run_scene
+    from flankfilm.running import run_scene
     from flankfilm.scene import read_scene, template
-    from flankfilm.study.plan import read_plan
-    from flankfilm.study.row import Row, compute_row
+    from flankfilm.studies.plan import read_plan
+    from flankfilm.studies.row import Row, compute_row
 
     folder = tempfile.TemporaryDirectory(prefix="flankfilm-bench-")
     place = Path(folder.name)
@@ -72,7 +72,7 @@ def application(quick: bool) -> tuple[Case, ...]:
             (
                 work("rows in this process", rows_here, counts[-1]),
                 *(work(f"study of {rows} rows", partial(study, rows), rows) for rows in counts),
-                work("report of a run", lambda: write_report(results)),
+                work("report of a run", lambda: write_report(results, place / "run")),
             ),
             None,
         ),

@@ -49,6 +49,16 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
     ------
     SolverError
         Where none of them converged.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> import fem
+    >>> bodies = fem.compliance(pair)
+    >>> found = torque_curves(LoadedTeeth(pair, 600.0, compliance=bodies), [300.0], positions=40)
+    >>> found.torque.tolist(), bool(found.secant_stiffness[0] < found.secant_stiffness[1])
+    ([300.0, 600.0], True)
     """
     import fem
 
@@ -95,6 +105,16 @@ def revolution(
     ------
     SolverError
         Where the loaded contact did not converge.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> import fem
+    >>> bodies = fem.compliance(pair)
+    >>> found = revolution(LoadedTeeth(pair, 600.0, compliance=bodies), pitches=2)
+    >>> found.transmission_error.shape
+    (80,)
     """
     import fem
 

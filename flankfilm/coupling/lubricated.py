@@ -24,6 +24,7 @@ from flankfilm.coupling.films import (
 from flankfilm.coupling.loaded_teeth import PLAIN_FLANKS, Flanks, LoadedTeeth
 from flankfilm.coupling.mesh_cycles import checked, loaded_teeth
 from flankfilm.coupling.resolution import Resolution, resolution_of
+from flankfilm.coupling.warned import warned_once
 
 if TYPE_CHECKING:
     import fem
@@ -102,7 +103,7 @@ class LubricatedCycle(MeshCycle):
     the inlet is the other of meniscus and layer, each at the forces of the films found.
     """
 
-    headline = (*MeshCycle.headline, "thinnest_film", "secant_stiffness_change")
+    headline = ("mean_secant_stiffness", "mean_stiffness", "thinnest_film")
 
     _: KW_ONLY
     least_film: Array = quantity(
@@ -193,9 +194,10 @@ def lubricated_cycle(
     True
     """
     asked = resolution_of(checked(tolerance, torque=torque, speed=speed), model, pairs, film.name)
-    teeth = loaded_teeth(pair, torque, asked, model, pairs, compliance, flanks)
-    dry = teeth.sampled(asked.sampling, asked.transmission_error)
-    return lubricate(teeth, dry, speed, lubricant, asked, film, profiles=profiles)
+    with warned_once():
+        teeth = loaded_teeth(pair, torque, asked, model, pairs, compliance, flanks)
+        dry = teeth.sampled(asked.sampling, asked.transmission_error)
+        return lubricate(teeth, dry, speed, lubricant, asked, film, profiles=profiles)
 
 
 def film_along_path(
@@ -248,6 +250,19 @@ def lubricate(
     model : FilmModel
     profiles : bool
         As of `lubricated_cycle`.
+
+    Examples
+    --------
+    >>> from ehl import Lubricant
+    >>> from flankfilm.coupling import LoadedTeeth, resolution_of
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+    >>> teeth = LoadedTeeth(pair, 600.0, "potential-energy")
+    >>> asked = resolution_of(0.01, teeth.model, teeth.pairs, "dowson")
+    >>> cycle = lubricate(teeth, teeth.cycle(120), 209.44, oil, asked, FilmModel("dowson"))
+    >>> cycle.least_film.shape, cycle.mismatch < 1e-3
+    ((120, 2), True)
     """
     with unclocked():
         import ehl

@@ -191,7 +191,15 @@ def pair_scales(
     extra_inertia: tuple[float, float] = (0.0, 0.0),
     length_scale: float | None = None,
 ) -> Scaling:
-    """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`."""
+    """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> 6e3 < pair_scales(pair, 600.0, 8e8).natural_frequency < 8e3
+    True
+    """
     from dynamics import Scaling
 
     return Scaling.from_inertias(

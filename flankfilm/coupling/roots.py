@@ -56,6 +56,16 @@ def root_stresses(pair: GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) ->
         With the film where there is one.
     fillets : fem.Fillets
         Of the same gears with plain flanks.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> import fem
+    >>> cycle = fem.mesh_cycle(pair, torque=600.0, positions=8)
+    >>> found = root_stresses(pair, cycle, fillets_of(pair, tolerance=0.05))
+    >>> 1e8 < found.stress.pinion.greatest_tension.stress_Pa < 1e9
+    True
     """
     with unclocked():
         import fem
@@ -87,6 +97,13 @@ def fillets_of(pair: GearPair, tolerance: float, plane: str = "strain") -> fem.F
     ------
     SolverError
         Where the tolerance was missed.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> fillets_of(pair, tolerance=0.05).error < 0.05
+    True
     """
     import fem
 
@@ -105,6 +122,16 @@ def pitch_point_fields(pair: GearPair, cycle: fem.MeshCycle, compliance: fem.Com
     cycle : fem.MeshCycle
         Loaded contact that the fields belong to.
     compliance : fem.Compliance
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> import fem
+    >>> bodies = fem.compliance(pair)
+    >>> cycle = fem.mesh_cycle(pair, torque=600.0, positions=8, compliance=bodies)
+    >>> pitch_point_fields(pair, cycle, bodies).position
+    2
     """
     with unclocked():
         from fem.fields import loaded_fields

@@ -204,7 +204,13 @@ def mesh_series(
 
 
 def given_series(mean: float, amplitudes: Sequence[float], phases: Sequence[float]) -> MeshSeries:
-    """Series by its mean [N/m], or 1, its amplitudes over the mean, and its phases [rad]."""
+    """Series by its mean [N/m], or 1, its amplitudes over the mean, and its phases [rad].
+
+    Examples
+    --------
+    >>> given_series(8e8, [0.1], [0.0]).amplitude
+    array([80000000.])
+    """
     from dynamics import FourierStiffness
 
     series = FourierStiffness(mean, tuple(mean * kappa for kappa in amplitudes), tuple(phases))

@@ -123,6 +123,13 @@ def single_pairs(
         Finite elements are left out without it.
     points : int
         Of the path, A and E included.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> sorted(single_pairs(pair, 600.0).curves)
+    ['Ishikawa', 'Weber-Banaschek', 'potential energy, Sainsot body']
     """
     from gears import closed_form as forms
 

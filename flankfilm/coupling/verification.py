@@ -193,7 +193,17 @@ def compare_closed_forms(
 def verification_of(
     pair: GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool = True
 ) -> Verification:
-    """Compare from a compliance; arguments as of `compare_closed_forms`."""
+    """Compare from a compliance; arguments as of `compare_closed_forms`.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> import fem
+    >>> bodies = fem.compliance(pair)
+    >>> verification_of(pair, 600.0, bodies).like_for_like.label
+    'without hub wind-up and coupling'
+    """
     references = tuple(_reference_curves(pair, torque, compliance, beyond_path))
     models = tuple(_closed_form_curves(pair, torque))
     return Verification(

@@ -59,7 +59,7 @@ def summary(results: Results) -> list[str]:
     told += [decision.line for decision in results.decisions]
     if results.plan is not None:
         told.append(results.plan.line)
-    return [*told, f"{len(results.files)} files in {results.folder} after {results.seconds:.1f} s"]
+    return [*told, f"{results.written} after {results.seconds:.1f} s"]
 
 
 def final_cycle(results: Results) -> MeshCycle | None:
@@ -67,11 +67,11 @@ def final_cycle(results: Results) -> MeshCycle | None:
     return results.values.get("film") or results.values.get("dry cycle")
 
 
-def write_report(results: Results) -> Path:
-    """Write ``report.html`` and return its path."""
+def write_report(results: Results, folder: Path) -> Path:
+    """Write ``report.html`` into a folder and return its path."""
     scene = results.scene
     parts = [part for part in (*_result_parts(results), *_run_parts(results)) if part is not None]
-    path = results.folder / "report.html"
+    path = folder / "report.html"
     write_text(path, render(scene.title or "flankfilm", _facts(results), headlines(results), parts))
     return path
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import Verification
-    from flankfilm.optimise.run import Optimum
-    from flankfilm.study.run import StudyResults
+    from flankfilm.optimisation.run import Optimum
+    from flankfilm.studies.run import StudyResults
 
 MOST_ROWS = 100
 """Rows that a page shows; the files hold all."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from flankfilm.cache import Cache
+from flankfilm.coupling.warned import distinct
 from flankfilm.scene import Scene
 
 T = TypeVar("T")
@@ -142,7 +142,7 @@ class Engine:
         own = whole - self._elsewhere.pop()
         if self._elsewhere:
             self._elsewhere[-1] += whole
-        heard = _once_each(str(w.message) for w in caught)
+        heard = tuple(str(warning.message) for warning in distinct(caught))
         self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, heard)
         return value
 
@@ -150,11 +150,3 @@ class Engine:
 def packages_of(stage: Stage[Any]) -> tuple[str, ...]:
     """Packages whose code decides a stage's result: its own, those of what it needs, and the ground of all."""
     return tuple(sorted({"base", *stage.packages, *(p for need in stage.needs for p in packages_of(need))}))
-
-
-def _once_each(messages: Iterable[str]) -> tuple[str, ...]:
-    """Drop messages that differ from an earlier one in their numbers alone."""
-    seen: dict[str, str] = {}
-    for message in messages:
-        seen.setdefault(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", message), message)
-    return tuple(seen.values())

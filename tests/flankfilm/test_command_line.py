@@ -137,7 +137,7 @@ def oscillator_run(tmp_path_factory):
 def test_dynamics_alone_loads_no_mesher_and_no_finite_elements(oscillator_run):
     code = (
         "import sys, pathlib\n"
-        "from flankfilm.run import run_scene\n"
+        "from flankfilm.running import run_scene\n"
         "from flankfilm.scene import read_scene\n"
         "run_scene(read_scene(pathlib.Path('oscillator.toml')), pathlib.Path('again'))\n"
         "print({'gmsh', 'skfem', 'meshio', 'pyvista', 'vtkmodules'} & {n.partition('.')[0] for n in sys.modules})\n"

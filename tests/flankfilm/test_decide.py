@@ -19,7 +19,7 @@ from flankfilm.cache import Cache
 from flankfilm.check import check_scene
 from flankfilm.coupling.series import LeftOut, MeshSeries, least_order, left_out
 from flankfilm.report.contents import summary
-from flankfilm.run import run_scene
+from flankfilm.running import run_scene
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flankfilm.run import run_scene
+from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "motion" / "branches.toml"

@@ -18,7 +18,7 @@ from pydantic import BaseModel
 from base import InputError
 from flankfilm.check import check_scene
 from flankfilm.scene import Scene, parse_scene, template
-from flankfilm.study.plan import StudyFile, read_plan
+from flankfilm.studies.plan import StudyFile, read_plan
 
 FEW = settings(max_examples=150, deadline=10_000, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=2_500, deadline=10_000, suppress_health_check=list(HealthCheck))

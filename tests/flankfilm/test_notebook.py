@@ -10,11 +10,11 @@ import pytest
 
 from flankfilm.cli import app
 from flankfilm.exchange.commands import completion
-from flankfilm.run import run_scene
+from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.study.plan import StudyFile, plan_of
-from flankfilm.study.row import RowResult
-from flankfilm.study.run import StudyResults
+from flankfilm.studies.plan import StudyFile, plan_of
+from flankfilm.studies.row import RowResult
+from flankfilm.studies.run import StudyResults
 
 SCENE = """
 title = "<script>alert(1)</script>"

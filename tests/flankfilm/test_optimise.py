@@ -14,14 +14,14 @@ from scipy.optimize import brentq
 
 from base import InputError, SolverError
 from flankfilm.build import gear_pair
-from flankfilm.optimise.files import phases
-from flankfilm.optimise.run import Evaluation, Optimum, optimise
-from flankfilm.optimise.search import front
-from flankfilm.optimise.task import read_task
+from flankfilm.optimisation.files import phases
+from flankfilm.optimisation.run import Evaluation, Optimum, optimise
+from flankfilm.optimisation.search import front
+from flankfilm.optimisation.task import read_task
 from flankfilm.scene import read_scene
 from flankfilm.scene.reader import validated
-from flankfilm.study.execution import Execution
-from flankfilm.study.row import RowResult
+from flankfilm.studies.execution import Execution
+from flankfilm.studies.row import RowResult
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")

@@ -14,7 +14,7 @@ import xarray as xr
 
 from base import InputError
 from flankfilm.reproduce import scene_in
-from flankfilm.run import run_scene
+from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
 
 ROOT = Path(__file__).parents[2]

@@ -17,9 +17,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from flankfilm import figures
 from flankfilm.cache import Cache
 from flankfilm.figures.style import to_svg
-from flankfilm.optimise.files import dataset as optimum_dataset
-from flankfilm.optimise.run import Evaluation, Optimum
-from flankfilm.optimise.task import read_task
+from flankfilm.optimisation.files import dataset as optimum_dataset
+from flankfilm.optimisation.run import Evaluation, Optimum
+from flankfilm.optimisation.task import read_task
 from flankfilm.outputs import results_dataset, write_data
 from flankfilm.report.contents import write_report
 from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
@@ -27,11 +27,11 @@ from flankfilm.results import Results
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FIELDS, VERIFICATION, goals
 from flankfilm.stages.engine import Engine
-from flankfilm.study.files import dataset as study_dataset
-from flankfilm.study.plan import StudyFile, plan_of
-from flankfilm.study.row import RowResult
-from flankfilm.study.run import StudyResults
-from flankfilm.verify.tables import dataset as verify_dataset
+from flankfilm.studies.files import dataset as study_dataset
+from flankfilm.studies.plan import StudyFile, plan_of
+from flankfilm.studies.row import RowResult
+from flankfilm.studies.run import StudyResults
+from flankfilm.verification.tables import dataset as verify_dataset
 
 SCENE = """
 title = "Every picture <b>&amp; one warning"
@@ -129,7 +129,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     data = results_dataset(scene, values)
     write_data(folder, data, {})
     run = Results(scene, folder, values, engine.runs, (), 1.0, data)
-    pages = {"run": write_report(run)}
+    pages = {"run": write_report(run, folder)}
     study, verified = some_study(folder), engine[VERIFICATION]
     others = {"study": study_dataset(study), "verification": verify_dataset(verified, scene)}
     best = some_optimum(folder)

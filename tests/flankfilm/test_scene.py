@@ -13,11 +13,11 @@ from pydantic.fields import FieldInfo
 
 from base import Fault, InputError
 from flankfilm.build import gear_pair
-from flankfilm.optimise.task import Limit, OptimisationFile
+from flankfilm.optimisation.task import Limit, OptimisationFile
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.explain import model_in
 from flankfilm.scene.key import key_of
-from flankfilm.study.plan import Follow, Range, StudyFile
+from flankfilm.studies.plan import Follow, Range, StudyFile
 
 
 def faults(text: str) -> dict[str, str]:

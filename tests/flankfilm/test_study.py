@@ -16,11 +16,11 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.study.execution import Execution
-from flankfilm.study.outputs import OUTPUTS
-from flankfilm.study.plan import read_plan
-from flankfilm.study.run import run_study
-from flankfilm.study.table import Columns, append, locked, read_lines
+from flankfilm.studies.execution import Execution
+from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.plan import read_plan
+from flankfilm.studies.run import run_study
+from flankfilm.studies.table import Columns, append, locked, read_lines
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCRIPT = Path(sys.executable).with_name("flankfilm")
@@ -143,9 +143,9 @@ class TestRows:
 
     def test_a_process_that_dies_costs_its_row_alone(self, tmp_path, monkeypatch):
         """A row that ends its process, as the kernel does for want of memory."""
-        monkeypatch.setattr("flankfilm.study.workers.compute_row", die_or_count)
-        from flankfilm.study.row import Row
-        from flankfilm.study.workers import Workers
+        monkeypatch.setattr("flankfilm.studies.workers.compute_row", die_or_count)
+        from flankfilm.studies.row import Row
+        from flankfilm.studies.workers import Workers
 
         rows = [Row(index, {"die": index == 2}, ("contact_ratio",)) for index in range(5)]
         with Workers("processes", 1) as workers:
@@ -170,7 +170,7 @@ class TestRows:
         assert [r.values for r in again.rows] == [r.values for r in found.rows]
 
     def test_values_read_back_to_the_last_digit(self, tmp_path):
-        from flankfilm.study.row import RowResult
+        from flankfilm.studies.row import RowResult
 
         columns = Columns(("pair.module_mm",), ("contact_ratio", "specific_sliding"))
         for index, value in enumerate((math.pi, 1e-300, float("nan"), -0.0)):
@@ -186,7 +186,7 @@ class TestRows:
 
 def die_or_count(row):
     """Stand in for a row's work."""
-    from flankfilm.study.row import RowResult
+    from flankfilm.studies.row import RowResult
 
     if row.scene["die"]:
         os._exit(9)
@@ -206,7 +206,7 @@ class TestFolder:
     def test_rows_of_other_code_are_not_mixed_in(self, tmp_path, monkeypatch):
         plan = read_plan(study_file(tmp_path, SHIFTS))
         run_study(plan, tmp_path / "out", Execution(workers=1))
-        monkeypatch.setattr("flankfilm.study.kept.code_digest", lambda packages: "other")
+        monkeypatch.setattr("flankfilm.studies.kept.code_digest", lambda packages: "other")
         with pytest.raises(InputError, match="other code"):
             run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
 
@@ -282,7 +282,7 @@ class TestCommand:
 
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda path: path.stem)
 def test_every_example_is_in_order_and_its_first_row_computes(path):
-    from flankfilm.study.row import Row, compute_row
+    from flankfilm.studies.row import Row, compute_row
 
     plan = read_plan(path)
     result = compute_row(Row(0, plan.raw_scene(0), plan.outputs))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 
-from flankfilm.study.executors import Pool
-from flankfilm.study.row import Row, RowResult
-from flankfilm.study.workers import AHEAD, Workers
+from flankfilm.studies.executors import Pool
+from flankfilm.studies.row import Row, RowResult
+from flankfilm.studies.workers import AHEAD, Workers
 
 
 class Cluster(Executor):
@@ -40,8 +40,8 @@ def test_a_cluster_larger_than_this_machine_is_kept_busy_and_one_that_grows_too(
         done = {future for future in futures if future.done()}
         return type("Waited", (), {"done": done})
 
-    monkeypatch.setattr("flankfilm.study.workers.executor", executor)
-    monkeypatch.setattr("flankfilm.study.workers.wait", wait)
+    monkeypatch.setattr("flankfilm.studies.workers.executor", executor)
+    monkeypatch.setattr("flankfilm.studies.workers.wait", wait)
     rows = [Row(index, {}, ("contact_ratio",)) for index in range(100)]
     seen = []
     with Workers("mpi", 2) as workers:

@@ -13,8 +13,8 @@ from base import Fault, InputError
 from flankfilm.cache import code_digest
 from flankfilm.dataset import write_text
 from flankfilm.folder import claim
-from flankfilm.study.row import RowResult
-from flankfilm.study.table import ROWS, Columns, Line, append, locked, read_lines
+from flankfilm.studies.row import RowResult
+from flankfilm.studies.table import ROWS, Columns, Line, append, locked, read_lines
 
 PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
 

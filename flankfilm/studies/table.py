@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import Fault, InputError
-from flankfilm.study.row import RowResult
+from flankfilm.studies.row import RowResult
 
 ROWS = "rows.csv"
 

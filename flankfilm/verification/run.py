@@ -15,7 +15,7 @@ from flankfilm.stages.engine import Engine
 
 
 def verify_scene(
-    scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent
+    scene: Scene, folder: Path | None, *, use_cache: bool = True, progress: Progress = silent
 ) -> Verification:
     """Compare every closed form with finite elements on a scene's pair, torque and tolerance.
 
@@ -23,8 +23,8 @@ def verify_scene(
     ----------
     scene : Scene
         Its sections pair, material and operating count, and stiffness.plane and contact_beyond_path.
-    folder : Path
-        Where the files will go; made, and seen to be writable, before anything is computed.
+    folder : Path or None
+        Where the files will go, if anywhere; made, and seen to be writable, before anything is computed.
     use_cache : bool
         Whether results of earlier runs with the same inputs and code may serve.
     progress : callable
@@ -46,7 +46,8 @@ def verify_scene(
         raise InputError(
             [Fault(f"[{name}]", "", "is required to verify", f"Add the section [{name}]") for name in lacking]
         )
-    claim(folder)
+    if folder is not None:
+        claim(folder)
     cache = Cache(user_cache() / "results" if use_cache else None)
     done: list[str] = []
 

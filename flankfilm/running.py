@@ -18,15 +18,17 @@ from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.vtk import write_fields
 
 
-def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: Progress = silent) -> Results:
-    """Compute what a scene wants and write it.
+def run_scene(
+    scene: Scene, folder: Path | None, *, use_cache: bool = True, progress: Progress = silent
+) -> Results:
+    """Compute what a scene wants, and write it where there is a folder.
 
     Parameters
     ----------
     scene : Scene
         Checked scene.
-    folder : Path
-        Where the files go; made when it does not exist.
+    folder : Path or None
+        Where the files go, made when it does not exist; None writes nothing.
     use_cache : bool
         Whether results of earlier runs with the same inputs and code may serve.
     progress : callable
@@ -45,7 +47,8 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         Where a solver did not reach a result that it believes.
     """
     start = time.perf_counter()
-    claim(folder)
+    if folder is not None:
+        claim(folder)
     wanted = goals(scene)
     done: list[str] = []
 
@@ -58,6 +61,9 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         engine[stage]
     values = engine.results()
     dataset = results_dataset(scene, values)
+    found = Results(scene, folder, values, engine.runs, (), time.perf_counter() - start, dataset)
+    if folder is None:
+        return found
     files = engine.timed(
         "data files",
         "netCDF and CSV files",
@@ -67,10 +73,10 @@ def run_scene(scene: Scene, folder: Path, *, use_cache: bool = True, progress: P
         files += engine.timed(
             "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
         )
-    results = Results(scene, folder, values, engine.runs, tuple(files), time.perf_counter() - start, dataset)
     if "report" in scene.wants:
         from flankfilm.report.contents import write_report
 
         progress("writing the report", len(wanted) + 1, len(wanted) + 2)
-        files.append(write_report(results))
-    return replace(results, files=tuple(files), seconds=time.perf_counter() - start)
+        so_far = replace(found, files=tuple(files), seconds=time.perf_counter() - start)
+        files.append(write_report(so_far, folder))
+    return replace(found, files=tuple(files), seconds=time.perf_counter() - start)

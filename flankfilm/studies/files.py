@@ -10,8 +10,8 @@ import numpy as np
 
 from base.units import FACTORS, suffix
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_netcdf
-from flankfilm.study.outputs import OUTPUTS
-from flankfilm.study.run import StudyResults
+from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.run import StudyResults
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from base import InputError, Limit
-from flankfilm.study.executors import Kind, default_workers
+from flankfilm.studies.executors import Kind, default_workers
 
 if TYPE_CHECKING:
-    from flankfilm.study.workers import Workers
+    from flankfilm.studies.workers import Workers
 
 Progress = Callable[[int, int], None]
 """Called with the rows done and the rows in all, each time that a row arrives."""
@@ -47,6 +47,6 @@ class Execution:
 
     def staff(self) -> Workers:
         """Workers to compute rows with, to be used as a context."""
-        from flankfilm.study.workers import Workers
+        from flankfilm.studies.workers import Workers
 
         return Workers(self.executor, self.workers or default_workers())

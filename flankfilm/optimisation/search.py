@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import Fault, InputError
-from flankfilm.optimise.task import Task
+from flankfilm.optimisation.task import Task
 
 Array = NDArray[np.float64]
 

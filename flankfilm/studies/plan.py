@@ -19,7 +19,7 @@ from base import Fault, Faults, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
 from flankfilm.scene.section import Section
-from flankfilm.study.outputs import OUTPUTS
+from flankfilm.studies.outputs import OUTPUTS
 
 MOST_ROWS = 1_000_000
 
@@ -153,7 +153,7 @@ class Plan:
     scene : mapping
         The scene's keys as read, with what the study sets.
     outputs : tuple of str
-        Names in `flankfilm.study.outputs.OUTPUTS`.
+        Names in `flankfilm.studies.outputs.OUTPUTS`.
     keys : tuple of str
         Varied keys of the scene, dotted; those that follow come last.
     rows : tuple of tuple

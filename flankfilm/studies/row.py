@@ -64,7 +64,7 @@ def compute_row(row: Row) -> RowResult:
     keep_compiled_code()
     from flankfilm.scene.reader import validated
     from flankfilm.stages.engine import Engine
-    from flankfilm.study.outputs import OUTPUTS
+    from flankfilm.studies.outputs import OUTPUTS
 
     start = time.perf_counter()
     try:

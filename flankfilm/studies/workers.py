@@ -7,8 +7,8 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from contextlib import ExitStack
 from types import TracebackType
 
-from flankfilm.study.executors import Kind, Pool, executor
-from flankfilm.study.row import Row, RowResult, compute_row, failed
+from flankfilm.studies.executors import Kind, Pool, executor
+from flankfilm.studies.row import Row, RowResult, compute_row, failed
 
 AHEAD = 3
 """Rows for each worker that wait in the executor at most: enough to keep it busy, few to lose."""

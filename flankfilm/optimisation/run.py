@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import SolverError
-from flankfilm.optimise.search import FAILED, front, search
-from flankfilm.optimise.task import Task
-from flankfilm.study.execution import Execution, Progress
-from flankfilm.study.kept import KeptRows, Work, kept_rows
-from flankfilm.study.plan import Value
-from flankfilm.study.row import Row, RowResult
-from flankfilm.study.table import Columns, Line
-from flankfilm.study.workers import Workers
+from flankfilm.optimisation.search import FAILED, front, search
+from flankfilm.optimisation.task import Task
+from flankfilm.studies.execution import Execution, Progress
+from flankfilm.studies.kept import KeptRows, Work, kept_rows
+from flankfilm.studies.plan import Value
+from flankfilm.studies.row import Row, RowResult
+from flankfilm.studies.table import Columns, Line
+from flankfilm.studies.workers import Workers
 
 Array = NDArray[np.float64]
 

@@ -6,11 +6,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from flankfilm.study.execution import Execution, Progress
-from flankfilm.study.kept import Work, kept_rows
-from flankfilm.study.plan import Plan
-from flankfilm.study.row import Row, RowResult
-from flankfilm.study.table import Columns
+from flankfilm.studies.execution import Execution, Progress
+from flankfilm.studies.kept import Work, kept_rows
+from flankfilm.studies.plan import Plan
+from flankfilm.studies.row import Row, RowResult
+from flankfilm.studies.table import Columns
 
 
 @dataclass(frozen=True)

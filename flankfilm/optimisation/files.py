@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf, write_text
-from flankfilm.optimise.run import Optimum
-from flankfilm.study.files import unit_of
-from flankfilm.study.outputs import OUTPUTS
+from flankfilm.optimisation.run import Optimum
+from flankfilm.studies.files import unit_of
+from flankfilm.studies.outputs import OUTPUTS
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section
-from flankfilm.study.plan import (
+from flankfilm.studies.plan import (
     Follow,
     Range,
     RowsFile,

@@ -1,0 +1,188 @@
+"""What the commands do with files of scenes, studies and tasks, as functions: each writes only where it is told to."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flankfilm.cache import Cache, keep_compiled_code, user_cache
+from flankfilm.folder import claim
+from flankfilm.reproduce import scene_in
+from flankfilm.scene import Scene
+from flankfilm.studies.execution import Execution
+
+if TYPE_CHECKING:
+    from flankfilm.coupling import Verification
+    from flankfilm.optimisation.run import Optimum
+    from flankfilm.optimisation.task import Task
+    from flankfilm.results import Results
+    from flankfilm.studies.plan import Plan
+    from flankfilm.studies.run import StudyResults
+
+__all__ = ["optimise", "run", "study", "verify", "write_vtk"]
+
+SceneOrPath = Scene | Path | str
+
+
+def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True) -> Results:
+    """Compute what a scene wants.
+
+    Parameters
+    ----------
+    scene : Scene, Path or str
+        A scene, its file (TOML), or a results.nc whose scene is run again.
+    out : Path or str, optional
+        Folder for data, fields and report; nothing is written without it.
+    cache : bool
+        Whether results of earlier runs with the same inputs and code may serve.
+
+    Raises
+    ------
+    InputError
+        With every fault of the scene, or of the folder.
+    SolverError
+        Where a solver did not reach a result that it believes.
+
+    Examples
+    --------
+    >>> from flankfilm import parse_scene
+    >>> scene = parse_scene(
+    ...     '''
+    ... wants = ["geometry"]
+    ... [pair]
+    ... module_mm = 2.0
+    ... face_width_mm = 40.0
+    ... pinion = { teeth = 36 }
+    ... wheel = { teeth = 40 }
+    ... '''
+    ... )
+    >>> results = run(scene)
+    >>> round(float(results.dataset.contact_ratio), 3), results.files
+    (1.703, ())
+    """
+    keep_compiled_code()
+    from flankfilm.running import run_scene
+
+    return run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
+
+
+def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True) -> Verification:
+    """Compare every closed form of tooth stiffness with finite elements on a scene's pair; arguments as of `run`.
+
+    Examples
+    --------
+    >>> from flankfilm import parse_scene
+    >>> scene = parse_scene(
+    ...     '''
+    ... wants = ["closed-forms"]
+    ... [pair]
+    ... module_mm = 2.0
+    ... face_width_mm = 40.0
+    ... pinion = { teeth = 36 }
+    ... wheel = { teeth = 40 }
+    ... [material]
+    ... youngs_modulus_GPa = 206
+    ... poisson_ratio = 0.3
+    ... [operating]
+    ... pinion_torque_Nm = 600
+    ... '''
+    ... )
+    >>> found = verify(scene)
+    >>> 0.0 < found.difference("Ishikawa", "held to the path") < 0.2
+    True
+    """
+    from flankfilm.verification.run import verify_scene
+    from flankfilm.verification.tables import write_verification
+
+    read, folder = _scene(scene), None if out is None else Path(out)
+    found = verify_scene(read, folder, use_cache=cache)
+    if folder is not None:
+        write_verification(found, read, folder)
+    return found
+
+
+def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> list[Path]:
+    """Write the loaded mesh cycle of a scene for ParaView; return the ``.pvd`` that names all its files.
+
+    Arguments are as of `run`.
+
+    Examples
+    --------
+    >>> from flankfilm import read_scene
+    >>> write_vtk(read_scene("article.toml"), "out/fields")  # doctest: +SKIP
+    [PosixPath('out/fields/mesh_cycle.pvd')]
+    """
+    from flankfilm.stages.engine import Engine
+    from flankfilm.stages.vtk import write_fields
+
+    keep_compiled_code()
+    folder, read = Path(out), _scene(scene)
+    claim(folder)
+    return write_fields(folder, Engine(read, Cache(user_cache() / "results" if cache else None)))
+
+
+def study(
+    study: Plan | Path | str, out: Path | str | None = None, how: Execution = Execution()
+) -> StudyResults:
+    """Compute the rows of a study.
+
+    Parameters
+    ----------
+    study : Plan, Path or str
+        A plan, or the study's file (TOML).
+    out : Path or str, optional
+        Folder for the rows as they arrive and the finished study; nothing stays without it.
+    how : Execution
+        Where rows are computed, and whether a study that was begun in the folder is taken up.
+
+    Examples
+    --------
+    >>> found = study("studies/torque.toml", "out/torque")  # doctest: +SKIP
+    """
+    from flankfilm.studies.files import write_study
+    from flankfilm.studies.plan import read_plan
+    from flankfilm.studies.run import run_study
+
+    plan = read_plan(Path(study)) if isinstance(study, str | Path) else study
+    with _folder(out) as folder:
+        found = run_study(plan, folder, how)
+        if out is not None:
+            write_study(found, folder)
+    return found
+
+
+def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execution = Execution()) -> Optimum:
+    """Look for the least of one output, or the trade-off of several; arguments as of `study`.
+
+    Examples
+    --------
+    >>> best = optimise("optimise/root_film.toml", "out/root_film")  # doctest: +SKIP
+    """
+    from flankfilm.optimisation.files import write_optimum
+    from flankfilm.optimisation.run import optimise as search
+    from flankfilm.optimisation.task import read_task
+
+    asked = read_task(Path(task)) if isinstance(task, str | Path) else task
+    with _folder(out) as folder:
+        found = search(asked, folder, how)
+        if out is not None:
+            write_optimum(found, folder)
+    return found
+
+
+def _scene(given: SceneOrPath) -> Scene:
+    """Scene itself, or the one that a file holds."""
+    return given if isinstance(given, Scene) else scene_in(Path(given))[0]
+
+
+@contextmanager
+def _folder(out: Path | str | None) -> Iterator[Path]:
+    """Folder that was named, or one that goes away."""
+    if out is not None:
+        yield Path(out)
+        return
+    with tempfile.TemporaryDirectory(prefix="flankfilm-") as folder:
+        yield Path(folder)

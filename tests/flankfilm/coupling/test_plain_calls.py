@@ -1,0 +1,183 @@
+"""A scene's run and the call with plain arguments are the same computation, to the last digit."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flankfilm as ff
+from base import InputError
+from ehl import Lubricant, Meniscus, OilLayer, Roughness
+from flankfilm.cache import Cache
+from flankfilm.coupling import LubricatedCycle, MeshCycle
+from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
+from flankfilm.stages.engine import Engine
+from gears import Gear, GearPair, Material
+
+SCENE = """
+wants = [WANTS]
+tolerance = 0.01
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 36, bore_mm = 33.5 }
+wheel = { teeth = 40, bore_mm = 37.5 }
+backlash_um = 50
+[material]
+youngs_modulus_GPa = 200.2
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 600
+pinion_speed_rpm = 2000
+[lubricant]
+viscosity_Pa_s = 0.075
+pressure_viscosity_per_GPa = 19.6
+density_kg_per_m3 = 910
+[stiffness]
+model = "MODEL"
+[film]
+model = "FILM"
+[dynamics]
+error_amplitude_um = 10
+sweep = { speed_rpm = [15000, 16000], points = 3 }
+diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
+"""
+STEEL = Material(youngs_modulus=200.2e9, poisson_ratio=0.3, density=7850.0)
+OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+SPEED = 2000 * (math.pi / 30)
+
+
+def pair() -> GearPair:
+    gears = (Gear(teeth=36, bore_radius=0.5e-3 * 33.5), Gear(teeth=40, bore_radius=0.5e-3 * 37.5))
+    plain = GearPair(pinion=gears[0], wheel=gears[1], module=2e-3, face_width=40e-3, material=(STEEL, STEEL))
+    return plain.with_backlash(50e-6)
+
+
+def scene_of(model: str, film: str) -> ff.Scene:
+    wants = '"stiffness", "sweep"' if film == "none" else '"stiffness", "film", "sweep"'
+    text = SCENE.replace("WANTS", wants).replace("MODEL", model).replace("FILM", film)
+    return ff.parse_scene(text)
+
+
+def run_of(model: str, film: str) -> Engine:
+    return Engine(scene_of(model, film), Cache(None))
+
+
+def same(one: MeshCycle, other: MeshCycle) -> None:
+    for field in fields(MeshCycle):
+        value = getattr(one, field.name)
+        if isinstance(value, np.ndarray):
+            assert np.array_equal(value, getattr(other, field.name), equal_nan=True), field.name
+
+
+@pytest.fixture(scope="module")
+def run() -> Engine:
+    return run_of("potential-energy", "dowson")
+
+
+@pytest.fixture(scope="module")
+def cycle() -> LubricatedCycle:
+    formula = ff.FilmModel("dowson")
+    return ff.lubricated_cycle(
+        pair(), 600.0, SPEED, OIL, tolerance=0.01, model="potential-energy", film=formula
+    )
+
+
+def test_a_dry_cycle_by_finite_elements_is_that_of_the_scene():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = ff.mesh_cycle(pair(), 600.0, tolerance=0.01)
+    same(found, run_of("fem", "none")[DRY_CYCLE])
+    assert found.converged
+    assert found.error is not None
+
+
+def test_a_lubricated_cycle_is_that_of_the_scene(run: Engine, cycle: LubricatedCycle):
+    other = run[FILM]
+    same(cycle, other)
+    same(cycle.dry, run[DRY_CYCLE])
+    assert np.array_equal(cycle.least_film, other.least_film, equal_nan=True)
+    assert np.array_equal(cycle.film.central_thickness, other.film.central_thickness)
+
+
+def test_the_least_film_of_the_pairs_is_that_of_the_path(cycle: LubricatedCycle):
+    assert cycle.least_film.shape == cycle.forces.shape
+    assert np.array_equal(np.isnan(cycle.least_film), ~(cycle.forces > 0.0))
+    assert cycle.thinnest_film == pytest.approx(cycle.film.least_film, rel=0.01)
+
+
+def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: LubricatedCycle):
+    motion = ff.pair_oscillator(pair(), cycle, 600.0, SPEED, error_amplitude=10 * 1e-6)
+    assert motion.oscillator == run[SCALING].oscillator
+    speeds = np.linspace(15000, 16000, 3) * math.pi / 30.0
+    swept = ff.speed_sweep(motion, speeds)
+    for direction, states in swept.states.items():
+        assert np.array_equal(states, run[SWEEP].states[direction])
+    found = ff.jump_speeds(motion, (speeds[0], speeds[-1]), searches=2, max_period=1)
+    assert np.array_equal(found.jump_frequency, run[DIAGRAM].jump_frequency)
+    assert np.array_equal(found.jump_error, run[DIAGRAM].jump_error)
+
+
+def test_the_verification_is_that_of_the_scene():
+    found = ff.compare_closed_forms(pair(), 600.0, tolerance=0.01)
+    assert found.differences == run_of("fem", "none")[VERIFICATION].differences
+    with pytest.raises(LookupError, match="no comparison"):
+        found.difference("Ishikawa", "no such reference")
+
+
+def test_every_result_says_itself_in_one_line(cycle: LubricatedCycle, tmp_path: Path):
+    motion = ff.pair_oscillator(pair(), cycle, 600.0, SPEED)
+    results = ff.run(scene_of("ishikawa", "dowson"), cache=False)
+    for found in (cycle, cycle.dry, cycle.film, motion, results):
+        assert len(repr(found)) <= 200
+        assert "\n" not in repr(found)
+    assert results.files == ()
+    assert results.folder is None
+    assert results.get(DRY_CYCLE) is not None
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "where"),
+    [
+        ({"torque": 0.0}, "torque"),
+        ({"speed": -1.0}, "speed"),
+        ({"tolerance": 2.0}, "tolerance"),
+        ({"model": "magic"}, "model"),
+        ({"pairs": "some"}, "pairs"),
+    ],
+)
+def test_faults_of_arguments_are_named(options: dict, where: str):
+    given = {"torque": 600.0, "speed": SPEED, "lubricant": OIL, "model": "ishikawa"} | options
+    with pytest.raises(InputError) as raised:
+        ff.lubricated_cycle(pair(), **given)
+    assert [fault.where for fault in raised.value.faults] == [where]
+
+
+def test_formulas_are_refused_for_starved_and_rough_films():
+    rough = Roughness(deviation=0.3e-6, density=25e9, tip_radius=10e-6)
+    with pytest.raises(InputError) as raised:
+        ff.FilmModel("dowson", supply=OilLayer(1e-7), roughness=rough)
+    assert [fault.where for fault in raised.value.faults] == ["film.supply", "film.roughness"]
+
+
+def test_a_meniscus_inside_a_contact_is_refused():
+    held = ff.FilmModel(supply=Meniscus(-0.1e-3))
+    with pytest.raises(InputError, match="half-width of a contact"):
+        ff.lubricated_cycle(pair(), 600.0, SPEED, OIL, model="ishikawa", film=held)
+
+
+def test_speeds_need_scales_and_one_range():
+    from dynamics import GearOscillator
+    from flankfilm.coupling import PairOscillator, given_series
+
+    series = given_series(1.0, [0.18], [0.0])
+    motion = PairOscillator(GearOscillator(series.stiffness, 0.05, 0.1, 0.2, 0.5, 0.2), None, series)
+    for ranges in ({}, {"speed": (1.0, 2.0)}, {"speed": (1.0, 2.0), "frequency": (0.5, 0.6)}):
+        with pytest.raises(InputError, match="speed"):
+            ff.jump_speeds(motion, **ranges)
