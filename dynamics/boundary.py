@@ -28,9 +28,7 @@ class BasinBoundary:
 
     headline = ("dimension", "dimension_error")
 
-    points: Array = quantity(
-        "1", "X and V in the middle of the smallest cells whose corners differ", "cell state"
-    )
+    points: Array = quantity("1", "X and V amid the smallest cells whose corners differ", "cell state")
     cell: tuple[float, float] = quantity("1", "sides of these cells", "state")
     counts: Integers = quantity(
         "1", "cells with different corners at every level; from one to the next the sides are halved", "level"

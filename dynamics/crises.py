@@ -55,7 +55,7 @@ class Crisis:
         default=(math.nan, math.nan),
     )
     before: str = quantity(
-        "", "motion that the branch leads to where it is closed, beside the crisis", default=""
+        "", "motion that the branch leads to beside the crisis where it is closed", default=""
     )
     after: str = quantity("", "motion that the branch leads to at the other bound", default="")
     error: float = quantity("1", "width of the bracket, relative", default=math.nan)

@@ -41,9 +41,7 @@ class Diagram(AsArray):
     )
     error: float = quantity("1", "largest estimated relative error of a special point")
     cost: Cost
-    converged: bool = quantity(
-        "1", "whether every branch ended for a good reason and every search's indices add up"
-    )
+    converged: bool = quantity("1", "whether all branches ended for a good reason and all indices add up")
     message: str
 
     def special(self, kind: str) -> list[SpecialPoint]:

@@ -25,11 +25,9 @@ class Stretch:
     low: float = quantity("1", "least parameter value")
     high: float = quantity("1", "greatest parameter value")
     begins: SpecialPoint | None = quantity(
-        "", "special point at its first orbit along the branch; None at its end"
+        "", "special point at its first orbit; None at an end of the branch"
     )
-    ends: SpecialPoint | None = quantity(
-        "", "special point at its last orbit along the branch; None at its end"
-    )
+    ends: SpecialPoint | None = quantity("", "special point at its last orbit; None at an end of the branch")
     value: float = quantity("1", "parameter of an orbit in the middle of the range")
     state: Array = quantity("1", "X and V of that orbit at tau = 0", "state")
 

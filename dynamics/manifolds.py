@@ -43,9 +43,7 @@ class Manifold:
         "bend of the first stretches, over the size of the orbit: by how much images depart from the eigenvector",
     )
     cost: Cost
-    converged: bool = quantity(
-        "1", "whether every gap between neighbours within the region is within the spacing"
-    )
+    converged: bool = quantity("1", "whether all gaps within the region are within the spacing")
     message: str = quantity("", "why the branches ended")
 
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction import basins
 from dynamics.finding import reach
+from dynamics.limits import checked_grid
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.states import apart, scale_of
@@ -126,9 +127,7 @@ def multi_sweep(
     """
     watch = Stopwatch()
     faults = Faults()
-    grid = np.unique(np.atleast_1d(np.asarray(values, dtype=np.float64)))
-    if len(grid) == 0 or not np.all(np.isfinite(grid)):
-        faults.add("values", f"shape {grid.shape}", "must be finite numbers", "give at least one value")
+    grid = np.unique(checked_grid(faults, "values", values))
     number = faults.whole("seeds", seeds, 0, 10_000, "9 is usual")
     side = faults.whole("starts", starts, 1, 1000, "6 is usual")
     faults.raise_if_any()

@@ -30,9 +30,7 @@ class Candidate:
     found: tuple[float, ...] = quantity(
         "1", "where each event lies with these parameters; nan if it has no partner", "event"
     )
-    off: tuple[float, ...] = quantity(
-        "1", "difference to the printed value, in units of its last decimal", "event"
-    )
+    off: tuple[float, ...] = quantity("1", "difference to the printed value in its last decimals", "event")
     weights: tuple[float, ...] = quantity(
         "1", "weight of each event in the last fit, over its trust; 0 if it was not fitted", "event"
     )
