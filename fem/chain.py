@@ -14,18 +14,16 @@ exact, at a cost that grows as the logarithm of z.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from base import Array, Fault, InputError
+from base import Array, Fault, InputError, record
 
 __all__ = ["RingOfLinks", "ring_of_links"]
 
 STEPS = 60
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class RingOfLinks:
     """Answer of the ring to forces on end 0.
 

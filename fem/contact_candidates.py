@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, Faults, Integers
+from base import Array, Booleans, Faults, Integers, record
 from fem.setting import Deviations, Setting
 from fem.tip_contact import nearest_gap
 from fem.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
@@ -22,7 +21,7 @@ REACHES = (0.6, 1.0)
 """Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class ContactCandidates:
     """Pairs that might touch. n positions of all pitches; a base pitch has its own n_1 of them.
 
@@ -144,7 +143,7 @@ def _reach_gap(given: Setting, reach: float) -> float:
     return float(min(before.gap[0], after.gap[0]))
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class _Edges:
     """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
 

@@ -3,60 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from base import Array, Faults, Integers
-from fem.cycle import MeshCycle, check_row
-from fem.fields import contact_half_width
+from base import Array, Integers, quantity, record
+from fem.cycle import MeshCycle, require_row
+from fem.elasticity import MIRROR
+from fem.fields import contact_half_width, of_axis
+from meshes.annulus import turned
 
 if TYPE_CHECKING:
     from gears import GearPair
 
 __all__ = ["ContactForces", "contact_forces"]
 
-MIRROR: Array = np.array([-1.0, 1.0])
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class ContactForces:
-    """Contact forces on both gears in the common frame; each contact is listed once for each gear.
+    """Contact forces on both gears in the common frame; each contact is listed once for each gear."""
 
-    Attributes
-    ----------
-    points : (n, 2) array
-        Where the flanks touch [m].
-    force_N : (n, 2) array
-        On the gear of that row.
-    gear : (n,) array of int
-        0 the pinion, 1 the wheel.
-    pair : (n,) array of int
-        Base pitches that the pair of teeth is ahead of the one that entered last.
-    tip_edge : (n,) array of int
-        1 where a tip edge touches, outside the path of contact.
-    pressure_Pa : (n,) array
-        Greatest Hertz pressure; nan at tip edges, whose pressure has no such maximum.
-    half_width_m : (n,) array
-        Of the pressure; nan at tip edges.
-    """
-
-    points: Array
-    force_N: Array
-    gear: Integers
-    pair: Integers
-    tip_edge: Integers
-    pressure_Pa: Array
-    half_width_m: Array
+    points: Array = quantity("m", "where the flanks touch", "point axis")
+    force_N: Array = quantity("N", "force on the gear of that row", "point axis")
+    pressure_Pa: Array = quantity(
+        "Pa", "greatest Hertz pressure; nan at tip edges, whose pressure has no such maximum", "point"
+    )
+    half_width_m: Array = quantity("m", "half-width of the pressure; nan at tip edges", "point")
+    gear: Integers = quantity("1", "0 the pinion, 1 the wheel", "point")
+    pair: Integers = quantity(
+        "1", "base pitches that the pair of teeth is ahead of the one that entered last", "point"
+    )
+    tip_edge: Integers = quantity("1", "1 where a tip edge touches, outside the path of contact", "point")
 
     @property
-    def point_data(self) -> Mapping[str, NDArray[np.generic]]:
+    def point_data(self) -> Mapping[str, Any]:
         """The fields by name, for files."""
-        names = ("force_N", "pressure_Pa", "half_width_m", "gear", "pair", "tip_edge")
-        return MappingProxyType({name: getattr(self, name) for name in names})
+        return of_axis(self, "point")
 
 
 def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
@@ -74,9 +56,7 @@ def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
     base.InputError
         A row that the cycle does not have, or that has no finite forces.
     """
-    found = Faults()
-    check_row(found, cycle, row)
-    found.raise_if_any()
+    require_row(cycle, row)
     columns = np.flatnonzero(cycle.forces[row] > 0)
     points, normals = np.empty((len(columns), 2)), np.empty((len(columns), 2))
     for i, column in enumerate(columns):
@@ -88,13 +68,13 @@ def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
     peak = 2 * size / (np.pi * half * pair.face_width)
     on_wheel = size[:, None] * normals
     return ContactForces(
-        np.concatenate([points, points]),
-        np.concatenate([-on_wheel, on_wheel]),
-        np.repeat([0, 1], len(columns)),
-        np.tile(cycle.pair_offset[columns], 2),
-        np.tile(edge.astype(np.int64), 2),
-        np.tile(peak, 2),
-        np.tile(half, 2),
+        points=np.concatenate([points, points]),
+        force_N=np.concatenate([-on_wheel, on_wheel]),
+        pressure_Pa=np.tile(peak, 2),
+        half_width_m=np.tile(half, 2),
+        gear=np.repeat([0, 1], len(columns)),
+        pair=np.tile(cycle.pair_offset[columns], 2),
+        tip_edge=np.tile(edge.astype(np.int64), 2),
     )
 
 
@@ -110,10 +90,7 @@ def _touched(pair: GearPair, cycle: MeshCycle, row: int, column: int) -> tuple[A
     rho = cycle.flank_rho[touched][row, column]
     angle = (placed.pinion_angle, placed.wheel_angle)[touched]
     angle += (offset if touched == 0 else -offset) * profile.pitch_angle
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, -s], [s, c]])
-    point = turn @ (profile.involute(rho) * MIRROR)
-    normal = turn @ (profile.normal(rho) * MIRROR)
+    point, normal = turned(np.stack([profile.involute(rho), profile.normal(rho)]) * MIRROR, angle)
     if touched == 0:
         return point, normal
     return point + placed.wheel_centre, -normal

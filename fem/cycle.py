@@ -6,10 +6,10 @@ import numpy as np
 
 from base import Array, Booleans, Cost, Faults, Integers, Limit, described, quantity, record
 from fem.contact_candidates import ContactCandidates
-from fem.elasticity import PlaneElasticity
+from fem.elasticity import reduced_modulus
 from gears import GearPair, half_width, peak_pressure
 
-__all__ = ["MeshCycle", "check_row"]
+__all__ = ["MeshCycle", "check_row", "require_row"]
 
 
 @record
@@ -113,8 +113,7 @@ class MeshCycle:
         touching = np.isfinite(self.rho1) & (self.forces > 0)
         rho1, rho2 = self.flank_rho
         load = np.where(touching, self.forces / self.pair.face_width, np.nan)
-        laws = [PlaneElasticity.of(material, self.plane) for material in self.pair.materials]
-        return load, rho1 * rho2 / (rho1 + rho2), 2 / sum(1 / law.plane_modulus for law in laws)
+        return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
 
     @property
     @described("Pa", "position pair", shown="MPa")
@@ -195,3 +194,10 @@ def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
     )
     if known and not np.all(np.isfinite(cycle.forces[row])):
         found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
+
+
+def require_row(cycle: MeshCycle, row: int) -> None:
+    """Raise unless the cycle has that row, with finite forces."""
+    found = Faults()
+    check_row(found, cycle, row)
+    found.raise_if_any()

@@ -7,11 +7,10 @@ times the displacements of its cuts. Only sectors with a contact need more.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Integers
+from base import Array, Integers, record
 from fem import flamant
 from fem.line_load import line_loads
 from fem.near_field import Contact, near_field
@@ -25,7 +24,7 @@ FOCUS = 0.35
 """Size of the cells at a contact, in half-widths of its pressure."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class DrawnSector:
     """Fields of a sector in its tooth's frame.
 
@@ -50,7 +49,7 @@ class DrawnSector:
     contact: Contact | None
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class GearDrawing:
     """A factorised gear with what its drawing needs.
 

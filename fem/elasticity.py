@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
     from skfem import MeshTri2
 
-    from gears import Material
+    from gears import GearPair, Material
 
 __all__ = [
+    "MIRROR",
     "PlaneElasticity",
     "check_plane",
-    "curved_mesh",
     "nodal_stress_matrix",
+    "reduced_modulus",
     "stiffness_matrix",
     "stress_at",
 ]
@@ -85,6 +86,14 @@ class PlaneElasticity:
         trace: Array = stress[..., 0, 0] + stress[..., 1, 1]
         return self.nu * trace if self.plane == "strain" else np.zeros_like(trace)
 
+
+def reduced_modulus(pair: GearPair, plane: str) -> float:
+    """E' of both gears [Pa]: 2/(1/E1* + 1/E2*)."""
+    return 2 / sum(1 / PlaneElasticity.of(material, plane).plane_modulus for material in pair.materials)
+
+
+MIRROR: Array = np.array([-1.0, 1.0])
+"""To the other flank of a tooth along +y."""
 
 INTEGRATION = 4
 """Order of the quadrature: exact for the stiffness of straight elements with room for curved ones."""

@@ -8,18 +8,17 @@ too, and on free edges follow from the tangential strain (``fem.recovery``).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Faults, Integers
+from base import Array, Integers, described, quantities, quantity, record
 from fem import flamant
 from fem.bodies import Compliance
-from fem.cycle import MeshCycle, check_row
+from fem.cycle import MeshCycle, require_row
 from fem.drawing import DrawnSector, GearDrawing, gear_drawing
-from fem.elasticity import PlaneElasticity
+from fem.elasticity import PlaneElasticity, reduced_modulus
 from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from fem.loaded_gears import frames
@@ -31,7 +30,7 @@ from fem.support import held_profiles
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["REGIONS", "GearField", "draw_gears", "loaded_fields"]
+__all__ = ["REGIONS", "GearField", "draw_gears", "loaded_fields", "of_axis"]
 
 REGIONS = ("rim", "fillet", "flank")
 """Names of the numbers in ``GearField.region``: inside the root circle, up to the form circle, beyond it."""
@@ -40,64 +39,57 @@ INDICATIVE = 0.3
 """Distance from a tip-edge contact within which stresses are only indicative, in modules."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class GearField:
-    """Fields of one gear in the common frame (pinion's axis at the origin, wheel's axis above it).
+    """Fields of one gear in the common frame (pinion's axis at the origin, wheel's axis above it)."""
 
-    Attributes
-    ----------
-    points : (n, 2) array
-        Unloaded positions [m]; points of neighbouring sectors are not joined.
-    cells : (m, 6) array
-        Second-order triangles.
-    tooth : (m,) array of int
-        Tooth of each cell, 0 in the pair that entered last, counted anticlockwise.
-    region : (m,) array of int
-        Index into ``REGIONS``.
-    indicative : (m,) array of int
-        1 near a contact of a tip edge, whose pressure is taken as Hertz's over an assumed width.
-    displacement_m : (n, 2) array
-        Against the held hub.
-    stress_Pa : (n, 4) array
-        sigma_xx, sigma_yy, sigma_zz, tau_xy.
-    von_mises_Pa : (n,) array
-    principal_Pa : (n, 2) array
-        Larger and smaller principal stress in the plane.
-    principal_direction : (n, 2) array
-        Unit vector along the larger one.
-    energy_density_J_per_m3 : (n,) array
-        Strain energy per volume.
-    """
+    headline = ("greatest_von_mises_Pa",)
 
-    points: Array
-    cells: Integers
-    tooth: Integers
-    region: Integers
-    indicative: Integers
-    displacement_m: Array
-    stress_Pa: Array
-    von_mises_Pa: Array
-    principal_Pa: Array
-    principal_direction: Array
-    energy_density_J_per_m3: Array
+    points: Array = quantity(
+        "m", "unloaded position; points of neighbouring sectors are not joined", "point axis"
+    )
+    cells: Integers = quantity("1", "points of each second-order triangle", "cell node")
+    tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
+    region: Integers = quantity("1", "index into REGIONS", "cell")
+    indicative: Integers = quantity(
+        "1",
+        "1 near a contact of a tip edge, whose pressure is taken as Hertz's over an assumed width",
+        "cell",
+    )
+    displacement_m: Array = quantity("m", "displacement against the held hub", "point axis")
+    stress_Pa: Array = quantity("Pa", "sigma_xx, sigma_yy, sigma_zz, tau_xy", "point component")
+    von_mises_Pa: Array = quantity("Pa", "von Mises stress", "point")
+    principal_Pa: Array = quantity("Pa", "larger and smaller principal stress in the plane", "point which")
+    principal_direction: Array = quantity("1", "unit vector along the larger one", "point axis")
+    energy_density_J_per_m3: Array = quantity("J/m3", "strain energy per volume", "point")
+
+    @property
+    @described("Pa", shown="MPa")
+    def greatest_von_mises_Pa(self) -> float:
+        """Greatest von Mises stress."""
+        return float(self.von_mises_Pa.max())
 
     @property
     def point_data(self) -> Mapping[str, Array]:
         """The fields by name, for files."""
-        names = (
-            "displacement_m",
-            "stress_Pa",
-            "von_mises_Pa",
-            "principal_Pa",
-            "principal_direction",
-            "energy_density_J_per_m3",
-        )
-        return MappingProxyType({name: getattr(self, name) for name in names})
+        return of_axis(self, "point")
 
     @property
     def cell_data(self) -> Mapping[str, Integers]:
         """Numbers of the cells by name, for files."""
-        return MappingProxyType({name: getattr(self, name) for name in ("tooth", "region", "indicative")})
+        return of_axis(self, "cell")
+
+
+def of_axis(fields: object, axis: str) -> Mapping[str, Array]:
+    """Figures of a record along an axis by name, without the points and cells themselves."""
+    found = quantities(fields).items()
+    return MappingProxyType(
+        {
+            name: one.value
+            for name, one in found
+            if one.figure.dims[:1] == (axis,) and name not in ("points", "cells")
+        }
+    )
 
 
 def draw_gears(
@@ -150,9 +142,7 @@ def loaded_fields(
     base.InputError
         A row that the cycle does not have, or that has no finite forces.
     """
-    found = Faults()
-    check_row(found, cycle, row)
-    found.raise_if_any()
+    require_row(cycle, row)
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     drawn = drawings or draw_gears(pair, bodies)
     turns = frames(pair, float(pair.points.A + cycle.position[row] * pair.base_pitch))
@@ -170,9 +160,8 @@ def contact_half_width(pair: GearPair, cycle: MeshCycle, row: int, column: int) 
     if cycle.edge[row, column]:
         return CORNER_CLEARANCE * pair.module
     radius = pair.path_at(cycle.rho1[row, column]).radius
-    moduli = [PlaneElasticity.of(material, cycle.plane).plane_modulus for material in pair.materials]
     line_load = np.array([cycle.forces[row, column] / pair.face_width])
-    return float(flamant.hertz_half_width(line_load, radius, 2 / sum(1 / modulus for modulus in moduli))[0])
+    return float(flamant.hertz_half_width(line_load, radius, reduced_modulus(pair, cycle.plane))[0])
 
 
 def _contacts(
@@ -196,7 +185,7 @@ def _contacts(
     return contacts
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class _Part:
     """One sector in the common frame."""
 

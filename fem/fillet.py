@@ -11,13 +11,12 @@ fitted through those of three neighbouring edges and taken at the sample points.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Integers
-from fem.elasticity import PlaneElasticity
+from base import Array, Integers, record
+from fem.elasticity import MIRROR, PlaneElasticity
 from meshes import SectorMesh
 
 if TYPE_CHECKING:
@@ -32,10 +31,8 @@ SAMPLES = 81
 
 GAUSS: Array = np.array([0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5])
 
-MIRROR: Array = np.array([-1.0, 1.0])
 
-
-@dataclass(frozen=True, eq=False)
+@record
 class FilletLine:
     """Half of the root land and the fillet on the right of a tooth; the left ones are its mirror image.
 

@@ -9,7 +9,7 @@ give all of it. With the free edge's normal stress zero, sigma_t = E* eps_t(u_r)
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array, Cost, Faults, Integers, Limit, Stopwatch, quantity, record
 from fem import flamant
-from fem.elasticity import PlaneElasticity, check_plane
+from fem.elasticity import MIRROR, PlaneElasticity, check_plane
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
 from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import LineLoads, flank_points, line_loads
@@ -42,7 +42,7 @@ FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
 SIDES = ("left", "right")
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class FilletInfluence:
     """Tangential stress on the fillets of one gear per unit line load on its left flank.
 
@@ -89,8 +89,7 @@ class FilletInfluence:
 
     def _half_plane(self, rho: Array) -> Array:
         """Flamant's part E* eps_t on the loaded tooth, (loads, 2, n)."""
-        mirror = np.array([-1.0, 1.0])
-        loads, inward = self.profile.involute(rho) * mirror, -self.profile.normal(rho) * mirror
+        loads, inward = self.profile.involute(rho) * MIRROR, -self.profile.normal(rho) * MIRROR
         parts = [
             flamant_along(loads, inward, *self.line.side(side == "left"), self.law.plane_poisson)
             for side in SIDES
@@ -206,6 +205,15 @@ def fillets(
     ------
     base.InputError
         Tolerance, plane or edge length that make no sense.
+
+    Examples
+    --------
+    >>> from fem import fillets
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> bodies = fillets(pair, tolerance=0.1)
+    >>> bodies.error < 0.1
+    True
     """
     found = Faults()
     found.number("tolerance", tolerance, TOLERANCE)

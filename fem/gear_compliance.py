@@ -14,13 +14,12 @@ the rest is fitted by Chebyshev polynomials in the curvature radius rho.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from base import Array
+from base import Array, record
 from fem.elasticity import PlaneElasticity
 from fem.line_load import flank_points, line_loads
 from fem.ring import Ring
@@ -45,7 +44,7 @@ CORNER_CLEARANCE = 0.01
 CROSS_DEGREE = 12
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class GearCompliance:
     """What a gear's flank yields per unit line load, without the local indentation.
 
@@ -186,7 +185,7 @@ def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: 
     return base_radius**2 / (4 * np.pi * law.shear_modulus) * (1 / bore_radius**2 - 1 / root_radius**2)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class FlankSamples:
     """Displacements by unit line loads at some places of a flank.
 

@@ -9,11 +9,11 @@ enters the load. No element is refined at the load, and one factorisation serves
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers
+from base import Array, Fault, InputError, Integers, record
 from fem import flamant
 from fem.edge_work import edge_points, traction_integrals
 from fem.ring import Ring
@@ -22,7 +22,7 @@ from meshes import SectorMesh
 __all__ = ["FlankPoints", "LineLoads", "flank_points", "line_loads"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class FlankPoints:
     """Points of the finite-element flank.
 
@@ -103,7 +103,7 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     return FlankPoints(rho, points, inward, edges[which], weights)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class LineLoads:
     """Unit line loads (1 N per metre of face, one at a time) on tooth 0 of a ring.
 

@@ -9,14 +9,14 @@ module from the corner, along the normal of the flank that it touches. Both gear
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Faults
+from base import Array, Faults, record
 from fem.cycle import MeshCycle, check_row
-from fem.elasticity import PlaneElasticity
+from fem.elasticity import MIRROR, PlaneElasticity, reduced_modulus
 from fem.flamant import hertz_half_width
 from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
@@ -40,7 +40,7 @@ SPREAD_POINTS = 256
 """Line loads that stand for a Hertz pressure."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class FlankForce:
     """One contact's force on a gear, in the frame of the tooth that bears it (left flank, tooth along +y).
 
@@ -65,7 +65,7 @@ class FlankForce:
     direction: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class LoadedGear:
     """A gear's mesh in the common frame with its nodal forces.
 
@@ -106,8 +106,7 @@ def flank_forces(
         Hertz's pressure, or its resultant as a line load.
     """
     _check(cycle, row, spread)
-    first, second = (PlaneElasticity.of(material, cycle.plane) for material in pair.materials)
-    reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
+    reduced = reduced_modulus(pair, cycle.plane)
     start = pair.points.A + cycle.position[row] * pair.base_pitch
     placed = pair.placement(float(start))
     on_gears: tuple[list[FlankForce], list[FlankForce]] = ([], [])
@@ -148,7 +147,7 @@ def _check(cycle: MeshCycle, row: int, spread: str) -> None:
 
 def _inward(profile: ToothProfile, rho: float | Array) -> Array:
     """Inward unit normals of the left flank: the mirror images of the right one's."""
-    return np.asarray(-profile.normal(rho) * np.array([-1.0, 1.0]))
+    return np.asarray(-profile.normal(rho) * MIRROR)
 
 
 def nodal_forces(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from base import Array, Booleans
+from base import Array, Booleans, record
 
 __all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table"]
 
@@ -15,7 +14,7 @@ LEAST_FORCE = 1e-9
 """Force [N] below which the Hertz indentation is taken as linear, since its slope at zero is infinite."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class HertzApproach:
     """Indentation of both flanks of some pairs; see ``fem.flamant``.
 
@@ -42,7 +41,7 @@ class HertzApproach:
         return np.asarray(self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE)) - inside)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Table:
     """Monotone cubic interpolation (Fritsch and Carlson) of one law per row; straight beyond the end.
 
@@ -84,7 +83,7 @@ class Table:
         return value + s1 * beyond, slope
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class PairLaws:
     """Hertz on the path of contact, a table for each tip-edge contact outside it.
 
@@ -133,7 +132,7 @@ class Film(Protocol):
         """
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class FilmLaw:
     """A ``Film`` at fixed places, in the form that load sharing asks for; dry at tip edges."""
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from base import Array
+from base import Array, record
 from fem import flamant
 from fem.elasticity import PlaneElasticity
 from fem.line_load import FlankPoints
@@ -17,7 +15,7 @@ NEAR, FAR = 4.0, 8.0
 """Hertz within NEAR half-widths of a contact, Flamant beyond FAR."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Contact:
     """One contact on a gear.
 

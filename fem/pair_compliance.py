@@ -8,13 +8,12 @@ it: with the order p, the finer one's error is their difference over 2^p - 1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, floor, log2
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, Limit, Stopwatch
+from base import Array, Cost, Faults, Limit, Stopwatch, record
 from fem.bodies import Compliance
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.flamant import hertz_indentation
@@ -44,7 +43,7 @@ SAMPLES = (20, 32, 48, 64)
 """Loads along a flank: more of them where the fit leaves too much."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class _Gear:
     """One gear on one mesh: fitted compliance, change of the samples from the coarser mesh."""
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Booleans, Integers
+from base import Array, Booleans, Integers, record
 from meshes import SectorMesh
 from meshes.triangle import shape
 
@@ -28,7 +27,7 @@ LONGEST_SIDE = 0.35
 """Longest side of cells at a flank or a tip [modules]."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Picture:
     """Points of a sector and the second-order cells that they make.
 

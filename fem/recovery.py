@@ -8,12 +8,11 @@ Averages of the elements' stresses are least exact on the boundary, where they m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Integers
+from base import Array, Integers, record
 from fem import flamant
 from fem.elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.fillet import GAUSS, edge_strain_matrix, local_cubic
@@ -27,7 +26,7 @@ __all__ = ["NodalStress", "nodal_stress"]
 PLACES: Array = np.array([0.0, GAUSS[0], 0.5, GAUSS[1], 1.0])
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class NodalStress:
     """Recovery of sigma_xx, sigma_yy, tau_xy at a sector's nodes.
 

@@ -11,12 +11,11 @@ left; the hub (bore) is held.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Cost, Integers, Stopwatch, unclocked
+from base import Array, Cost, Integers, Stopwatch, record, unclocked
 from fem.chain import RingOfLinks, ring_of_links
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Ring", "mesh_and_factor", "ring_of"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Ring:
     """A gear's annulus, factorised.
 

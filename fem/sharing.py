@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Integers
+from base import Array, Integers, record
 from fem.bodies import Compliance
 from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
 from fem.local_law import Film, FilmLaw, PairLaws, Table
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["Solution", "solve"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class Solution:
     """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
 

@@ -17,12 +17,11 @@ logarithms of both distances.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, record
 from fem.elasticity import PlaneElasticity
 from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
 from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
@@ -55,7 +54,7 @@ def round_layout(module: float, rounding: TipRound) -> tuple[Array, Array]:
     return 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class _Tip:
     """Strips of a tip with its rounding: places for the gaps, and the answer of the tooth."""
 
@@ -75,7 +74,7 @@ def _surface(profile: ToothProfile, distance: Array, width: Array, rounding: Tip
     return _Tip(distance, width, np.where(on_arc, rounding.rho, nominal), along, out, nominal)
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class EdgeLaw:
     """Approach against force of tip-edge contacts, one row per contact.
 

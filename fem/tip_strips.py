@@ -7,12 +7,12 @@ only the wedge is seen, whose answer is the same at every scale but for c_ab ln(
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, record
 from fem.elasticity import PlaneElasticity
 from fem.gear_compliance import corner_logarithm, hub_windup, wedge_logarithms
 from fem.line_load import FlankPoints, flank_points, line_loads
@@ -32,7 +32,7 @@ FARTHER = 6
 """Strips by which pairs are moved out to see what is linear in the distance from the corner."""
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class TipStrips:
     """Answer of a tooth's tip to unit line loads spread over strips of its flank [m per N/m].
 

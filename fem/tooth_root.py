@@ -14,8 +14,8 @@ import numpy as np
 
 from base import Array, Cost, Faults, Integers, Stopwatch, described, quantity, record
 from fem.contact import MeshCycle
-from fem.elasticity import PlaneElasticity
-from fem.fillet import MIRROR, FilletLine
+from fem.elasticity import MIRROR, PlaneElasticity
+from fem.fillet import FilletLine
 from fem.fillet_influence import FilletInfluence, Fillets
 from fem.fillet_influence import fillets as _fillets
 
@@ -222,6 +222,16 @@ def root_stress(
     ------
     base.InputError
         Fillets of another pair or plane, or a cycle without forces.
+
+    Examples
+    --------
+    >>> from fem import compliance, mesh_cycle, root_stress
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> cycle = mesh_cycle(pair, 600.0, positions=8, compliance=compliance(pair, tolerance=0.05))
+    >>> found = root_stress(pair, cycle, tolerance=0.1)
+    >>> round(found.pinion_tension_Pa / 1e6, -1)
+    400.0
     """
     found = Faults()
     if fillets is not None and fillets.pair != pair:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers
+from base import Array, Fault, InputError, Integers, record
 from meshes.sector import SectorMesh
 
 __all__ = ["GearMesh", "gear_mesh"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class GearMesh:
     """A gear, or some successive teeth of it, in curved second-order triangles.
 
@@ -77,6 +76,14 @@ def gear_mesh(
     ------
     base.InputError
         When the cuts of neighbouring sectors do not fit.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from meshes import gear_mesh, mesh_sector
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> gear_mesh(mesh_sector(pair.teeth_profiles[0]), teeth=range(-1, 2)).teeth
+    [-1, 0, 1]
     """
     z = sector.teeth
     wanted = range(z) if teeth is None else teeth

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers
+from base import Array, Fault, InputError, Integers, record
 from meshes.gmsh_fill import triangulate
 from meshes.outline import Curve, Sizes, cut, polar, sector_curves
 from meshes.triangle import NODES, shape_gradients
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["SectorMesh", "mesh_sector", "refined"]
 
 
-@dataclass(frozen=True, eq=False)
+@record
 class SectorMesh:
     """One pitch of a gear in second-order triangles; tooth along +y, gear axis at the origin.
 
@@ -92,6 +92,15 @@ def mesh_sector(
     ------
     base.InputError
         Outline that cuts itself, or an element turned inside out.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from meshes import mesh_sector
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> mesh = mesh_sector(pair.teeth_profiles[0])
+    >>> sorted(mesh.facets)[:3], mesh.unknowns > 1000
+    (['bore', 'fillet_left', 'fillet_right'], True)
     """
     sizes = sizes or Sizes()
     m, pitch = profile.module, profile.pitch_angle
@@ -224,7 +233,17 @@ def _refuse_inverted(points: Array, triangles: Integers) -> None:
 
 
 def refined(mesh: SectorMesh) -> SectorMesh:
-    """Split every triangle in four; the middles become corners, new middles lie on the exact curves."""
+    """Split every triangle in four; the middles become corners, new middles lie on the exact curves.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from meshes import mesh_sector, refined
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> mesh = mesh_sector(pair.teeth_profiles[0])
+    >>> len(refined(mesh).triangles) == 4 * len(mesh.triangles)
+    True
+    """
     a, b, c, ab, bc, ca = mesh.triangles.T
     children = np.concatenate(
         [np.stack(three, axis=1) for three in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]

@@ -14,10 +14,12 @@ PACKAGES: tuple[str, ...] = (
     "dynamics",
     "dynamics.inverse",
     "ehl",
+    "fem",
     "flankfilm",
     "flankfilm.coupling",
     "gears",
     "gears.closed_form",
+    "meshes",
 )
 """Packages whose public functions all have an example."""
 

@@ -66,7 +66,7 @@ def test_three_pairs_touch_and_then_four(pair, bodies):
 
 
 def test_more_load_looks_farther_out(pair, bodies):
-    """At 20 kN m the approach, .6 mm, closes gaps beyond .6 base pitches: they are looked for, and found."""
+    """At 20 kN m the deflection, 0.6 mm, closes gaps beyond 0.6 base pitches: they are looked for, and found."""
     cycle = fem.mesh_cycle(pair, 2e4, 40, bodies)
     assert cycle.converged
     place = pair.points.A + (cycle.position[:, None] + cycle.pair_offset) * pair.base_pitch
@@ -83,7 +83,7 @@ def test_too_much_load_is_refused_with_the_reason(pair, bodies, torque):
     cycle = fem.mesh_cycle(pair, torque, 8, bodies)
     assert not cycle.converged
     assert "reduce the torque" in cycle.message
-    for name in ("approach", "forces", "load_share", "stiffness", "secant_stiffness"):
+    for name in ("transmission_error", "forces", "load_share", "stiffness", "secant_stiffness"):
         assert np.all(np.isnan(getattr(cycle, name)))
     held = fem.mesh_cycle(pair, torque, 8, bodies, beyond_path=False)
     assert (
