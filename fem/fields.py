@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -80,7 +80,7 @@ class GearField:
         return of_axis(self, "cell")
 
 
-def of_axis(fields: object, axis: str) -> Mapping[str, Array]:
+def of_axis(fields: object, axis: str) -> Mapping[str, Any]:
     """Figures of a record along an axis by name, without the points and cells themselves."""
     found = quantities(fields).items()
     return MappingProxyType(
