@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch
 from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch
-from dynamics.branch_problem import BranchPoint, BranchProblem, Steps
+from dynamics.branch_problem import BranchProblem, PlanePoint, Steps
 from dynamics.corrector import passes
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
@@ -56,7 +56,7 @@ def follow(
 class _Step:
     """A step that may be taken."""
 
-    point: BranchPoint
+    point: PlanePoint
     tangent: Array
     special: list[SpecialPoint]
     complete: bool  # whether the special points explain all that changes
@@ -66,7 +66,7 @@ class _Walker:
     """Steps from a start in one direction until a reason to end."""
 
     def __init__(
-        self, problem: BranchProblem, start: BranchPoint, along: Array, steps: Steps,
+        self, problem: BranchProblem, start: PlanePoint, along: Array, steps: Steps,
         progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         self.problem, self.steps, self.progress = problem, steps, progress
@@ -109,7 +109,7 @@ class _Walker:
             elif size > LARGE:
                 self._magnify(size)
 
-    def _half(self, point: BranchPoint) -> Array:
+    def _half(self, point: PlanePoint) -> Array:
         """From the state to the state half the orbit's period later; 0 if n is odd."""
         if self.problem.periods % 2:
             return np.zeros(2)
@@ -130,7 +130,7 @@ class _Walker:
         self.half = self.half / factor
         self.tangent = again.tangent(self.tangent * shrink)
 
-    def _try(self, last: BranchPoint) -> _Step | None:
+    def _try(self, last: PlanePoint) -> _Step | None:
         """Next point, or None if the step is too long; at a bound, the point on it."""
         guess, row = last.u + self.step * (self.tangent + self.step * self.bend), self.tangent
         bound = 1.0 if guess[2] > 1.0 else 0.0 if guess[2] < 0.0 else math.nan
@@ -158,7 +158,7 @@ class _Walker:
             return None
         return self._between(last, new, tangent, patient)
 
-    def _between(self, last: BranchPoint, new: BranchPoint, tangent: Array, patient: bool) -> _Step | None:
+    def _between(self, last: PlanePoint, new: PlanePoint, tangent: Array, patient: bool) -> _Step | None:
         """The step with its special points; None if one is not located and a shorter step may help."""
         crossings, explained = self.problem.crossings(last, new)
         if not explained and patient:

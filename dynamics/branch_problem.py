@@ -14,67 +14,44 @@ from base import Array, Faults
 from dynamics.limits import MAX_POINTS, STEP, ordered
 from dynamics.special import SpecialPoint
 
-__all__ = ["BranchPoint", "BranchProblem", "PlanePoint", "Steps", "checked_range", "match_extrema"]
+__all__ = ["BranchProblem", "PlanePoint", "Steps", "checked_range", "match_extrema"]
 
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
 
-class BranchPoint(Protocol):
-    """A point of a branch.
-
-    Attributes
-    ----------
-    u : ndarray, shape (3,)
-        X and V over the scale, the parameter as a fraction of its range.
-    value : float
-        The parameter.
-    trace, determinant : float
-        Of the Jacobian.
-    counts : tuple of int
-        p and q.
-    iterations : int
-        Newton iterations spent.
-    """
-
-    @property
-    def u(self) -> Array: ...  # noqa: D102
-
-    @property
-    def value(self) -> float: ...  # noqa: D102
-
-    @property
-    def trace(self) -> float: ...  # noqa: D102
-
-    @property
-    def determinant(self) -> float: ...  # noqa: D102
-
-    def tangent(self, along: Array) -> Array:
-        """Unit vector along the branch, turned to the side of `along`."""
-        ...
-
-    @property
-    def counts(self) -> tuple[int, int]: ...  # noqa: D102
-
-    @property
-    def iterations(self) -> int: ...  # noqa: D102
-
-
 class PlanePoint:
-    """What points of the map of a plane have in common.
+    """What points of branches have in common.
 
     Attributes
     ----------
+    u : ndarray, shape (2 + m,)
+        X and V over the scale, each parameter as a fraction of its range.
+    values : ndarray, shape (m,)
+        The parameters.
     derivative : ndarray, shape (2, 2 + m)
         Of the image with respect to the unknowns; its first two columns are the Jacobian.
     determinant : float
         Of the Jacobian.
+    counts : tuple of int
+        p and q.
     extrema : ndarray, shape (k, 3)
         Phase in [0, 1) of the orbit's period, X, X'' at every extremum of X.
+    iterations : int
+        Newton iterations spent.
     """
 
+    u: Array
+    values: Array
     derivative: Array
     determinant: float
+    counts: tuple[int, int]
     extrema: Array
+    iterations: int
+
+    @property
+    def value(self) -> float:
+        """The first parameter."""
+        return float(self.values[0])
 
     @cached_property
     def trace(self) -> float:

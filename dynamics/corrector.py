@@ -67,11 +67,6 @@ class Point(PlanePoint):
     iterations: int
 
     @property
-    def value(self) -> float:
-        """The first parameter."""
-        return float(self.values[0])
-
-    @property
     def jacobian(self) -> Array:
         """Derivative of the map with respect to the state."""
         return self.derivative[:, :2]

@@ -9,11 +9,11 @@ from typing import TypeVar
 import numpy as np
 
 from base import Array
-from dynamics.branch_problem import BranchPoint
+from dynamics.branch_problem import PlanePoint
 
 __all__ = ["along_chord", "bracketed"]
 
-P = TypeVar("P", bound=BranchPoint)
+P = TypeVar("P", bound=PlanePoint)
 
 
 def bracketed(

@@ -29,7 +29,7 @@ class MapPoint(PlanePoint):
     ----------
     u : ndarray, shape (3,)
         Unknowns: X and V over the scale, the parameter as a fraction of its range.
-    value : float
+    values : ndarray, shape (1,)
         The parameter.
     period : float
         Excitation period, in tau.
@@ -50,7 +50,7 @@ class MapPoint(PlanePoint):
     """
 
     u: Array
-    value: float
+    values: Array
     period: float
     image: Array
     derivative: Array
@@ -203,8 +203,8 @@ class FlowProblem(PeriodMap):
         levels = np.where(places >= 0, upright[:, 2] * here.law.values[places], 0.0)
         counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return MapPoint(
-            u.copy(), value, here.period, image.state / self.scale, derivative, math.exp(image.log_determinant), counts,
-            levels, extrema,
+            u.copy(), np.array([value]), here.period, image.state / self.scale, derivative,
+            math.exp(image.log_determinant), counts, levels, extrema,
         )  # fmt: skip
 
     def states(self, point: MapPoint) -> Array:

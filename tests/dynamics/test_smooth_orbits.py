@@ -102,7 +102,7 @@ class ExactMap(PeriodMap):
         turns[:, 0] /= here.period * n
         return MapPoint(
             u.copy(),
-            self.low + u[2] * width,
+            np.array([self.low + u[2] * width]),
             here.period,
             done.state / self.scale,
             np.column_stack([done.jacobian, done.slope * width / self.scale]),
