@@ -93,7 +93,7 @@ def held_profiles(pair: GearPair, supports: tuple[Support, Support]) -> tuple[To
         most = profile.root_radius - 0.05 * profile.module
         if support.hub_radius is not None and not profile.bore_radius <= radius <= most:
             allowed = (
-                f"must be {profile.bore_radius:g} (bore) to {most:g} m (0.05 modules under the root circle)"
+                f"must be {profile.bore_radius:g} m (bore) to {most:g} m (0.05 modules under the root circle)"
             )
             remedy = "the hub fills the bore and leaves a rim"
             found.add(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy)

@@ -143,6 +143,7 @@ class GearSection(Section):
     hub: HubSection | None = key(
         "rigid hub on a shaft and bearings that yield; a rigid shaft in the bore if left out",
         None,
+        of="support",
         such_as={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
     )
 

@@ -114,12 +114,11 @@ def BODIES(run: Engine) -> fem.Compliance:
     import fem
 
     scene = run.scene
-    found = fem.compliance(
-        gear_pair(plain_flanks(scene)),
-        tolerance=run[PLAN].resolution.compliance,
-        plane=scene.stiffness.plane,
-        supports=supports(scene),
-    )
+    pair, tolerance = gear_pair(plain_flanks(scene)), run[PLAN].resolution.compliance
+    with under_keys(scene.pair, "pair"):
+        found = fem.compliance(
+            pair, tolerance=tolerance, plane=scene.stiffness.plane, supports=supports(scene)
+        )
     if not found.converged:
         raise SolverError(f"tooth compliance: {found.message}")
     return found

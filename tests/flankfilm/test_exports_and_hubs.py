@@ -97,6 +97,13 @@ def test_a_larger_hub_is_stiffer():
     assert compliance(hub_mm=50.0).own(rho1) < 0.97 * compliance().own(rho1)
 
 
+def test_a_hub_outside_the_rim_is_refused_under_its_key():
+    with pytest.raises(
+        InputError, match=r"^pair\.pinion\.hub\.hub_mm = 80: must be 33\.5 mm \(bore\) to 66\.\d+ mm"
+    ):
+        compliance(hub_mm=80.0)
+
+
 def test_hubs_belong_to_finite_elements():
     text = EXAMPLE.read_text(encoding="utf-8").replace(
         "bore_mm = 33.5 }", "bore_mm = 33.5, hub = { hub_mm = 50.0 } }"
