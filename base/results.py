@@ -249,11 +249,11 @@ def _unit(figure: Figure | None) -> str:
 def _documented(cls: type) -> str:
     """Docstring with a section of attributes for what `quantity` describes, where there is none written."""
     text = (cls.__doc__ or "").rstrip()
-    told = [f for f in dataclasses.fields(cls) if "figure" in f.metadata]
-    if not told or "Attributes\n" in text:
+    described_fields = [f for f in dataclasses.fields(cls) if "figure" in f.metadata]
+    if not described_fields or "Attributes\n" in text:
         return text
     lines = ["", "", "    Attributes", "    ----------"]
-    for one in told:
+    for one in described_fields:
         figure: Figure = one.metadata["figure"]
         shape = f", ({', '.join(figure.dims)})" if figure.dims else ""
         unit = f" [{figure.unit}]" if figure.unit not in ("", "1") else ""

@@ -37,9 +37,11 @@ def contact() -> Figure:
             x = film.x / CONTACT.half_width
             upper.plot(x, 1e-9 * film.pressure, label=label, marker=mark, markersize=4, **look)
             lower.plot(x, 1e6 * film.thickness, marker=mark, markersize=4, **look)
-            told = f"h_c {1e6 * film.central_thickness:.4f} um, h_min {1e6 * film.minimum_thickness:.4f} um"
+            thickness = (
+                f"h_c {1e6 * film.central_thickness:.4f} um, h_min {1e6 * film.minimum_thickness:.4f} um"
+            )
             after = film.x > 0.5 * CONTACT.half_width
-            print(f"contact, {label}: {told}, spike {1e-9 * film.pressure[after].max():.3f} GPa")
+            print(f"contact, {label}: {thickness}, spike {1e-9 * film.pressure[after].max():.3f} GPa")
         upper.set(ylabel="pressure [GPa]")
         from_zero(upper)
         legend_above(drawn, upper)
@@ -69,7 +71,7 @@ def deflection() -> Figure:
     return drawn
 
 
-def tell(name: str, results: xr.Dataset) -> None:
+def report(name: str, results: xr.Dataset) -> None:
     """Print the numbers that docs/validation/article_figures.md compares."""
     face = 1e-9 / float(results.face_width)
     dry, wet = results.dry_secant_stiffness.values, results.lubricated_secant_stiffness.values
@@ -92,8 +94,8 @@ def tell(name: str, results: xr.Dataset) -> None:
 def main() -> None:
     """Write docs/images/article_*.png."""
     ours, theirs = example("article"), example("independent_pairs")
-    tell("finite elements, solved film", ours)
-    tell("Ishikawa, formula for the film", theirs)
+    report("finite elements, solved film", ours)
+    report("Ishikawa, formula for the film", theirs)
     save(
         {
             "article_contact": contact(),

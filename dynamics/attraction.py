@@ -21,7 +21,7 @@ __all__ = ["Attractor", "BasinResult", "basins"]
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
 PATIENCE = 20  # times the limit that a motion which does not repeat is followed on
-TRIALS = 3  # motions followed so far to tell chaos from a long transient
+TRIALS = 3  # motions followed so far to distinguish chaos from a long transient
 SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
 
 

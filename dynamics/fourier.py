@@ -72,7 +72,7 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     ------
     InputError
         If a sample is not finite, the mean is zero, the order is too high for the samples, or the positions
-        cannot tell the harmonics apart.
+        cannot separate the harmonics.
 
     Examples
     --------

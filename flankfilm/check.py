@@ -13,7 +13,7 @@ from flankfilm.stages.engine import Engine
 
 
 def check_scene(scene: Scene) -> list[str]:
-    """Check what only the built geometry and the oil's laws can tell, and say what a run would decide and compute.
+    """Check what only the built geometry and the oil's laws show, and say what a run would decide and compute.
 
     Returns
     -------

@@ -75,8 +75,8 @@ def _read(scene: Path, tolerance: str | None) -> Scene:
     from flankfilm.scene import parse_tolerance
 
     wanted, differences = scene_in(scene)
-    for told in differences:
-        print(f"flankfilm: {scene}: {told}", file=sys.stderr)
+    for difference in differences:
+        print(f"flankfilm: {scene}: {difference}", file=sys.stderr)
     if tolerance is None:
         return wanted
     return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance, "--tolerance")})
@@ -97,7 +97,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     from flankfilm.running import run_scene
 
     wanted = _read(scene, options.tolerance)
-    # a results file is called like all others: its folder tells it apart
+    # a results file is called like all others: its folder distinguishes it
     name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
     folder = options.out or Path(f"{name}-results")
     with console_progress() as progress:
@@ -311,7 +311,7 @@ def guarded(command: Callable[[], int]) -> int:
         return USER_FAULT
     except KeyboardInterrupt:
         print(
-            "flankfilm: interrupted; files written so far are whole, and the next run takes up from the cache",
+            "flankfilm: interrupted; files written so far are whole, and the next run resumes from the cache",
             file=sys.stderr,
         )
         return INTERRUPTED

@@ -19,5 +19,5 @@ def claim(folder: Path) -> None:
         probe.unlink(missing_ok=True)
         sweep_temporaries(folder)
     except OSError as fault:
-        told = f"cannot be written: {fault.strerror}"
-        raise InputError([Fault(str(folder), "", told, "Name another with --out")]) from fault
+        allowed = f"cannot be written: {fault.strerror}"
+        raise InputError([Fault(str(folder), "", allowed, "Name another with --out")]) from fault

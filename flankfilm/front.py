@@ -1,4 +1,4 @@
-"""What the commands do with files of scenes, studies and tasks, as functions: each writes only where it is told to."""
+"""What the commands do with files of scenes, studies and tasks, as functions: each writes only into its folder."""
 
 from __future__ import annotations
 

@@ -21,13 +21,13 @@ def results_html(results: Results) -> str:
     """Headline figures of a run with their notes, and its files."""
     from flankfilm.report.contents import headlines
 
-    rows = [(line.name, line.told, line.note) for line in headlines(results)]
+    rows = [(line.name, line.with_unit, line.note) for line in headlines(results)]
     folder = results.folder or Path()
     files = ", ".join(str(path.relative_to(folder)) for path in results.files[:20])
     more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""
-    told = f"{results.written} after {results.seconds:.1f} s{': ' if files else ''}{files}{more}"
+    size = f"{results.written} after {results.seconds:.1f} s{': ' if files else ''}{files}{more}"
     title = escape(results.scene.title or "flankfilm")
-    return f"<p><b>{title}</b></p>{table((), rows)}<p>{escape(told)}</p>"
+    return f"<p><b>{title}</b></p>{table((), rows)}<p>{escape(size)}</p>"
 
 
 def study_html(found: StudyResults) -> str:
@@ -39,5 +39,5 @@ def study_html(found: StudyResults) -> str:
         outputs = (number(value) for value in row.values)
         rows.append((str(row.index), *keys, *outputs, row.fault))
     head = ("row", *plan.keys, *plan.outputs, "fault")
-    told = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
-    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(told)}</p>{table(head, rows)}"
+    size = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
+    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}"

@@ -32,7 +32,7 @@ def run_scene(
     use_cache : bool
         Whether results of earlier runs with the same inputs and code may serve.
     progress : callable
-        Told what is being done, steps done, and steps in all.
+        Called with what is being done, steps done, and steps in all.
 
     Returns
     -------

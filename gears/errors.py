@@ -1,4 +1,4 @@
-"""What the package raises and warns with, so that callers can tell it from the faults of others."""
+"""What the package raises and warns with, so that callers can distinguish it from the faults of others."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def rounded(
     """Make values round one after another, refining the others each time.
 
     A value given as one of several goes to the nearest of these, whatever it costs. Any other is rounded to the fewest
-    digits that cost less than they are worth; the most telling first.
+    digits that cost less than they are worth; the most significant first.
 
     Parameters
     ----------

@@ -77,7 +77,7 @@ def expand_from(
 def stays(
     par: FloatArray, region: int, fresh: int, y: float, y_end: float, w: float, bend: float, rest: float
 ) -> bool:
-    """Tell whether a motion that has just come in with speed w is proved to stay for the rest of the cell.
+    """Return whether a motion that has just come in with speed w is proved to stay for the rest of the cell.
 
     `bend` bounds |d2y/ds2|/8: it cannot turn back to the boundary it came through if |w| > 4 bend rest, and it stays
     clear of the other one if both its ends do by bend rest^2.
@@ -121,7 +121,7 @@ def sole_exit(
 ) -> int:
     """Boundary (1, -1) that a motion leaves through exactly once, 0 if it leaves through none, 2 if that is open.
 
-    The speed departs from its chord by less than `jerk`: if it is proved to keep its sign, the ends tell all.
+    The speed departs from its chord by less than `jerk`: if it is proved to keep its sign, the ends decide.
     """
     if not (w * w_end > 0.0 and min(abs(w), abs(w_end)) > jerk):
         return 2

@@ -48,7 +48,7 @@ def enter(region: int, hit: int, par: FloatArray) -> tuple[int, float]:
 
 @helper
 def clear(region: int, par: FloatArray, y: float, y_new: float, reach: float) -> bool:
-    """Tell whether a stretch that departs from its chord by less than `reach` stays in its region."""
+    """Return whether a stretch that departs from its chord by less than `reach` stays in its region."""
     if region != 0:
         return min(region * y, region * y_new) > reach
     d = par[HALF_BACKLASH]

@@ -179,7 +179,7 @@ def variations(b: FloatArray, n: int) -> int:
 
 @helper
 def monotone(c: FloatArray, first: int, end: float) -> bool:
-    """Tell whether the polynomial is proved to fall throughout [0, end]."""
+    """Return whether the polynomial is proved to fall throughout [0, end]."""
     rest = 0.0
     power = 1.0
     for k in range(2, len(c) - first):

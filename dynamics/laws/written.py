@@ -56,7 +56,7 @@ class CompiledLaw:
         Where the force is switched; bit i of `region` is 1 where n . (X, V) is above surface i. The first counts p
         (falls), the second q of the label.
     damped : bool
-        Whether the force depends on the speed; only told to the reader, the determinant always has its own equation.
+        Whether the force depends on the speed; for the reader alone: the determinant always has its own equation.
     size : float
         Natural size of a displacement.
 

@@ -66,7 +66,7 @@ def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Sign], bool]:
         found.append(Sign("saddle-node"))
     if a.flip * b.flip < 0.0:
         found.append(Sign("period-doubling"))
-    if a.torus * b.torus < 0.0:  # a pair only if |trace| < 2 there: `locate` tells
+    if a.torus * b.torus < 0.0:  # a pair only if |trace| < 2 there: `locate` decides
         found.append(Sign("neimark-sacker"))
     change = [0, 0]
     if len(a.levels) == 2 and min(a.levels[0], b.levels[0]) == 0.0:

@@ -51,8 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     given = parser.parse_args(arguments)
     folder = given.out / given.scan
     folder.mkdir(parents=True, exist_ok=True)
-    files, told = draw(SCANS[given.scan], folder, SMALL if given.small else FULL, given.format)
-    (folder / "summary.txt").write_text("\n".join(shown(told)) + "\n", encoding="utf-8")
+    files, lines = draw(SCANS[given.scan], folder, SMALL if given.small else FULL, given.format)
+    (folder / "summary.txt").write_text("\n".join(shown(lines)) + "\n", encoding="utf-8")
     return [*files, folder / "summary.txt"]
 
 
@@ -61,7 +61,7 @@ def draw(scan: Scan, folder: Path, size: Size, ending: str) -> tuple[list[Path],
     osc, parameter = scan.oscillator, scan.parameter
     symbol = "mesh frequency" if parameter == "frequency" else "error amplitude"
     values = np.linspace(*scan.bounds, size.values)
-    files, told = [], []
+    files, lines = [], []
 
     def keep(figure: Figure, name: str) -> None:
         files.append(drawing.save(figure, folder, name, ending))
@@ -74,18 +74,18 @@ def draw(scan: Scan, folder: Path, size: Size, ending: str) -> tuple[list[Path],
         swept = min(size.values, 100)
         diagram = scan.diagram(bounds, searches=size.searches, swept=swept, max_period=longest)
         keep(drawing.diagram_figure(diagram, met, symbol), "diagram" if k == 0 else f"zoom_{bounds[0]:g}")
-        told += [f"{bounds[0]:g} to {bounds[1]:g}: {diagram.message}", met.message, *diagram.left_out]
+        lines += [f"{bounds[0]:g} to {bounds[1]:g}: {diagram.message}", met.message, *diagram.left_out]
         if k == 0:
             motions, missing = named_motions(scan, diagram)
             keep(drawing.portrait_figure(motions, osc.half_backlash), "portraits")
-            told += [f"{label}: no stable stretch in the diagram" for label in missing]
+            lines += [f"{label}: no stable stretch in the diagram" for label in missing]
     sweeps = [dynamics.sweep(osc, parameter, values, direction) for direction in ("up", "down")]
     keep(drawing.exponent_figure(exponent_spectra(scan, sweeps, size.periods), symbol), "exponents")
     for value in scan.basins[: size.basins]:
         figure, line = basins(scan, value, size)
-        told.append(line)
+        lines.append(line)
         keep(figure, f"basins_{value:g}")
-    return files, told
+    return files, lines
 
 
 def exponent_spectra(
@@ -142,7 +142,7 @@ def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
     shares = ", ".join(
         f"{a.label} {100 * a.share:.2f} +- {100 * a.share_error:.2f} %" for a in result.attractors
     )
-    told = f"basins at {value:g}: {shares}; unstable: {', '.join(o.label for o in orbits) or 'none found'}"
+    text = f"basins at {value:g}: {shares}; unstable: {', '.join(o.label for o in orbits) or 'none found'}"
     title = f"{scan.parameter} = {value:g}"
     if known and sum(a.share > 0.0 for a in result.attractors) > 1:
         edge = dynamics.basin_boundary(
@@ -150,8 +150,8 @@ def basins(scan: Scan, value: float, size: Size) -> tuple[Figure, str]:
         )
         low, high = (edge.dimension + sign * 1.96 * edge.dimension_error for sign in (-1, 1))
         title += f"; boundary dimension {edge.dimension:.2f} ({low:.2f} to {high:.2f})"
-        told += f"; {edge.message}"
-    return drawing.basin_figure(result, drawn, manifolds, title), told
+        text += f"; {edge.message}"
+    return drawing.basin_figure(result, drawn, manifolds, title), text
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 Both are found or not found by the same procedure; what chance would find is printed beside.
 
     python examples/motion/identify_scans.py 6.2     # frequency: nothing known but eps, which is the unit of F_m and D
-    python examples/motion/identify_scans.py 6.4     # error amplitude: D .4 as printed, the rest unknown
+    python examples/motion/identify_scans.py 6.4     # error amplitude: D 0.4 as printed, the rest unknown
 """
 
 from __future__ import annotations

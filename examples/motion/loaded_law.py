@@ -233,7 +233,7 @@ def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
     return page
 
 
-def told(given: Setting, curves: Sequence[Curve], order: int) -> str:
+def summary(given: Setting, curves: Sequence[Curve], order: int) -> str:
     """Jump speeds, greatest swings, and what differs."""
     lines = [f"{order} harmonic(s)"]
     for one in curves:
@@ -281,7 +281,7 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     for order in given.order:
         loaded = law(here, order)
         curves = [curve(name, osc, here) for name, osc in oscillators(here, order).items()]
-        text.append(told(here, curves, order))
+        text.append(summary(here, curves, order))
         text.append(
             f"  the loaded law leaves out {100 * loaded.remainder:.2g} % of the mean force at most, and reaches to "
             f"{1e6 * mean.length * loaded.reach:.0f} um"

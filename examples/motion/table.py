@@ -55,8 +55,8 @@ def row(event: Event, diagram: dynamics.Diagram | None) -> str:
         verdict = f"reproduced but for {units:.1f} units of the last digit"
     else:
         verdict = f"printed late by {off:.1e}" if off > 0.0 else f"not reproduced: printed {-off:.1e} early"
-    told = f" ({event.tracked})" if event.tracked else ""
-    return f"{head} {point.parameter:.10f} | {_multiplier(event, point, diagram)} | {verdict}{told} |"
+    tracked = f" ({event.tracked})" if event.tracked else ""
+    return f"{head} {point.parameter:.10f} | {_multiplier(event, point, diagram)} | {verdict}{tracked} |"
 
 
 def _multiplier(event: Event, point: dynamics.SpecialPoint, diagram: dynamics.Diagram) -> str:

@@ -99,8 +99,8 @@ def finest_film(contact: LineContact, tolerance: float, spike: float | None) -> 
     """Level of a film that the others are compared with."""
     from ehl import solve
 
-    told = f"tolerance {100 * tolerance:g} %" + ("" if spike is None else f", spike {100 * spike:g} %")
-    return Level(told, lambda: solve(contact, tolerance=tolerance, spike=spike), answer)
+    label = f"tolerance {100 * tolerance:g} %" + ("" if spike is None else f", spike {100 * spike:g} %")
+    return Level(label, lambda: solve(contact, tolerance=tolerance, spike=spike), answer)
 
 
 def _starved() -> tuple[Case, ...]:

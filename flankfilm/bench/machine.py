@@ -26,7 +26,7 @@ class Machine:
     cores : int
         Cores that this process may use.
     memory_GiB : float
-        NaN where the system does not tell.
+        NaN where the system does not report it.
     system : str
         Operating system and architecture.
     python, blas : str
@@ -81,14 +81,14 @@ def this_machine() -> Machine:
 
 
 def load() -> float:
-    """Mean number of processes that wanted a core during the last minute; NaN where the system does not tell."""
+    """Mean number of processes that wanted a core during the last minute; NaN where the system does not report it."""
     return os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
 
 
 def _processor() -> str:
-    told = Path("/proc/cpuinfo")
-    if told.is_file():
-        for line in told.read_text(encoding="utf-8", errors="replace").splitlines():
+    source = Path("/proc/cpuinfo")
+    if source.is_file():
+        for line in source.read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("model name"):
                 return line.partition(":")[2].strip()
     return platform.processor() or platform.machine()

@@ -142,7 +142,7 @@ def measure(
     repeat : int
         Least number of timed runs of each level.
     announce : callable
-        Told what is done next, once for each of `steps`.
+        Called with what is done next, once for each of `steps`.
     """
     finest, failure = None, ""
     if case.finest is not None:
@@ -208,9 +208,9 @@ def _rows(
         return
     for quantity, value in found.values.items():
         error = true_error(value, finest.values[quantity])
-        told = "" if math.isfinite(error) else "cannot be compared with the finest solution"
+        failure = "" if math.isfinite(error) else "cannot be compared with the finest solution"
         estimate = _number(value.estimate)
-        yield Row(case.key, series, name, quantity, found.size, *clock, error, estimate, told)
+        yield Row(case.key, series, name, quantity, found.size, *clock, error, estimate, failure)
 
 
 def _number(value: float | None) -> float:

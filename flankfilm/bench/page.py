@@ -86,17 +86,17 @@ def _headlines(found: Bench) -> list[Headline]:
     ratios = [ratio for case in found.cases for ratio in known_ratios(case, case.rows)]
     rows = [row for case in found.cases for row in case.rows]
     failures = sum(bool(row.failure) for row in rows)
-    told = [
+    entries = [
         Headline("measured", f"{len(found.cases)} works", f"{len(rows)} rows in {found.seconds:.0f} s"),
         Headline("machine", found.machine.processor, f"{found.machine.cores} cores"),
     ]
     if ratios:
         safe = sum(ratio >= 0.9 for ratio in ratios)
         note = f"median {median(ratios):.2g}, least {min(ratios):.2g}"
-        told.append(Headline("estimates of 0.9 times the error or more", f"{safe} of {len(ratios)}", note))
+        entries.append(Headline("estimates of 0.9 times the error or more", f"{safe} of {len(ratios)}", note))
     if failures:
-        told.append(Headline("levels without figures", str(failures), "reasons in the tables"))
-    return told
+        entries.append(Headline("levels without figures", str(failures), "reasons in the tables"))
+    return entries
 
 
 def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:

@@ -81,8 +81,8 @@ def ask(python: Path, case: Case, repeat: int, longest: float = LONGEST) -> list
     finest = case.finest.answer(case.finest.work()).values
     rows: list[PeerRow] = []
     for work in case.peers:
-        told = _run(python, work, repeat, longest)
-        rows += _rows(case.key, work, told, finest[work.quantity])
+        reply = _run(python, work, repeat, longest)
+        rows += _rows(case.key, work, reply, finest[work.quantity])
     return rows
 
 
@@ -109,32 +109,32 @@ def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str,
     # programs print lines of their own
     for line in reversed(done.stdout.splitlines()):
         try:
-            told = json.loads(line)
+            reply = json.loads(line)
         except json.JSONDecodeError:
             continue
-        if isinstance(told, dict) and ("runs" in told or "missing" in told):
-            return told
+        if isinstance(reply, dict) and ("runs" in reply or "missing" in reply):
+            return reply
     return "printed no result"
 
 
-def _rows(case: str, work: PeerWork, told: dict[str, Any] | str, finest: Value) -> list[PeerRow]:
+def _rows(case: str, work: PeerWork, reply: dict[str, Any] | str, finest: Value) -> list[PeerRow]:
     failed = (math.nan, math.nan, math.nan, "")
-    if isinstance(told, str):
-        return [PeerRow(case, work.quantity, work.script, "", "", *failed, told)]
-    if "missing" in told:
-        reason = f"not in that environment: {told['missing']}"
+    if isinstance(reply, str):
+        return [PeerRow(case, work.quantity, work.script, "", "", *failed, reply)]
+    if "missing" in reply:
+        reason = f"not in that environment: {reply['missing']}"
         return [PeerRow(case, work.quantity, work.script, "", "", *failed, reason)]
     return [
         PeerRow(
             case,
             work.quantity,
-            str(told["peer"]),
-            str(told["version"]),
+            str(reply["peer"]),
+            str(reply["version"]),
             str(run["level"]),
             float(run["seconds"]),
             float(run["first"]),
             true_error(Value(np.array(run["values"], dtype=float)), finest),
-            str(told.get("note", "")),
+            str(reply.get("note", "")),
         )
-        for run in told["runs"]
+        for run in reply["runs"]
     ]

@@ -90,7 +90,7 @@ def bench(
     against : str, optional
         Interpreter of the environment that peers are installed in.
     progress : callable
-        Told what is being done, steps done, and steps in all.
+        Called with what is being done, steps done, and steps in all.
 
     Raises
     ------

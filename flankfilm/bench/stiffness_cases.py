@@ -56,7 +56,7 @@ def compliance(quick: bool) -> tuple[Case, ...]:
     factors = (2.0, 1.4, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
     tolerances = (1e-3,) if quick else (1e-3, 1e-4, 2e-5)
     finest = (1, 0.6) if quick else (3, 1.0)
-    told = "edges x 0.6" if quick else "refined 3 times"
+    label = "edges x 0.6" if quick else "refined 3 times"
     return (
         Case(
             "compliance",
@@ -73,7 +73,7 @@ def compliance(quick: bool) -> tuple[Case, ...]:
                 ),
                 *_forms(pair, mesh),
             ),
-            level(told, refined, answer, *finest),
+            level(label, refined, answer, *finest),
             {mesh: 2.0, single: 2.0},
             (PeerWork("ross_stiffness", _given(pair), mesh),),
         ),

@@ -48,7 +48,7 @@ class Summary:
     errors, seconds : (float, float)
         True error and processor time of the coarsest and of the finest level.
     gain : float
-        Factor of processor time for a tenth of the error; NaN where too few levels tell.
+        Factor of processor time for a tenth of the error; NaN where too few levels can be compared.
     ratios : (float, float)
         Least and greatest estimated over true error; NaN where there is no estimate.
     failures : int
@@ -69,7 +69,7 @@ class Summary:
 def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
     """Sum up every quantity along every series.
 
-    Ratios are of levels whose true error the finest solution can tell: where it is at least three times what
+    Ratios are of levels whose true error the finest solution resolves: where it is at least three times what
     that one is itself estimated to be off by.
     """
     for case in cases:
@@ -93,7 +93,7 @@ def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
 
 
 def known_ratios(case: CaseResult, rows: Sequence[Row]) -> Iterator[float]:
-    """Estimated over true errors, where the finest solution can tell the latter."""
+    """Estimated over true errors, where the finest solution resolves the latter."""
     for row in rows:
         floor = case.finest_estimates.get(row.quantity, math.nan)
         floor = max(3.0 * floor, ROUNDING) if math.isfinite(floor) else ROUNDING
@@ -189,22 +189,24 @@ def _with_unit(name: str) -> str:
 
 def read_bench(path: Path) -> Bench:
     """Read a ``bench.json`` back."""
-    told = json.loads(path.read_text(encoding="utf-8"))
-    cases = [{**case, "rows": tuple(_record(Row, row) for row in case["rows"])} for case in told.pop("cases")]
+    stored = json.loads(path.read_text(encoding="utf-8"))
+    cases = [
+        {**case, "rows": tuple(_record(Row, row) for row in case["rows"])} for case in stored.pop("cases")
+    ]
     for case in cases:
         case["finest_estimates"] = {q: _float(e) for q, e in case["finest_estimates"].items()}
     return Bench(
-        machine=_record(Machine, told.pop("machine")),
+        machine=_record(Machine, stored.pop("machine")),
         cases=tuple(CaseResult(**case) for case in cases),
-        first_calls=tuple(_record(FirstCall, call) for call in told.pop("first_calls")),
-        peers=tuple(_record(PeerRow, peer) for peer in told.pop("peers")),
-        load_after=_float(told.pop("load_after")),
-        **told,
+        first_calls=tuple(_record(FirstCall, call) for call in stored.pop("first_calls")),
+        peers=tuple(_record(PeerRow, peer) for peer in stored.pop("peers")),
+        load_after=_float(stored.pop("load_after")),
+        **stored,
     )
 
 
-def _record(kind: type[T], told: dict[str, Any]) -> T:
-    return kind(**{name: _float(value) if value is None else value for name, value in told.items()})
+def _record(kind: type[T], stored: dict[str, Any]) -> T:
+    return kind(**{name: _float(value) if value is None else value for name, value in stored.items()})
 
 
 def _float(value: float | None) -> float:

@@ -125,8 +125,8 @@ def speed_sweep(
         for direction in ("up", "down")
     }
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
-    told = [(result.message, result.converged) for result in found.values()]
-    told.append((grazing.message, grazing.converged))
+    outcomes = [(result.message, result.converged) for result in found.values()]
+    outcomes.append((grazing.message, grazing.converged))
     return SpeedSweep(
         frequency=values,
         speed=speeds,
@@ -140,7 +140,7 @@ def speed_sweep(
         half_backlash=oscillator.half_backlash,
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
-        messages=tuple(message for message, converged in told if not converged),
+        messages=tuple(message for message, converged in outcomes if not converged),
     )
 
 

@@ -58,7 +58,7 @@ def imported(file: Path, *, stage: str | None = None, rack: str | None = None) -
     if not faults:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # flankfilm check tells them
+                warnings.simplefilter("ignore")  # flankfilm check reports them
                 gear_pair(parse_scene(text))
         except InputError as error:
             faults = error.faults
@@ -70,10 +70,10 @@ def _name_rack(draft: Draft, name: str) -> None:
     _, h_fP, rho_fP = ISO_53[name]
     own = draft.rack
     if not math.isnan(own.h_fP) or not math.isnan(own.rho_fP):
-        told = f"the file has its own: h_fP = {own.h_fP:g}, rho_fP = {own.rho_fP:g}"
-        raise InputError([Fault("--rack", name, told, "Leave it out, and change the scene")])
+        allowed = f"the file has its own: h_fP = {own.h_fP:g}, rho_fP = {own.rho_fP:g}"
+        raise InputError([Fault("--rack", name, allowed, "Leave it out, and change the scene")])
     if not math.isnan(own.alpha_deg) and abs(own.alpha_deg - 20.0) > 1e-9:
-        told = f"has 20 deg, but the file {own.alpha_deg:g} deg"
-        raise InputError([Fault("--rack", name, told, "Give h_fP and rho_fP in the scene")])
+        allowed = f"has 20 deg, but the file {own.alpha_deg:g} deg"
+        raise InputError([Fault("--rack", name, allowed, "Give h_fP and rho_fP in the scene")])
     own.h_fP, own.rho_fP = h_fP, rho_fP
     draft.notes.append(f"Basic rack: ISO 53 {name}, named by --rack.")

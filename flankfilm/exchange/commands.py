@@ -70,8 +70,8 @@ def export_rexs(
     text, left_out = rexs_text(gear_pair(wanted), wanted.title or scene.stem)
     target = out if out is not None else Path(f"{scene.stem}.rexs")
     write_text(target, text)
-    for told in left_out:
-        print(told)
+    for omission in left_out:
+        print(omission)
     print(f"{target} is written.")
     return 0
 

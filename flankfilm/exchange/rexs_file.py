@@ -107,8 +107,8 @@ def parse_model(content: bytes, name: str) -> Model:
     except (expat.ExpatError, ValueError, LookupError) as fault:
         if isinstance(fault, InputError):
             raise
-        told = f"must be XML: {shorten(str(fault))}"
-        raise InputError([Fault(name, "", told, "Export the model again as REXS (XML)")]) from fault
+        allowed = f"must be XML: {shorten(str(fault))}"
+        raise InputError([Fault(name, "", allowed, "Export the model again as REXS (XML)")]) from fault
     return reader.model()
 
 
@@ -118,8 +118,8 @@ def _bytes_of(path: Path) -> bytes:
             what = "is a folder" if path.is_dir() else "does not exist"
             raise InputError([Fault(str(path), "", what, "Name a REXS file")])
         if path.stat().st_size > LARGEST_FILE:
-            told = f"is larger than {LARGEST_FILE:,} bytes"
-            raise InputError([Fault(str(path), "", told, "Export the stage alone, without results")])
+            allowed = f"is larger than {LARGEST_FILE:,} bytes"
+            raise InputError([Fault(str(path), "", allowed, "Export the stage alone, without results")])
         content = path.read_bytes()
     except OSError as fault:
         raise InputError([Fault(str(path), "", f"cannot be read: {fault.strerror}")]) from fault
@@ -190,18 +190,18 @@ class _Reader:
         marks = self._component
         key = marks.get("id", "")
         if key in self._components:
-            told = "stands twice; ids must differ"
-            raise InputError([Fault(self._name, f"component id {shorten(key)}", told, "Export it again")])
+            allowed = "stands twice; ids must differ"
+            raise InputError([Fault(self._name, f"component id {shorten(key)}", allowed, "Export it again")])
         kind, name = marks.get("type", ""), marks.get("name", "")
         self._components[key] = Component(key, kind, name, self._attributes)
 
     def model(self) -> Model:
         if self._head is None:
-            told = "is XML but no REXS model (its outermost element is not model)"
-            raise InputError([Fault(self._name, "", told, "Export it as REXS, versions 1.0 to 2.0")])
+            allowed = "is XML but no REXS model (its outermost element is not model)"
+            raise InputError([Fault(self._name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")])
         version = self._head.get("version", "")
         if not version.startswith(VERSIONS):
-            told = "is not a REXS version that is known here"
-            raise InputError([Fault(f"{self._name}: version", repr(version), told, "Versions 1.0 to 2.0")])
+            allowed = "is not a REXS version that is known here"
+            raise InputError([Fault(f"{self._name}: version", repr(version), allowed, "Versions 1.0 to 2.0")])
         made_by = self._head.get("applicationId", ""), self._head.get("applicationVersion", "")
         return Model(version, " ".join(made_by).strip(), self._components, tuple(self._relations))

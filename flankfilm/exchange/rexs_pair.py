@@ -78,8 +78,8 @@ def _chosen(model: Model, source: str, stage: str | None) -> Relation:
     listed = "; ".join(f"--stage {key}: {shorten(model.components[key].name)}" for key in found)
     if not found:
         kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
-        told = "holds no stage of cylindrical gears" + (f", but {', '.join(kinds)}" if kinds else "")
-        raise InputError([Fault(source, "", told, "Pairs of external spur gears are read alone")])
+        allowed = "holds no stage of cylindrical gears" + (f", but {', '.join(kinds)}" if kinds else "")
+        raise InputError([Fault(source, "", allowed, "Pairs of external spur gears are read alone")])
     if stage is None and len(found) > 1:
         raise InputError([Fault(source, f"{len(found)} stages", "choose one", listed)])
     if stage is not None and stage not in found:
@@ -155,15 +155,15 @@ class _StageReader:
             if gear is None:
                 self.faults.append(Fault(f"{self.source}: {stage}", "", f"has no {role}", "Export it again"))
             elif gear.type != "cylindrical_gear":
-                told = "is no external cylindrical gear; internal and other gears are out of scope"
-                self.faults.append(Fault(f"{self.source}: {stage}: {role}", str(gear), told))
+                allowed = "is no external cylindrical gear; internal and other gears are out of scope"
+                self.faults.append(Fault(f"{self.source}: {stage}: {role}", str(gear), allowed))
         if first is None or second is None or self.faults:
             return None
         drives = {}
         for relation in self.model.related("stage_gear_data", "stage", stage.id):
             data = self.model.components.get(relation.roles.get("stage_gear_data", ""))
-            told = data.attributes.get(rexs.IS_DRIVING.name, ("", ""))[0] if data is not None else ""
-            drives[relation.roles.get("gear", "")] = told == "true"
+            drives_it = data.attributes.get(rexs.IS_DRIVING.name, ("", ""))[0] if data is not None else ""
+            drives[relation.roles.get("gear", "")] = drives_it == "true"
         if drives.get(second.id) and not drives.get(first.id):
             return second, first
         if not drives.get(first.id):
@@ -217,8 +217,8 @@ class _StageReader:
         for allowance in rexs.ALLOWANCES:
             left = [v for f in flanks if (v := self._number(f, allowance))]
             if left:
-                told = f"{left[0]:g} mm is not taken over: the tooth is as finished."
-                self.notes.append(f"{gear}: {allowance.name} {told}")
+                remark = f"{left[0]:g} mm is not taken over: the tooth is as finished."
+                self.notes.append(f"{gear}: {allowance.name} {remark}")
         bore = self._number(gear, rexs.BORE_DIAMETER)
         chamfer = self._common(rexs.TIP_CHAMFER, flanks)
         return GearDraft(
@@ -254,8 +254,8 @@ class _StageReader:
         first, second = racks
         for name, a, b in zip(("addendum", "tip radius"), first, second, strict=True):
             if abs(a - b) > SAME * abs(a):
-                told = f"must be {a:g} modules, as that of {tools[0]}: a pair has one basic rack"
-                self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", told))
+                allowed = f"must be {a:g} modules, as that of {tools[0]}: a pair has one basic rack"
+                self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", allowed))
         return RackDraft(h_aP=h_aP, h_fP=first[0], rho_fP=first[1], alpha_deg=alpha)
 
     def _in_modules(self, tool: Component, attributes: tuple[Attribute, ...], module: float) -> float:
@@ -287,8 +287,8 @@ class _StageReader:
             return common
         widths = [v for g in gears if (v := self._number(g, rexs.FACE_WIDTH)) is not None]
         if len(widths) == 2 and widths[0] != widths[1]:
-            told = " and ".join(f"{w:g}" for w in widths)
-            self.notes.append(f"Face widths {told} mm: the smaller one carries and is taken.")
+            listed = " and ".join(f"{w:g}" for w in widths)
+            self.notes.append(f"Face widths {listed} mm: the smaller one carries and is taken.")
         return min(widths, default=OPEN)
 
     def _materials(self, gears: tuple[Component, Component]) -> tuple[MaterialDraft, MaterialDraft] | None:

@@ -50,15 +50,15 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
 
 
 def _left_out(pair: GearPair) -> tuple[str, ...]:
-    told = []
+    omitted = []
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if gear.thickness_allowance:
-            told.append(
+            omitted.append(
                 f"{name}: thickness allowance of {1e6 * gear.thickness_allowance:g} µm is not written"
             )
         if gear.tip_relief is not None:
-            told.append(f"{name}: tip relief is not written")
-    return tuple(told)
+            omitted.append(f"{name}: tip relief is not written")
+    return tuple(omitted)
 
 
 class _Writer:

@@ -132,8 +132,8 @@ def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> N
     )
     entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
     if orders:
-        told = " and ".join(f"{order:g}" for order in dict.fromkeys(orders))
-        entries[f"theory, order {told}"] = Line2D([], [], color="#888888", linewidth=1.0)
+        listed = " and ".join(f"{order:g}" for order in dict.fromkeys(orders))
+        entries[f"theory, order {listed}"] = Line2D([], [], color="#888888", linewidth=1.0)
     columns = 2 if max(map(len, entries)) > 28 else 3
     drawn.legend(
         list(entries.values()), list(entries), loc="outside upper left", ncols=columns, handlelength=2.6

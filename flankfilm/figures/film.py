@@ -63,15 +63,15 @@ def film_shares(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    shown = {name: told for name, told in SHARES.items() if name in results}
+    shown = {name: label for name, label in SHARES.items() if name in results}
     if not shown:
         need(results, "run a scene with a starved film or a section [roughness]", *SHARES)
     with styled(style):
         drawn = figure(height=0.8 + 1.5 * len(shown))
         panels = drawn.subplots(len(shown), 1, sharex=True, squeeze=False).ravel().tolist()
-        for axes, (name, told), colour in zip(panels, shown.items(), colours(len(shown)), strict=True):
+        for axes, (name, label), colour in zip(panels, shown.items(), colours(len(shown)), strict=True):
             axes.plot(travel(results, "film_rho1"), results[name].values, color=colour)
-            axes.set(ylabel=told)
+            axes.set(ylabel=label)
             from_zero(axes)
         panels[-1].set(xlabel=PATH_LABEL)
         mark_path(results, panels, panels[0])

@@ -77,7 +77,7 @@ def mark_path(results: xr.Dataset, panels: Sequence[Axes], named: Axes) -> None:
 
 
 def label_of(results: xr.Dataset, name: str) -> str:
-    """Model that a variable's ``long_name`` tells after its colon."""
+    """Model that a variable's ``long_name`` names after its colon."""
     return str(results[name].attrs["long_name"]).partition(": ")[2]
 
 

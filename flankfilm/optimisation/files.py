@@ -21,26 +21,26 @@ if TYPE_CHECKING:
 def summary(found: Optimum) -> list[str]:
     """Lines for the terminal."""
     task = found.task
-    told = [
+    lines = [
         f"{len(found.evaluations)} points, {found.computed} of them computed in {found.seconds:.1f} s, at tolerances "
         f"{task.tolerances[0]:g} and then {task.tolerances[1]:g}"
     ]
     if (both := phases(found)) is not None:
         coarse, fine, saved = both
-        told.append(
+        lines.append(
             f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: {100 * saved:.0f} % "
             "less in all than with every point at the second"
         )
     if len(found.best) > 1:
-        told.append(f"{len(found.best)} points on the front, from the least {task.objectives[0]}:")
+        lines.append(f"{len(found.best)} points on the front, from the least {task.objectives[0]}:")
     for place in found.best[:10]:
         point = found.evaluations[place]
         keys = ", ".join(f"{k} = {v:.6g}" for k, v in zip(task.keys, point.values, strict=True))
         outputs = ", ".join(f"{n} = {v:.5g}" for n, v in zip(task.outputs, point.result.values, strict=True))
-        told.append(f"{keys}: {outputs}")
+        lines.append(f"{keys}: {outputs}")
     if len(found.best) > 10:
-        told.append(f"{len(found.best) - 10} more in optimum.csv")
-    return told
+        lines.append(f"{len(found.best) - 10} more in optimum.csv")
+    return lines
 
 
 def phases(found: Optimum) -> tuple[float, float, float] | None:

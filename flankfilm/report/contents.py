@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 def headlines(results: Results) -> list[Headline]:
     """Numbers for the page's head and for the terminal."""
-    values, told = results.values, []
+    values, shown = results.values, []
     cycle = final_cycle(results)
     if cycle is not None:
-        told += mesh_parts.headlines(cycle, values["pair"].face_width)
+        shown += mesh_parts.headlines(cycle, values["pair"].face_width)
     if (film := values.get("film")) is not None:
-        told += film_parts.headlines(film)
+        shown += film_parts.headlines(film)
     if (roots := values.get("root stress")) is not None:
         gears = (roots.stress.pinion, roots.stress.wheel)
         largest = [f"{1e-6 * gear.greatest_tension.stress_Pa:.4g}" for gear in gears]
-        told.append(
+        shown.append(
             Headline(
                 "greatest root stress, pinion and wheel",
                 " and ".join(largest),
@@ -45,21 +45,21 @@ def headlines(results: Results) -> list[Headline]:
             if fourier.fit is None
             else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
         )
-        told.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
+        shown.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
     if (sweep := values.get("sweep")) is not None:
-        told.append(motion_parts.headline(sweep))
+        shown.append(motion_parts.headline(sweep))
     if (diagram := values.get("diagram")) is not None:
-        told.append(diagram_parts.headline(diagram))
-    return told
+        shown.append(diagram_parts.headline(diagram))
+    return shown
 
 
 def summary(results: Results) -> list[str]:
     """Lines for the terminal: headline figures with errors, and the files."""
-    told = [f"{h.name}: {h.told}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
-    told += [decision.line for decision in results.decisions]
+    lines = [f"{h.name}: {h.with_unit}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
-        told.append(results.plan.line)
-    return [*told, f"{results.written} after {results.seconds:.1f} s"]
+        lines.append(results.plan.line)
+    return [*lines, f"{results.written} after {results.seconds:.1f} s"]
 
 
 def final_cycle(results: Results) -> MeshCycle | None:
@@ -78,9 +78,9 @@ def write_report(results: Results, folder: Path) -> Path:
 
 def _facts(results: Results) -> list[Fact]:
     """What was computed, how well, and at what cost, in a line."""
-    scene, told = results.scene, []
+    scene, facts = results.scene, []
     if (pair := results.values.get("pair")) is not None:
-        told.append(
+        facts.append(
             Fact(
                 f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth, module {1e3 * pair.module:g} mm, "
                 f"face {1e3 * pair.face_width:g} mm",
@@ -92,11 +92,11 @@ def _facts(results: Results) -> list[Fact]:
             at = [
                 f"{value:g} {unit}" for value, unit in ((torque, "N m"), (speed, "rpm")) if value is not None
             ]
-            told.append(Fact("pinion: " + ", ".join(at)))
-    told.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
+            facts.append(Fact("pinion: " + ", ".join(at)))
+    facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
     if count := sum(len(run.warnings) for run in results.runs.values()):
-        told.append(Fact(f"{count} warning{'s' if count > 1 else ''}", "decisions"))
-    return told
+        facts.append(Fact(f"{count} warning{'s' if count > 1 else ''}", "decisions"))
+    return facts
 
 
 def _result_parts(results: Results) -> list[Part | None]:

@@ -46,26 +46,28 @@ def film(stage: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
 
 
 def _figures(stage: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
-    told = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
-    drawn = [picture(figures.film_along_path, results, told)]
+    caption = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
+    drawn = [picture(figures.film_along_path, results, caption)]
     if any(
         known is not None
         for known in (stage.film.starvation, stage.film.film_ratio, stage.film.asperity_share)
     ):
-        told = "How far the contact is starved and how much its asperities carry, along the path of contact."
-        drawn.append(picture(figures.film_shares, results, told))
+        caption = (
+            "How far the contact is starved and how much its asperities carry, along the path of contact."
+        )
+        drawn.append(picture(figures.film_shares, results, caption))
     if stage.film.profiles:
-        told = (
+        caption = (
             "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
             "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
         )
-        drawn.append(picture(figures.film_profiles, results, told))
+        drawn.append(picture(figures.film_profiles, results, caption))
     if stage.otherwise:
-        told = (
+        caption = (
             "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
             "layer stayed when the load changes."
         )
-        drawn.append(picture(figures.film_changes, results, told))
+        drawn.append(picture(figures.film_changes, results, caption))
     return drawn
 
 
@@ -150,7 +152,7 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
     stage = cycle.film
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
-    told = [
+    shown = [
         Headline("least film on the path", f"{1e6 * stage.least_film:.3g}", note, "µm"),
         Headline(
             "what the film changes",
@@ -161,8 +163,8 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"
-        told.append(Headline("starved film over flooded", f"{stage.starvation.min():.3g}", supply))
+        shown.append(Headline("starved film over flooded", f"{stage.starvation.min():.3g}", supply))
     if stage.film_ratio is not None and stage.asperity_share is not None:
         share = f"asperities carry up to {percent(stage.asperity_share.max())}"
-        told.append(Headline("least film ratio Lambda", f"{stage.film_ratio.min():.3g}", share))
-    return told
+        shown.append(Headline("least film ratio Lambda", f"{stage.film_ratio.min():.3g}", share))
+    return shown

@@ -78,12 +78,12 @@ def stiffness(
     results: xr.Dataset,
 ) -> Part:
     """Stiffness of all models on one axis, load share and transmission error."""
-    told = {
+    captions = {
         figures.mesh_stiffness: "Mesh stiffness (secant) over two base pitches, all models on one axis.",
         figures.load_share: f"Load share of a pair: {cycles[0].label}.",
         figures.transmission_error: "Deflection along the line of action.",
     }
-    drawn = [picture(draw, results, caption) for draw, caption in told.items()]
+    drawn = [picture(draw, results, caption) for draw, caption in captions.items()]
     if single is not None:
         caption = (
             "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up."

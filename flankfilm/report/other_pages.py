@@ -183,8 +183,8 @@ def _differences(found: Verification, reference: str) -> Table:
         first = next(d for (name, _), d in mine.items() if name == figure)
         own = f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %"
         cells = [mine.get((figure, model)) for model in models]
-        told = ["" if d is None else f"{d.value:.4g} ({100 * d.difference:+.1f} %)" for d in cells]
-        rows.append((f"{figure} [{first.unit.replace('um', 'µm')}]".replace("[1]", "[-]"), own, *told))
+        values = ["" if d is None else f"{d.value:.4g} ({100 * d.difference:+.1f} %)" for d in cells]
+        rows.append((f"{figure} [{first.unit.replace('um', 'µm')}]".replace("[1]", "[-]"), own, *values))
     against = reference if reference == "finite elements" else f"finite elements {reference}"
     return Table(("figure", "finite elements", *models), tuple(rows), f"Against {against}")
 

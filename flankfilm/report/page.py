@@ -41,9 +41,9 @@ class Table:
 
 def _side(column: Sequence[str]) -> str:
     """Words where most cells that hold something do not begin like a number."""
-    told = [cell for cell in column if cell not in ("", "-", "unknown")]
-    words = sum(not re.match(r"[-+±.]?\d", cell) for cell in told)
-    return "t" if 2 * words > len(told) else "n"
+    filled = [cell for cell in column if cell not in ("", "-", "unknown")]
+    words = sum(not re.match(r"[-+±.]?\d", cell) for cell in filled)
+    return "t" if 2 * words > len(filled) else "n"
 
 
 @dataclass(frozen=True)
@@ -81,14 +81,14 @@ class Headline:
     unit: str = ""
 
     @property
-    def told(self) -> str:
+    def with_unit(self) -> str:
         """Value with unit."""
         return f"{self.text} {self.unit}".strip()
 
 
 @dataclass(frozen=True)
 class Fact:
-    """A short statement under the title, with the anchor of the section that tells more, or empty."""
+    """A short statement under the title, with the anchor of the section with the details, or empty."""
 
     text: str
     anchor: str = ""

@@ -103,5 +103,5 @@ def _shares(plan: Plan) -> Table:
 
 def inputs(scene_text: str, versions: Mapping[str, str]) -> Part:
     """Show the scene with all defaults, and the versions."""
-    told = ", ".join(f"{name} {version}" for name, version in versions.items())
-    return Part("inputs", "Inputs", (f"Made with {told}.",), code=scene_text)
+    libraries = ", ".join(f"{name} {version}" for name, version in versions.items())
+    return Part("inputs", "Inputs", (f"Made with {libraries}.",), code=scene_text)

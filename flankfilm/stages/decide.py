@@ -157,13 +157,13 @@ def _stiffness_decision(
     if not why and name != "fem":
         others = ", finite elements cost more" if name != "fem" else ""
         why = (
-            f"{best.teeth.told}, at most {per_cent(effect or 0.0)} off over ordinary pairs, within the tolerance of "
+            f"{best.teeth.text}, at most {per_cent(effect or 0.0)} off over ordinary pairs, within the tolerance of "
             f"{per_cent(scene.tolerance)}{others}"
         )
     elif not why:
         nearest = min(known, key=lambda option: option.effect or 0.0)
         why = (
-            f"finite elements; the nearest {nearest.told} is up to {per_cent(nearest.effect or 0.0)} off over ordinary "
+            f"finite elements; the nearest {nearest.text} is up to {per_cent(nearest.effect or 0.0)} off over ordinary "
             f"pairs, above what the tolerance of {per_cent(scene.tolerance)} leaves"
         )
     share = scene.tolerance if known else None
@@ -178,17 +178,17 @@ def _film_decision(
     candidates = tuple(_candidate(option, [w for w in weighed if w.film is option]) for option in oil.options)
     if oil.why or oil.change is None:
         return Decision("film", name, asked, oil.why, best.film.effect, None, best.seconds, candidates)
-    told = f"{signed(oil.change.mean)} foreseen"
+    change = f"{signed(oil.change.mean)} foreseen"
     limit = f"the tolerance of {per_cent(scene.tolerance)}"
     if name == "none":
-        why = f"{told} (at most {per_cent(best.film.effect or 0.0)}), below {limit}, left out"
+        why = f"{change} (at most {per_cent(best.film.effect or 0.0)}), below {limit}, left out"
         why += f"; the transmission error, peak to peak, would change by about {signed(oil.change.transmission_error)}"
     elif name == "dowson":
-        why = f"{told}, by Dowson's formula, which is at most {per_cent(best.film.effect or 0.0)} off, below {limit}"
+        why = f"{change}, by Dowson's formula, which is at most {per_cent(best.film.effect or 0.0)} off, below {limit}"
     else:
         out = oil.options[0]
         above = "" if any(w.film is out for w in weighed) else f"above what {limit} leaves, "
-        why = f"{told} (up to {per_cent(out.effect or 0.0)}), {above}solved"
+        why = f"{change} (up to {per_cent(out.effect or 0.0)}), {above}solved"
     share = scene.tolerance - (best.teeth.effect or 0.0)
     return Decision("film", name, asked, why, best.film.effect, share, best.seconds, candidates)
 

@@ -91,18 +91,18 @@ def foresee(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Foreseen
         return _only(_BY_FORMULA, 'by formula; the scene asks for film.model = "dowson"')
     unknown = _unknown_to_formulas(scene)
     if asked == "ehl":
-        told = 'solved; the scene asks for film.model = "ehl"'
+        reason = 'solved; the scene asks for film.model = "ehl"'
         if "film" in scene.wants or unknown or tolerance >= FINE:
-            return _only(_solved(ASSUMED_CHANGE, tolerance if "film" in scene.wants else 1.0), told)
+            return _only(_solved(ASSUMED_CHANGE, tolerance if "film" in scene.wants else 1.0), reason)
         known = foreseen()
         if known is None:
-            return _only(_solved(ASSUMED_CHANGE), told)
-        return Foreseen((_solved(MOST_OF_FORESEEN * abs(known.mean)),), told, known)
+            return _only(_solved(ASSUMED_CHANGE), reason)
+        return Foreseen((_solved(MOST_OF_FORESEEN * abs(known.mean)),), reason, known)
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
         return _only(_LEFT_OUT, "left out; the scene has no lubricant or no speed")
     if unknown:
-        told = f"solved; the formula that would foresee its part does not know {unknown}"
-        return _only(_solved(ASSUMED_CHANGE), told)
+        reason = f"solved; the formula that would foresee its part does not know {unknown}"
+        return _only(_solved(ASSUMED_CHANGE), reason)
     change = foreseen()
     if change is None:
         return _only(

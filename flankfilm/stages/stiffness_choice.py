@@ -48,7 +48,7 @@ class Option:
     name: str
     effect: float | None
     laws: tuple[CostLaw, ...]
-    told: str
+    text: str
 
 
 def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
@@ -58,8 +58,8 @@ def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
     if asked == "fem":
         return (elements,), 'the scene asks for stiffness.model = "fem"'
     if asked != "auto":
-        told = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
-        return (Option(asked, None, stiffness_laws(asked, pairs), asked),), told
+        reason = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
+        return (Option(asked, None, stiffness_laws(asked, pairs), asked),), reason
     if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
         return (elements,), f"finite elements, which {' and '.join(needed)} needs"
     if outside := _outside(scene, pair):
@@ -73,7 +73,7 @@ def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
 
 
 def _outside(scene: Scene, pair: GearPair) -> str:
-    """Tell where a scene lies outside the comparison; empty where it does not."""
+    """Where a scene lies outside the comparison; empty where it does not."""
     modulus = min(m.youngs_modulus for m in pair.materials)
     force = pair.normal_force(pinion_torque(scene))
     of_gears: dict[str, list[float]] = {

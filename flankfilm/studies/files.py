@@ -64,8 +64,8 @@ def write_study(found: StudyResults, folder: Path) -> list[Path]:
 def summary(found: StudyResults) -> list[str]:
     """Lines for the terminal: rows, rate, and the first faults."""
     rate = f", {found.computed / found.seconds:.2g} rows/s" if found.computed else ""
-    told = [f"{len(found.rows)} rows, {found.computed} of them computed in {found.seconds:.1f} s{rate}"]
-    told += [f"row {row.index} failed: {row.fault}" for row in found.failures[:5]]
+    lines = [f"{len(found.rows)} rows, {found.computed} of them computed in {found.seconds:.1f} s{rate}"]
+    lines += [f"row {row.index} failed: {row.fault}" for row in found.failures[:5]]
     if len(found.failures) > 5:
-        told.append(f"{len(found.failures)} rows failed in all; the column fault of rows.csv says why")
-    return told
+        lines.append(f"{len(found.failures)} rows failed in all; the column fault of rows.csv says why")
+    return lines

@@ -65,8 +65,8 @@ def _difference(model: str, reference: str) -> Output:
     def of(engine: Engine) -> float:
         return 100.0 * engine[VERIFICATION].difference(model, reference)
 
-    told = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
-    return Output("%", told, ("closed-forms",), of)
+    meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
+    return Output("%", meaning, ("closed-forms",), of)
 
 
 def _sliding(pair: Any) -> float:

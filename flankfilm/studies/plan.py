@@ -293,15 +293,15 @@ def _bounded(study: StudyFile) -> None:
     for length in lengths if study.samples is None else ():
         rows = rows * length if study.design == "grid" else max(rows, length)
         if rows > MOST_ROWS:
-            told = f"must give at most {MOST_ROWS:,} rows"
-            raise InputError([Fault("vary", "", told, "Take fewer steps")])
+            allowed = f"must give at most {MOST_ROWS:,} rows"
+            raise InputError([Fault("vary", "", allowed, "Take fewer steps")])
     if study.design == "list" and len(set(lengths)) != 1:
-        told = 'must have equally many values in a "list"'
+        allowed = 'must have equally many values in a "list"'
         listed = ", ".join(str(length) for length in lengths)
-        raise InputError([Fault("vary", listed, told, 'Or design = "grid"')])
+        raise InputError([Fault("vary", listed, allowed, 'Or design = "grid"')])
     if rows * (len(study.vary) + len(study.follow)) > MOST_CELLS:
-        told = f"must give at most {MOST_CELLS:,} rows times keys"
-        raise InputError([Fault("vary", "", told, "Take fewer rows or keys")])
+        allowed = f"must give at most {MOST_CELLS:,} rows times keys"
+        raise InputError([Fault("vary", "", allowed, "Take fewer rows or keys")])
 
 
 def _listed(values: Range | tuple[Value, ...]) -> tuple[Value, ...]:

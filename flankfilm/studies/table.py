@@ -111,6 +111,8 @@ def locked(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as fault:
-            told = "another study is at work there"
-            raise InputError([Fault(str(folder), "", told, "Wait for it, or name another --out")]) from fault
+            allowed = "another study is at work there"
+            raise InputError(
+                [Fault(str(folder), "", allowed, "Wait for it, or name another --out")]
+            ) from fault
         yield

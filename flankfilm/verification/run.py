@@ -28,7 +28,7 @@ def verify_scene(
     use_cache : bool
         Whether results of earlier runs with the same inputs and code may serve.
     progress : callable
-        Told what is being done, steps done, and steps in all.
+        Called with what is being done, steps done, and steps in all.
 
     Returns
     -------

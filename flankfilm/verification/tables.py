@@ -24,9 +24,9 @@ def table(found: Verification, reference: Curves) -> Table:
     from rich.table import Table
 
     models = [model.label for model in found.models]
-    told = reference.label
+    name = reference.label
     shown = Table(
-        title=f"against finite elements, {told}" if reference.left_out else f"against {told}",
+        title=f"against finite elements, {name}" if reference.left_out else f"against {name}",
         title_justify="left",
         box=box.SIMPLE_HEAD,
     )
@@ -36,7 +36,7 @@ def table(found: Verification, reference: Curves) -> Table:
     for label in models:
         shown.add_column(label, justify="right")
     for figure, unit in UNITS.items():
-        by_model = {d.model: d for d in found.differences if (d.figure, d.reference) == (figure, told)}
+        by_model = {d.model: d for d in found.differences if (d.figure, d.reference) == (figure, name)}
         if not by_model:
             continue
         first = next(iter(by_model.values()))
@@ -56,12 +56,12 @@ def _cell(difference: Difference | None) -> str:
 
 
 def costs(found: Verification) -> str:
-    """Tell what each model cost."""
-    told = [f"finite elements {found.cost.seconds:.2f} s once, then"]
-    told.append(
+    """What each model cost."""
+    parts = [f"finite elements {found.cost.seconds:.2f} s once, then"]
+    parts.append(
         ", ".join(f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*found.references, *found.models))
     )
-    return " ".join(told)
+    return " ".join(parts)
 
 
 def dataset(found: Verification, scene: Scene) -> xr.Dataset:

@@ -46,7 +46,7 @@ def test_shares_add_up_and_agree_with_random_starts(found):
 
 
 def test_wilsons_interval():
-    """Worked by hand: 8 of 10 at 95 %: .4902 to .9433; no hits keep zero."""
+    """Worked by hand: 8 of 10 at 95 %: 0.4902 to 0.9433; no hits keep zero."""
     assert share_interval(8, 10) == pytest.approx((0.49016, 0.94332), abs=1e-5)
     assert share_interval(0, 50)[0] == 0.0
     with pytest.raises(InputError):

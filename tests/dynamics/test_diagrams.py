@@ -97,7 +97,7 @@ def test_diagram_holds_the_isolas_and_no_branch_twice(whole):
 
 
 def test_isola_between_two_searches_is_met_by_sweeps():
-    """The one search looks for period 1 only; 3-3-2 is stable from .88883 to .90243."""
+    """The one search looks for period 1 only; 3-3-2 is stable from 0.88883 to 0.90243."""
     for swept, periods in ((0, {1, 2}), (40, {1, 2, 3})):
         found = diagram(
             lubricated(), "frequency", (0.885, 0.905), periods=(1,), searches=1, swept=swept, max_period=3

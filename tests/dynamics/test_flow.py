@@ -178,14 +178,16 @@ def test_sole_exit_is_never_wrong(region, place, shape, start, one_sided):
     assume(all(margin(start) > 1e-9 and abs(margin(0.5)) > 1e-9 for margin in margins))
     jerk = float(np.max(np.abs(slope.deriv(2)(np.linspace(start, 0.5, 200))))) * (0.5 - start) ** 2 / 8
     par = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, d, 1.0 if one_sided else 2.0])
-    told = callable_helper("sole_exit")(region, par, y(start), slope(start), y(0.5), slope(0.5), 1.01 * jerk)
+    exit_side = callable_helper("sole_exit")(
+        region, par, y(start), slope(start), y(0.5), slope(0.5), 1.01 * jerk
+    )
     times = np.linspace(start, 0.5, 2001)
     crossings = [int(np.sum(np.diff(np.sign(margin(times))) != 0)) for margin in margins]
-    if told == 0:
+    if exit_side == 0:
         assert sum(crossings) == 0
-    elif told != 2:
+    elif exit_side != 2:
         assert sum(crossings) == 1
-        assert crossings[sides.index(told)] == 1
+        assert crossings[sides.index(exit_side)] == 1
 
 
 def test_first_exit_at_a_boundary_just_crossed():

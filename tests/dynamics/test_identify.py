@@ -208,7 +208,7 @@ def test_least_squares_arrives_from_beside(eight):
 
 @pytest.mark.parametrize("wrong", [(0,), (1, 4), (4, 7), (5, 7)])
 def test_misprints_lose_their_weight(eight, wrong):
-    """One or two of eight printed .013 and .02 off: the parameters stay those of the others."""
+    """One or two of eight printed 0.013 and 0.02 off: the parameters stay those of the others."""
     events, start = eight
     bad = list(events)
     for i, by in zip(wrong, (0.02, -0.013), strict=False):
@@ -232,7 +232,7 @@ def test_an_event_left_out_is_foretold_by_the_others(eight):
 
 
 def test_round_values_are_taken_where_they_are_worth_it_and_only_there(points):
-    """Force .08 and kappa .12 are round, zeta .0234568 is not; the events have nine decimals."""
+    """Force 0.08 and kappa 0.12 are round, zeta 0.0234568 is not; the events have nine decimals."""
     here = SIDED.with_parameter(FORCE, 0.08).with_parameter(KAPPA, 0.12)
     chosen = [p for p in contact_branch(here).points if p.kind != "grazing"][:7]
     events = printed(chosen, 9)
@@ -251,7 +251,7 @@ def test_round_values_are_taken_where_they_are_worth_it_and_only_there(points):
 
 
 def test_a_value_that_is_only_nearly_round_stays(points):
-    """Force .0800004, which nine decimals tell from .08 by a thousand units."""
+    """Force 0.0800004, which nine decimals separate from 0.08 by a thousand units."""
     here = SIDED.with_parameter(FORCE, 0.0800004)
     chosen = [p for p in contact_branch(here).points if p.kind != "grazing"][:7]
     events = printed(chosen, 9)

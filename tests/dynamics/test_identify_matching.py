@@ -28,7 +28,7 @@ def test_labels_with_stars_fit_what_they_leave_open():
 
 
 def test_events_of_a_branch_keep_their_order_against_the_nearest_number():
-    """Folds along a branch at 1.0, .5, .9: .91, .52, 1.02 is that order read backwards, 1.0, .9, .5 is neither."""
+    """Folds at 1.0, 0.5, 0.9: 0.91, 0.52, 1.02 is that order read backwards, 1.0, 0.9, 0.5 is neither."""
     line = [point("saddle-node", "1-1-0", x) for x in (1.0, 0.5, 0.9)]
     forward = match([line], [Event("saddle-node", "1-1-0", x, 2, branch="b") for x in (0.98, 0.55)], 1.0)
     assert [p.parameter for p in forward] == [1.0, 0.5]

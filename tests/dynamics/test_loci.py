@@ -18,7 +18,7 @@ from tests.validation.article_motion import starved
 
 
 def test_locus_of_a_bubble_closes_however_small_it_is():
-    """1-1-1 doubles at .28284 and back at .28874; in frequency and force both lie on one closed curve.
+    """1-1-1 doubles at 0.28284 and back at 0.28874; in frequency and force both lie on one closed curve.
 
     The largest step allowed is as long as the whole curve.
     """

@@ -26,9 +26,9 @@ def ran(scan: str, folder: Path, *more: str) -> str:
 
 
 def test_lubricated_frequency_scan_small(tmp_path: Path):
-    told = ran("6.1", tmp_path, "--small")
-    assert "basins at 0.6: 1-0-0" in told
-    assert "unstable: U1-1-0" in told
+    lines = ran("6.1", tmp_path, "--small")
+    assert "basins at 0.6: 1-0-0" in lines
+    assert "unstable: U1-1-0" in lines
 
 
 @pytest.mark.slow
@@ -42,31 +42,31 @@ def test_lubricated_frequency_scan_with_all_branches(tmp_path: Path):
     """As in full but for the fineness of sweeps and basins."""
     article = example("article")
     size = article.Size(101, 100, 16, 9, 8, 1, 16, 2)
-    _, told = article.draw(example("scans").SCANS["6.1"], tmp_path, size, "svg")
-    assert not any("6-4-4: no stable" in line or "4-3-0: no stable" in line for line in told)
-    assert any("dimension" in line for line in told)
+    _, lines = article.draw(example("scans").SCANS["6.1"], tmp_path, size, "svg")
+    assert not any("6-4-4: no stable" in line or "4-3-0: no stable" in line for line in lines)
+    assert any("dimension" in line for line in lines)
 
 
 @pytest.mark.slow
 def test_ends_of_chaos():
-    told = example("crises").main([])
-    assert sum("| aperiodic |" in line for line in told) == 3
-    assert "1.119740782" in told[3]
-    assert not any("not seen" in line for line in told)
+    lines = example("crises").main([])
+    assert sum("| aperiodic |" in line for line in lines) == 3
+    assert "1.119740782" in lines[3]
+    assert not any("not seen" in line for line in lines)
 
 
 def test_table_of_the_lubricated_frequency_scan():
-    told = "\n".join(example("table").main(["6.1", "6.4"]))
-    assert told.count("| reproduced") == 5
-    assert told.count("not identified") == 8
+    lines = "\n".join(example("table").main(["6.1", "6.4"]))
+    assert lines.count("| reproduced") == 5
+    assert lines.count("not identified") == 8
 
 
 @pytest.mark.slow
 def test_table_of_all_scans():
-    told = "\n".join(example("table").main([]))
-    assert told.count("| reproduced") == 14
-    assert told.count("printed late") == 4
-    assert "| 6.3 | boundary crisis | 0.68 | 0.77990" in told
+    lines = "\n".join(example("table").main([]))
+    assert lines.count("| reproduced") == 14
+    assert lines.count("printed late") == 4
+    assert "| 6.3 | boundary crisis | 0.68 | 0.77990" in lines
 
 
 def test_loaded_law_gives_back_the_finite_elements():

@@ -285,7 +285,7 @@ def test_trajectory_has_the_exact_events():
 
 
 def test_tolerance_governs_the_error():
-    """Over eight decades the true error stays within a hundred tolerances, and the estimate tells it."""
+    """Over eight decades the true error stays within a hundred tolerances, and the estimate shows it."""
     exact = map_derivatives(GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, 0.2), (0.5, 0.2), ("frequency",), 3)
     osc = SmoothOscillator(linear_contact(), 0.05, 0.1, 0.2, 0.6)
     for tolerance in (1e-5, 1e-7, 1e-9, 1e-11, 1e-13):

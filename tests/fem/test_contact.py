@@ -38,7 +38,7 @@ def test_shares_add_up_and_deflections_are_equal(article_pair, article_bodies, b
 
 def test_one_pair_alone_is_the_single_pair(article_pair, article_bodies, path_only):
     alone = np.flatnonzero((path_only.forces > 0).sum(axis=1) == 1)
-    assert len(alone) == 12  # .297 of a base pitch
+    assert len(alone) == 12  # 0.297 of a base pitch
     for row in alone:
         rho1 = path_only.rho1[row, path_only.forces[row] > 0]
         k = fem.single_pair_stiffness(article_pair, path_only.force, rho1, article_bodies)
@@ -92,7 +92,7 @@ def test_tip_edges_only_add_stiffness_and_leave_the_double_zone_alone(path_only,
 
 
 def test_no_step_where_pairs_enter_and_leave(article_pair, article_bodies):
-    """With tip edges the approach steps by .3 % where a pair passes A or E, without them by more than a fifth.
+    """With tip edges the approach steps by 0.3 % where a pair passes A or E, without them by more than a fifth.
 
     What is left is the flank's law: within a half-width of A and E the corner cuts off the Hertz pressure that
     it takes as whole (tests/validation/test_fem_two_gears.py).

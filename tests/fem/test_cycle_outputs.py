@@ -173,7 +173,7 @@ def test_friction_opposes_the_sliding_of_the_placed_gears(article_pair, article_
 
 
 def test_what_teeth_yield_to_tangential_forces_is_small(article_pair, article_bodies):
-    """The part that friction leaves out: .35 mu of a pair's deflection at the ends, nothing at C.
+    """The part that friction leaves out: 0.35 mu of a pair's deflection at the ends, nothing at C.
 
     By Maxwell and Betti it is the tangential displacement, towards the tip, under a normal load. In approach
     friction points to the pinion's root and to the wheel's tip.

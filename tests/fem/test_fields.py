@@ -105,7 +105,7 @@ def test_greatest_mises_is_below_the_contact_as_hertz_says(article_pair, cycle, 
         near = np.linalg.norm(field.points - placed.contact_point, axis=1) < 3 * a
         top = np.flatnonzero(near)[np.argmax(field.von_mises_Pa[near])]
         depth = sign * (field.points[top] - placed.contact_point) @ placed.normal
-        # plane strain, nu .3: .558 p at .70 a, and some of the tooth's own bending
+        # plane strain, nu 0.3: 0.558 p at 0.70 a, and some of the tooth's own bending
         assert field.von_mises_Pa[top] == pytest.approx(0.558 * peak, rel=0.12)
         assert 0.4 * a < depth < 1.0 * a
 
@@ -264,7 +264,7 @@ def test_contact_forces_balance_the_torque(article_pair, free):
 
 
 def test_hertz_shear_in_the_written_file(tmp_path, article_pair, article_bodies):
-    """K. L. Johnson: the greatest shear stress is .300 p_H at the depth .786 a, for any Poisson's ratio.
+    """K. L. Johnson: the greatest shear stress is 0.300 p_H at the depth 0.786 a, for any Poisson's ratio.
 
     Under a hundredth of the torque: the tooth's own stress grows with the load, p_H with its root, so that one
     is a hundredth of the other.

@@ -137,7 +137,7 @@ def test_regular_parts_are_smooth_where_strips_pass_one_another_and_the_elements
     _, strips = wheel_tip
     flat = flat_kernels(strips.distance, strips.width, LAW, 2e-3)
     for whole, half_plane in zip((strips.kernel, strips.mixed, strips.tangential), flat, strict=True):
-        regular = (whole - half_plane)[3:31, 3:31] * LAW.plane_modulus  # up to .1 modules
+        regular = (whole - half_plane)[3:31, 3:31] * LAW.plane_modulus  # up to 0.1 modules
         for axis in (0, 1):
             assert np.abs(np.diff(regular, n=2, axis=axis)).max() < 0.03  # of 8 to 15
 

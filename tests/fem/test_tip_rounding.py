@@ -51,7 +51,7 @@ def test_gap_over_the_arc_is_that_of_the_nearest_point_of_a_circle(article_pair)
 
 
 def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
-    """r = .2 mm, 1 mm before A: flanks open by .09 rad, so the contact lies 18 um from the arc's end.
+    """r = 0.2 mm, 1 mm before A: flanks open by 0.09 rad, so the contact lies 18 um from the arc's end.
 
     The law adds a half-plane's answer to the wedge's regular part at that place; Hertz for the radii r and
     rho1 the same: they must agree while the contact is small against r and still wider than a strip.

@@ -102,10 +102,10 @@ class Browser:
             command["sessionId"] = session
         os.write(self._commands, json.dumps(command).encode() + b"\0")
         while True:
-            told = self._receive()
-            if told.get("id") == number:
-                assert "error" not in told, f"{method}: {told['error']}"
-                return dict(told["result"])
+            reply = self._receive()
+            if reply.get("id") == number:
+                assert "error" not in reply, f"{method}: {reply['error']}"
+                return dict(reply["result"])
 
     def _until(self, event: str) -> None:
         while event not in self._events:
@@ -120,13 +120,13 @@ class Browser:
                 pytest.fail("Chromium ended, or did not answer in time")
             self._rest += part
         line, _, self._rest = self._rest.partition(b"\0")
-        told: dict[str, Any] = json.loads(line)
-        self._keep(told)
-        return told
+        reply: dict[str, Any] = json.loads(line)
+        self._keep(reply)
+        return reply
 
-    def _keep(self, told: dict[str, Any]) -> None:
+    def _keep(self, reply: dict[str, Any]) -> None:
         """Remember events, and what a developer would see in red or yellow."""
-        method, inside = told.get("method", ""), told.get("params", {})
+        method, inside = reply.get("method", ""), reply.get("params", {})
         self._events.append(method)
         if method == "Runtime.consoleAPICalled" and inside["type"] in ("error", "warning", "assert"):
             self.logged.append(json.dumps(inside["args"]))
@@ -143,10 +143,10 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     """Chromium; where it is missing the test is skipped, or fails where FLANKFILM_REQUIRE_CHROMIUM is set."""
     executable = next((found for name in NAMES if (found := shutil.which(name))), None)
     if executable is None:
-        told = "no Chromium (apt-get install chromium)"
+        reply = "no Chromium (apt-get install chromium)"
         if os.environ.get("FLANKFILM_REQUIRE_CHROMIUM"):
-            pytest.fail(told)
-        pytest.skip(told)
+            pytest.fail(reply)
+        pytest.skip(reply)
     opened = Browser(executable, tmp_path_factory.mktemp("chromium"))
     yield opened
     opened.close()

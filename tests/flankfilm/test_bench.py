@@ -201,17 +201,17 @@ def interpreter(folder: Path, body: str) -> Path:
 )
 def test_peers_that_are_missing_or_fail_are_told_by_name(tmp_path, body: str, reason: str):
     case = second_order(peers=(PeerWork("ross_stiffness", {"n": 5}, "integral"),))
-    told = ask(interpreter(tmp_path, body), case, 1, longest=0.5)
-    assert [(row.peer, row.failure) for row in told] == [("ross_stiffness", reason)]
-    assert remarks(replace(bench_of(case), peers=tuple(told))) == [f"ross_stiffness: {reason}"]
+    found = ask(interpreter(tmp_path, body), case, 1, longest=0.5)
+    assert [(row.peer, row.failure) for row in found] == [("ross_stiffness", reason)]
+    assert remarks(replace(bench_of(case), peers=tuple(found))) == [f"ross_stiffness: {reason}"]
 
 
 def test_a_peer_gets_the_work_and_its_values_are_compared(tmp_path):
     answer = f"assert given == {{'n': 5, 'repeat': 4}}; print('noise'); print(json.dumps({PEER})); print(1)"
     case = second_order(peers=(PeerWork("ross_stiffness", {"n": 5}, "integral"),))
-    (told,) = ask(interpreter(tmp_path, answer), case, 4)
-    assert (told.peer, told.version, told.cpu, told.first) == ("fake", "7", 2.0, 3.0)
-    assert told.error == pytest.approx(3.0 / (math.e - 1.0) - 1.0, rel=1e-6)
+    (found,) = ask(interpreter(tmp_path, answer), case, 4)
+    assert (found.peer, found.version, found.cpu, found.first) == ("fake", "7", 2.0, 3.0)
+    assert found.error == pytest.approx(3.0 / (math.e - 1.0) - 1.0, rel=1e-6)
 
 
 def test_the_script_for_scipy_agrees_with_the_exact_flow():
@@ -247,17 +247,17 @@ def test_the_command_measures_and_writes(tmp_path):
     done = run(tmp_path, "--quick", "--only", "gears", "mesh", "--repeat", "1", "--out", "out")
     assert (done.returncode, done.stderr) == (0, "")
     assert "Closed forms" in done.stdout
-    told = json.loads((tmp_path / "out" / "bench.json").read_text())
-    assert [case["solver"] for case in told["cases"]] == ["gears", "mesh"]
-    assert [call["solver"] for call in told["first_calls"]] == ["gears", "mesh"]
-    assert all(call["kept"] > call["again"] > 0 for call in told["first_calls"])
-    errors = {r["quantity"]: r["error"] for case in told["cases"] for r in case["rows"]}
+    found = json.loads((tmp_path / "out" / "bench.json").read_text())
+    assert [case["solver"] for case in found["cases"]] == ["gears", "mesh"]
+    assert [call["solver"] for call in found["first_calls"]] == ["gears", "mesh"]
+    assert all(call["kept"] > call["again"] > 0 for call in found["first_calls"])
+    errors = {r["quantity"]: r["error"] for case in found["cases"] for r in case["rows"]}
     assert 0 < errors["area of the sector"] < 1e-6
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert {"report.html", "closed_forms.svg", "mesh.svg", "overview.svg", "first_calls.csv"} <= names
     page = (tmp_path / "out" / "report.html").read_text()
     assert page.count("<svg") == 4
-    assert told["machine"]["libraries"]["numpy"] in page
+    assert found["machine"]["libraries"]["numpy"] in page
 
 
 def test_faults_of_the_command_give_status_2_and_no_traceback(tmp_path):

@@ -46,14 +46,14 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
 
 def test_new_writes_a_scene_that_check_accepts(tmp_path):
     flankfilm("new", "first.toml", cwd=tmp_path)
-    told = flankfilm("check", "first.toml", cwd=tmp_path).stdout
-    assert "Contact ratio 1.7030" in told
+    output = flankfilm("check", "first.toml", cwd=tmp_path).stdout
+    assert "Contact ratio 1.7030" in output
 
 
 def test_new_keeps_what_is_there(tmp_path):
     (tmp_path / "mine.toml").write_text("precious")
-    told = flankfilm("new", "mine.toml", cwd=tmp_path, status=2).stderr
-    assert "kept" in told
+    output = flankfilm("new", "mine.toml", cwd=tmp_path, status=2).stderr
+    assert "kept" in output
     assert (tmp_path / "mine.toml").read_text() == "precious"
 
 
@@ -77,33 +77,33 @@ def test_new_keeps_what_is_there(tmp_path):
     ],
 )
 def test_impossible_gears_are_refused_under_their_keys(tmp_path, old, new, where):
-    told = flankfilm("check", scene_file(tmp_path, (old, new)), cwd=tmp_path, status=2).stderr
-    assert where in told
+    output = flankfilm("check", scene_file(tmp_path, (old, new)), cwd=tmp_path, status=2).stderr
+    assert where in output
 
 
 def test_all_faults_of_both_gears_come_at_once(tmp_path):
     path = scene_file(tmp_path, ("bore_mm = 33.5", "bore_mm = 70"), ("bore_mm = 37.5", "bore_mm = 78"))
-    told = flankfilm("run", path, cwd=tmp_path, status=2).stderr
-    assert "pair.pinion.bore_mm" in told
-    assert "pair.wheel.bore_mm" in told
+    output = flankfilm("run", path, cwd=tmp_path, status=2).stderr
+    assert "pair.pinion.bore_mm" in output
+    assert "pair.wheel.bore_mm" in output
 
 
 def test_missing_and_unreadable_places(tmp_path):
     assert "does not exist" in flankfilm("run", "none.toml", cwd=tmp_path, status=2).stderr
     assert "is a folder" in flankfilm("run", tmp_path, cwd=tmp_path, status=2).stderr
     (tmp_path / "taken").write_text("a file")
-    told = flankfilm("run", EXAMPLES / "oscillator.toml", "--out", "taken", cwd=tmp_path, status=2).stderr
-    assert "is a file, not a folder" in told
-    told = flankfilm(
+    output = flankfilm("run", EXAMPLES / "oscillator.toml", "--out", "taken", cwd=tmp_path, status=2).stderr
+    assert "is a file, not a folder" in output
+    output = flankfilm(
         "run", EXAMPLES / "oscillator.toml", "--out", "/proc/none", cwd=tmp_path, status=2
     ).stderr
-    assert "cannot be written" in told
+    assert "cannot be written" in output
 
 
 @pytest.mark.parametrize("tolerance", ["0", "-1%", "half", "50%", "nan", "0.5%%"])
 def test_a_senseless_tolerance_is_refused(tmp_path, tolerance):
-    told = flankfilm("run", scene_file(tmp_path), f"--tolerance={tolerance}", cwd=tmp_path, status=2).stderr
-    assert "--tolerance" in told
+    output = flankfilm("run", scene_file(tmp_path), f"--tolerance={tolerance}", cwd=tmp_path, status=2).stderr
+    assert "--tolerance" in output
 
 
 def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):

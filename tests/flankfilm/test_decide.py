@@ -76,7 +76,7 @@ def test_a_closed_form_serves_where_the_tolerance_is_wider_than_its_error(pairs,
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "expected"),
     [
         ({"wants": ["stiffness", "root-stress"]}, "root-stress"),
         ({"operating": {"pinion_torque_Nm": 300.0, "friction": 0.05}}, "friction"),
@@ -84,10 +84,10 @@ def test_a_closed_form_serves_where_the_tolerance_is_wider_than_its_error(pairs,
         ({"material": {"youngs_modulus_GPa": 206.0, "poisson_ratio": 0.45}}, "Poisson"),
     ],
 )
-def test_outside_what_was_compared_finite_elements_are_taken_and_it_is_said_why(changes, told):
+def test_outside_what_was_compared_finite_elements_are_taken_and_it_is_said_why(changes, expected):
     found = plan(scene(0.4, **({"film": {"model": "none"}} | changes)))
     assert found.stiffness.choice == "fem"
-    assert told in found.stiffness.reason
+    assert expected in found.stiffness.reason
 
 
 def test_thick_rims_alone_were_compared():
@@ -121,8 +121,8 @@ def test_errors_sum_to_the_tolerance_and_no_other_pair_of_models_costs_less(tole
     assert math.fsum([*simple, *found.shares.values()]) == pytest.approx(tolerance, rel=1e-12)
     assert found.series is not None
     for decision in found.decisions:
-        told = [c.seconds for c in decision.candidates if c.seconds is not None]
-        assert decision.seconds == min(told)
+        expected = [c.seconds for c in decision.candidates if c.seconds is not None]
+        assert decision.seconds == min(expected)
         assert decision.seconds in [c.seconds for c in decision.candidates if c.name == decision.choice]
     assert all(f"{name}" in found.line for name in found.shares)
 
@@ -204,9 +204,9 @@ def test_what_a_dropped_harmonic_does_to_the_motion(frequency):
 
     apart = settled(3) - settled(2)
     true = np.ptp(apart) / 2
-    told = left_out(kappa, (frequency, frequency * (1 + 1e-9)), zeta).motion
-    assert told is not None
-    assert told[2] == pytest.approx(true, rel=0.2)
+    expected = left_out(kappa, (frequency, frequency * (1 + 1e-9)), zeta).motion
+    assert expected is not None
+    assert expected[2] == pytest.approx(true, rel=0.2)
 
 
 def chosen(found: LeftOut, share: float) -> tuple[int, Decision]:
@@ -260,9 +260,9 @@ def test_a_run_says_what_it_decided(tmp_path):
 
 def test_check_says_what_a_run_would_decide():
     path = Path(__file__).parents[2] / "examples" / "auto.toml"
-    told = check_scene(read_scene(path))
+    expected = check_scene(read_scene(path))
     found = Engine(read_scene(path), Cache(None))[PLAN]
-    assert {found.stiffness.line, found.film.line, found.line} <= set(told)
+    assert {found.stiffness.line, found.film.line, found.line} <= set(expected)
     assert "split by cost" in found.line
 
 

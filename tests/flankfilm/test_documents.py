@@ -49,7 +49,9 @@ def name(page: Path) -> str:
 
 def blocks(page: Path, language: str) -> list[tuple[str, str]]:
     """Mark and text of the page's blocks in a language."""
-    return [(m, t) for m, told, t in BLOCK.findall(page.read_text(encoding="utf-8")) if told == language]
+    return [
+        (m, t) for m, written, t in BLOCK.findall(page.read_text(encoding="utf-8")) if written == language
+    ]
 
 
 def python_of(page: Path, slow: bool) -> str:

@@ -161,9 +161,9 @@ def test_a_cusp_between_the_samples_is_known():
         shifts = np.linspace(0, 1 / n, 31)
         curves = [np.abs((phase - s) % 1.0 - 0.5) for s in shifts]
         true = np.array([abs(np.ptp(c) / 0.5 - 1) for c in curves])
-        told = np.array([peak_to_peak_error(c) for c in curves])
-        assert np.all(told >= true * (1 - 1e-9))
-        assert np.all(told < 3 * true.max())
+        estimates = np.array([peak_to_peak_error(c) for c in curves])
+        assert np.all(estimates >= true * (1 - 1e-9))
+        assert np.all(estimates < 3 * true.max())
     assert peak_to_peak_error(np.ones(9)) == 0.0
 
 

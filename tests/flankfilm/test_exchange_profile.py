@@ -125,7 +125,7 @@ def test_the_command_states_its_accuracy(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "expected"),
     [
         (("--teeth", "0"), "teeth"),
         (("--teeth", "few"), "--teeth"),
@@ -134,8 +134,8 @@ def test_the_command_states_its_accuracy(tmp_path, monkeypatch, capsys):
         (("--tolerance-um", "nan"), "tolerance"),
     ],
 )
-def test_the_command_refuses_senseless_requests(tmp_path, monkeypatch, capsys, arguments, told):
+def test_the_command_refuses_senseless_requests(tmp_path, monkeypatch, capsys, arguments, expected):
     monkeypatch.chdir(tmp_path)
     assert command(*arguments) == 2
-    assert told in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []

@@ -183,7 +183,7 @@ def test_what_rexs_is_not_given_is_told():
         face_width=40e-3,
     )
     _, left_out = rexs_text(relieved, "")
-    assert [told.split(":")[0] for told in left_out] == ["pinion", "pinion"]
+    assert [message.split(":")[0] for message in left_out] == ["pinion", "pinion"]
 
 
 def test_the_driving_gear_is_the_pinion(tmp_path):
@@ -248,7 +248,7 @@ def test_the_tools_tip_radius_has_several_names(tmp_path, name, unit, value):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         (
             'id="dedendum_coefficient_reference_profile"',
@@ -275,8 +275,8 @@ def test_the_tools_tip_radius_has_several_names(tmp_path, name, unit, value):
         ('id="84" name', 'id="83" name', "stands twice"),
     ],
 )
-def test_what_is_out_of_scope_is_refused_by_name(tmp_path, old, new, told):
-    assert told in refused(tmp_path, changed(old, new))
+def test_what_is_out_of_scope_is_refused_by_name(tmp_path, old, new, message):
+    assert message in refused(tmp_path, changed(old, new))
 
 
 def test_teeth_that_are_no_whole_number_are_the_scenes_fault(tmp_path):

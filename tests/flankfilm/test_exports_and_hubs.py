@@ -71,8 +71,8 @@ def test_meshes_in_formats_of_meshio(tmp_path):
     ("option", "value"), [("--position", "1.5"), ("--refinements", "9"), ("--format", "step")]
 )
 def test_senseless_options_are_refused(tmp_path, option, value):
-    told = export("--out", tmp_path, option, value, status=2).stderr
-    assert option.strip("-") in told
+    output = export("--out", tmp_path, option, value, status=2).stderr
+    assert option.strip("-") in output
 
 
 def compliance(**hub):

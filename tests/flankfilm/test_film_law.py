@@ -65,8 +65,8 @@ def test_where_a_pair_lets_go_the_law_goes_on_along_its_tangent():
         edge = 10.0
         (separation, _), (before, slope) = at(found, edge), at(found, edge * (1 + 1e-7))
         for force in (edge * (1 - 1e-7), 5.0, 0.0):
-            told, steep = at(found, force)
-            assert told == pytest.approx(separation + slope * (force - edge), rel=1e-5)
+            value, steep = at(found, force)
+            assert value == pytest.approx(separation + slope * (force - edge), rel=1e-5)
             assert steep == pytest.approx(slope, rel=1e-5)
         assert before == pytest.approx(separation, rel=1e-6)
 

@@ -110,15 +110,15 @@ def test_with_the_meniscus_held_the_same_film_softens_the_mesh(
 
 
 def test_held_in_place_or_in_half_widths_it_is_the_same_where_it_is_the_same(starved: LubricatedCycle):
-    """The scene's own meniscus where the layer's was: the film, and the softening that the layer's other case tells."""
+    """The scene's own meniscus where the layer's was: the film, and the softening of the layer's other case."""
     assert starved.film.inlet is not None
     at = int(np.argmax(starved.film.load))
     placed = stage(f'supply = "meniscus"\nmeniscus_half_widths = {-starved.film.inlet[at]:.6f}\n')
     same = int(np.argmin(np.abs(placed.film.rho1 - starved.film.rho1[at])))
     assert placed.film.central_thickness[same] == pytest.approx(starved.film.central_thickness[at], rel=0.01)
     position = int(np.argmin(np.abs(placed.rho1[:, 0] - starved.film.rho1[at])))
-    told = starved.otherwise["same film, meniscus held"].stiffness[position]
-    assert placed.stiffness[position] == pytest.approx(told, rel=2e-3)
+    expected = starved.otherwise["same film, meniscus held"].stiffness[position]
+    assert placed.stiffness[position] == pytest.approx(expected, rel=2e-3)
     back = placed.otherwise["same film, oil layer held"].stiffness[position]
     assert back == pytest.approx(starved.stiffness[position], rel=2e-4)
 

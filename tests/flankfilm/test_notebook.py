@@ -42,10 +42,10 @@ def text_of(html):
 
 def test_a_run_shows_its_headlines_and_files(tmp_path):
     results = run_scene(parse_scene(SCENE), tmp_path, use_cache=False)
-    told = text_of(results._repr_html_())
-    assert "alert(1)" in told
-    assert "mean" in told
-    assert "results.nc" in told
+    shown = text_of(results._repr_html_())
+    assert "alert(1)" in shown
+    assert "mean" in shown
+    assert "results.nc" in shown
 
 
 def test_a_study_shows_its_first_rows_and_faults(tmp_path):
@@ -58,11 +58,11 @@ def test_a_study_shows_its_first_rows_and_faults(tmp_path):
     }
     plan = plan_of(StudyFile.model_validate(raw), tmp_path)
     rows = tuple(RowResult(i, (1.7 + i,), 0.1, "<i>bad</i>" if i == 3 else "") for i in range(30))
-    told = text_of(StudyResults(plan, rows, 30, 3.0)._repr_html_())
-    assert "30 rows, 1 failed" in told
-    assert "<i>bad</i>" in told  # as text
-    assert "12.7" in told
-    assert "13.7" not in told
+    shown = text_of(StudyResults(plan, rows, 30, 3.0)._repr_html_())
+    assert "30 rows, 1 failed" in shown
+    assert "<i>bad</i>" in shown  # as text
+    assert "12.7" in shown
+    assert "13.7" not in shown
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -173,7 +173,7 @@ def test_the_command_writes_a_scene_that_runs(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "rest", "told"),
+    ("wanted", "rest", "expected"),
     [
         ("", SHIFT, "at least one output"),
         ('minimise = ["beauty"]', SHIFT, "is not an output"),
@@ -182,8 +182,8 @@ def test_the_command_writes_a_scene_that_runs(tmp_path):
         ('minimise = ["contact_ratio"]', '[limits]\n"contact_ratio" = {}' + SHIFT, "at_least or at_most"),
     ],
 )
-def test_faults_name_the_key(tmp_path, wanted, rest, told):
-    with pytest.raises(InputError, match=told):
+def test_faults_name_the_key(tmp_path, wanted, rest, expected):
+    with pytest.raises(InputError, match=expected):
         read_task(task_file(tmp_path, wanted, rest))
 
 

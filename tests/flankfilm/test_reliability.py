@@ -104,10 +104,10 @@ class TestResultsReproduceThemselves:
         with h5py.File(tmp_path / "old.nc", "r+") as file:
             file.attrs["code_sha256"] = "0" * 64
             file.attrs["versions_json"] = '{"python": "3.0", "numpy": "1.0"}'
-        told = flankfilm("check", "old.nc", cwd=tmp_path)
-        assert "numpy 1.0, here" in told
-        assert "other source code" in told
-        assert "is valid" in told
+        output = flankfilm("check", "old.nc", cwd=tmp_path)
+        assert "numpy 1.0, here" in output
+        assert "other source code" in output
+        assert "is valid" in output
 
     @pytest.mark.parametrize("text", ["", "{", "[1]", "[" * 100_000, '{"wants": 3}', '{"wants": ["sweep"]}'])
     def test_a_damaged_scene_in_it_is_refused(self, small_run, tmp_path, text):

@@ -78,7 +78,7 @@ OF_OTHERS = {"optimum", "study", "verification"}
 ELSEWHERE = {"Frame", "animate_cycle", "film_families", "teeth_scene", "tooth_picture", "view_cycle"}
 
 PURE = {"motion n-p-q", "evaluation"}
-"""Titles of axes that have no unit to tell."""
+"""Titles of axes that have no unit to show."""
 
 
 @dataclass(frozen=True)
@@ -169,8 +169,8 @@ def test_axes_tell_units_legends_cover_no_data_and_nothing_is_cut_off(made):
             assert not over.shrunk(0.98, 0.98).overlaps(inside), f"{name}: the legend covers data"
         for axes in panels:
             for title in (axes.get_xlabel(), axes.get_ylabel()):
-                told = not title or title in PURE or re.search(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", title, re.DOTALL)
-                assert told, f"{name}: {title!r} has no unit"
+                text = not title or title in PURE or re.search(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", title, re.DOTALL)
+                assert text, f"{name}: {title!r} has no unit"
             assert axes.get_ylabel() or axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes)
         whole = figure.get_tightbbox(renderer).padded(-0.02)
         assert whole.x0 >= -0.01, name
@@ -225,8 +225,8 @@ def test_results_that_lack_something_are_refused_with_a_remedy(draw):
 
 def test_every_function_says_what_it_takes():
     for name in figures.__all__:
-        told = inspect.getdoc(getattr(figures, name)) or ""
-        assert "Parameters" in told, name
+        text = inspect.getdoc(getattr(figures, name)) or ""
+        assert "Parameters" in text, name
 
 
 def test_pages_are_small(made):

@@ -1,4 +1,4 @@
-"""Pictures of the loaded teeth, and the moving one; and what is told where they cannot be drawn."""
+"""Pictures of the loaded teeth, and the moving one; and what is reported where they cannot be drawn."""
 
 from __future__ import annotations
 
@@ -101,11 +101,11 @@ def test_the_picture_takes_the_position_that_is_asked_for(run, frames, tmp_path)
     assert apart[2] < 0.2 * min(apart[:2])
 
 
-def test_faults_are_told_together(tmp_path):
-    with pytest.raises(InputError) as told:
+def test_faults_are_reported_together(tmp_path):
+    with pytest.raises(InputError) as caught:
         animate_cycle(tmp_path, tmp_path / "cycle.mp4")
-    assert [fault.where for fault in told.value.faults] == [str(tmp_path / "cycle.mp4"), str(tmp_path)]
-    assert 'wants "vtk"' in str(told.value)
+    assert [fault.where for fault in caught.value.faults] == [str(tmp_path / "cycle.mp4"), str(tmp_path)]
+    assert 'wants "vtk"' in str(caught.value)
 
 
 def test_other_fields_are_drawn_and_an_unknown_one_is_refused(run, tmp_path):

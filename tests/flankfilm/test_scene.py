@@ -239,7 +239,7 @@ def test_a_senseless_tolerance_is_refused(text: str):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "message"),
     [
         (
             "bore_mm = 33.5",
@@ -268,10 +268,10 @@ def test_a_senseless_tolerance_is_refused(text: str):
         ),
     ],
 )
-def test_faults_of_the_geometry_speak_of_the_scenes_keys_and_units(old: str, new: str, told: str):
+def test_faults_of_the_geometry_speak_of_the_scenes_keys_and_units(old: str, new: str, message: str):
     with pytest.raises(InputError) as caught:
         gear_pair(parse_scene(changed(old, new)))
-    assert any(str(fault).startswith(told) for fault in caught.value.faults), str(caught.value)
+    assert any(str(fault).startswith(message) for fault in caught.value.faults), str(caught.value)
 
 
 def test_bounds_are_those_of_the_ground():

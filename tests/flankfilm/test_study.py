@@ -94,7 +94,7 @@ class TestDesign:
         assert again.rows == plan.rows
 
     @pytest.mark.parametrize(
-        ("vary", "design", "more", "told"),
+        ("vary", "design", "more", "message"),
         [
             ('"pair.pinion.tooth" = [30, 31]', "grid", "", "tooth"),
             ('"pair.module_mm" = [1.0, -1.0]', "grid", "", "row 1: pair.module_mm"),
@@ -106,8 +106,8 @@ class TestDesign:
             ("", "grid", "", "needs a key"),
         ],
     )
-    def test_faults_name_the_key(self, tmp_path, vary, design, more, told):
-        with pytest.raises(InputError, match=told):
+    def test_faults_name_the_key(self, tmp_path, vary, design, more, message):
+        with pytest.raises(InputError, match=message):
             read_plan(study_file(tmp_path, vary, design, more))
 
     def test_all_unknown_outputs_are_named(self, tmp_path):

@@ -45,7 +45,7 @@ def test_points_lie_on_the_exact_curves(name):
         if segment.part == "flank":
             wrong = (angle - profile.half_angle(radius)) * radius
         elif segment.part == "fillet":
-            # across the curve: at the root circle a radius tells the place along it to 1e-8 alone
+            # across the curve: at the root circle a radius gives the place along it to 1e-8 alone
             beta = curve.beta_at(radius, curve.end)
             wrong = np.sum((points - curve.point(beta)) * curve.normal(beta), axis=-1)
         else:

@@ -14,7 +14,7 @@ FORCE, MASS = 17_000.0, 0.4
 
 
 def test_each_range_by_hand(article_pair):
-    """Contact ratio between 1.5 and 2: constants .32, .34, .23, .90, .47, .47; w = F cos(alpha) / b."""
+    """Contact ratio between 1.5 and 2: constants 0.32, 0.34, 0.23, 0.90, 0.47, 0.47; w = F cos(alpha) / b."""
     prime = iso6336(article_pair, FORCE)
     load = FORCE * math.cos(math.radians(20)) / 40e-3
     b_p, b_f = prime.c_prime * 1e9 * 8e-6 / load, prime.c_prime * 1e9 * 5e-6 / load

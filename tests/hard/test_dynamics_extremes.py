@@ -214,7 +214,7 @@ def test_branch_with_next_to_no_backlash():
 
 
 def test_137_crossings_and_more():
-    """omega = .02: one period of 314 with some hundred crossings, each seen: the same on cells of half the size."""
+    """omega = 0.02: one period of 314 with some hundred crossings, each seen: the same on cells of half the size."""
     osc = oscillator(frequency=0.02, damping_ratio=0.0005, mean_force=0.01, half_backlash=0.02)
     start = (0.3, 0.1)
     motion = trajectory(osc, start, periods=1, points_per_period=10)

@@ -166,7 +166,7 @@ def test_map_of_moes_numbers():
 
 
 def random_contact(rng):
-    """Return a contact of p_H .2 to 3 GPa, u .05 to 30 m/s, R 2 to 50 mm, eta0 .005 to .5, alpha 10 to 30 /GPa."""
+    """Return a contact of p_H 0.2 to 3 GPa, u 0.05 to 30 m/s, R 2 to 50 mm, eta0 0.005 to 0.5, alpha 10 to 30 /GPa."""
     while True:
         viscosity, alpha = np.exp(rng.uniform(np.log(0.005), np.log(0.5))), rng.uniform(10e-9, 30e-9)
         oil = Lubricant(viscosity, alpha)

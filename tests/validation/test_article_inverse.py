@@ -1,7 +1,7 @@
 """Parameters of the article's starved frequency scan from six of its printed points.
 
 It prints D = 1.0 and says that the rest is as before, which is not so. Motions that do not touch the back flank
-depend on F_m / eps only and not on D: eps stays .2, which is the unit of both. No trial value is near one of those
+depend on F_m / eps only and not on D: eps stays 0.2, which is the unit of both. No trial value is near one of those
 found.
 """
 

@@ -35,7 +35,7 @@ def test_chaos_comes_earlier_in_the_starved_scan():
 
 
 def test_basin_of_the_small_motion_shrinks_towards_its_fold():
-    """The fold is at .65558; the share of 1-0-0, later 1-1-0, falls all the way there."""
+    """The fold is at 0.65558; the share of 1-0-0, later 1-1-0, falls all the way there."""
     shares = []
     for frequency in (0.58, 0.60, 0.62, 0.64, 0.655):
         found = basins(lubricated(frequency), (-1.5, 1.5, 20), (-1.5, 1.5, 20), limit=3000)
@@ -82,7 +82,7 @@ def test_least_motion_in_phase_greatest_in_opposition_all_around(frequency: floa
 
 @pytest.mark.slow
 def test_chaos_of_the_error_scan_ends_at_a_saddle():
-    """The article prints .68; ours ends at .7799045, told by a tangency and, apart from it, by whether chaos lasts."""
+    """The article prints 0.68; ours ends at 0.7799045, found by a tangency and, on its own, by whether chaos lasts."""
     saddle = next(o for o in find_orbits(lubricated_error(0.778), (1,)).orbits if o.label == "U1-1-0")
     found = boundary_crisis(saddle, "error_amplitude", (0.77, 0.785), points=500, periods=90)
     assert found.converged

@@ -74,7 +74,7 @@ def test_harmonics_of_the_secant_stiffness(cycle):
 
 @pytest.mark.parametrize("part", [0.2, 0.9])
 def test_bore_decides(pair, part):
-    """8.7 to 20.8 N/(mm um) at the pitch point for bores of .2 to .9 of the root radius."""
+    """8.7 to 20.8 N/(mm um) at the pitch point for bores of 0.2 to 0.9 of the root radius."""
     gears = [Gear(z, bore_radius=part * r) for z, r in ((36, 0.0335), (40, 0.0375))]
     other = GearPair(*gears, 2e-3, 0.04)
     k = fem.single_pair_stiffness(other, 17736.3, [other.points.C])[0] / PER_MM

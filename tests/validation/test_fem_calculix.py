@@ -78,7 +78,7 @@ def article_pair():
 
 @pytest.fixture(scope="module")
 def cycles(article_pair):
-    # .875 base pitches after A: one pair inside the path, and tip edges that touch
+    # 0.875 base pitches after A: one pair inside the path, and tip edges that touch
     cycles = {plane: fem.mesh_cycle(article_pair, 600.0, 4, plane=plane) for plane in ("strain", "stress")}
     assert np.any(cycles["strain"].forces[3][cycles["strain"].edge[3]] > 0)
     return cycles

@@ -24,7 +24,7 @@ def pair():
 @pytest.fixture(scope="module")
 def cycles(pair):
     bodies = fem.compliance(pair)
-    # 200 positions: .1, .25 and so on of the base pitch lie within half an interval of a row
+    # 200 positions: 0.1, 0.25 and so on of the base pitch lie within half an interval of a row
     return {beyond: fem.mesh_cycle(pair, 600.0, 200, bodies, beyond_path=beyond) for beyond in (False, True)}
 
 
@@ -61,5 +61,5 @@ def test_forces_on_the_tip_edges(pair, cycles):
     # 33 of 443 N/mm on the neighbour behind: a small force, and the most sensitive to the corner's sharpness
     assert at(free, C, per_mm.max(axis=1)) == pytest.approx(33.0, rel=0.12)
     assert at(free, 0.75, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.015)
-    # at .95 the reference's 150 N/mm is rounded from a table that gives both places together
+    # at 0.95 the reference's 150 N/mm is rounded from a table that gives both places together
     assert at(free, 0.95, per_mm.sum(axis=1)) == pytest.approx(150.0, rel=0.025)

@@ -59,7 +59,7 @@ def test_tip_edges_free(free, place):
 
 
 def test_where_an_edge_just_touches_the_finest_corner_agrees_best(free):
-    """Edges of 1 um at the corners, undeformed: 15.625; 29.8 and .9 N/mm on the pairs behind and ahead."""
+    """Edges of 1 um at the corners, undeformed: 15.625; 29.8 and 0.9 N/mm on the pairs behind and ahead."""
     assert stiffness(free, C) == pytest.approx(15.625, rel=2e-4)
     assert edge_force(free, C, -1) == pytest.approx(29.8, rel=0.01)
     assert edge_force(free, C, 1) == pytest.approx(0.9, abs=0.4)
@@ -73,7 +73,7 @@ def test_edge_that_presses_close_to_A(free, place):
 
 
 def test_flank_cut_off_by_the_corner_is_too_soft(free):
-    """Within a half-width of A, inside the path, the Hertz pressure would reach beyond the corner: .5 %."""
+    """Within a half-width of A, inside the path, the Hertz pressure would reach beyond the corner: 0.5 %."""
     assert stiffness(free, 0.0025) == pytest.approx(20.480, rel=6e-3)
     assert stiffness(free, 0.0025) < 20.480 * 0.996
     assert stiffness(free, 0.04) == pytest.approx(20.744, rel=3e-3)

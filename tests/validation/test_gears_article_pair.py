@@ -36,7 +36,7 @@ def test_equivalent_mass(pair):
 
 
 def test_ishikawa_dimensions(pair):
-    """All digits printed: s_F 3.873, s_K 1.505, h 4.549, h_r .943, h_x 2.522, h_i 6.841 mm."""
+    """All digits printed: s_F 3.873, s_K 1.505, h 4.549, h_r 0.943, h_x 2.522, h_i 6.841 mm."""
     d = dimensions(pair.teeth_profiles[0])
     tooth = loaded_teeth(pair, pair.path_at(pair.points.C))[0]
     h_x = float(tooth.radius[0] * np.cos(tooth.half_angle[0])) - d.y_0

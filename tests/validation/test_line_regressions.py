@@ -40,11 +40,11 @@ def test_pan_and_hamrock_in_their_range(W, U):
 
 def test_pan_and_hamrock_by_hand():
     contact = steel(1e-4, 1e-11, 5000.0)
-    # 1e-4^-.128 = 3.2509, 1e-11^.694 = 2.3227e-8, 5000^.568 = 126.17
+    # 1e-4^-0.128 = 3.2509, 1e-11^0.694 = 2.3227e-8, 5000^0.568 = 126.17
     assert pan_hamrock_minimum(contact) / contact.radius == pytest.approx(
         1.714 * 3.2509 * 2.3227e-8 * 126.17, rel=1e-3
     )
-    # 1e-4^-.166 = 4.6132, 1e-11^.692 = 2.4434e-8, 5000^.47 = 54.77
+    # 1e-4^-0.166 = 4.6132, 1e-11^0.692 = 2.4434e-8, 5000^0.47 = 54.77
     assert pan_hamrock_central(contact) / contact.radius == pytest.approx(
         2.922 * 4.6132 * 2.4434e-8 * 54.77, rel=1e-3
     )

@@ -19,13 +19,13 @@ def quiet(contact, **options):
 
 
 def test_formula_by_hand():
-    # M = 20, L = 10: RI .15, EI 1.439664, RP 5.973725, EP 5.069603, s = 1.4 + 1.6 exp(-2 EI/RI) = 1.4
+    # M = 20, L = 10: RI 0.15, EI 1.439664, RP 5.973725, EP 5.069603, s = 1.4 + 1.6 exp(-2 EI/RI) = 1.4
     contact = LineContact.from_moes(20.0, 10.0)
     isoviscous = (0.15 ** (7 / 3) + 1.439664 ** (7 / 3)) ** 0.6
     piezoviscous = (5.973725**-3.5 + 5.069603**-3.5) ** -0.4
     expected = (isoviscous + piezoviscous) ** (1 / 1.4)
     assert moes_central(contact) / contact.moes_film == pytest.approx(expected, rel=1e-5)
-    # M = 0.1, L = 0: RI 30, EI 4.154005, s = 1.4 + 1.6 exp(-.276934)
+    # M = 0.1, L = 0: RI 30, EI 4.154005, s = 1.4 + 1.6 exp(-0.276934)
     contact = LineContact.from_moes(0.1, 0.0)
     s = 1.4 + 1.6 * 0.758105
     expected = (30 ** (7 / 3) + 4.154005 ** (7 / 3)) ** (3 / 7)

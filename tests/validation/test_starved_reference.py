@@ -1,7 +1,7 @@
 """Starved film of a published gear pair's pitch point, against an independent study with other code.
 
 A separate study for this project gives the tangent stiffness at a face of 40 mm with the meniscus held, by the
-starved film over the flooded one: .81 9.1e10, .51 3.3e10, .14 1.4e10, .05 1.2e10 N/m. It also found that a minimum
+starved film over the flooded one: 0.81 9.1e10, 0.51 3.3e10, 0.14 1.4e10, 0.05 1.2e10 N/m. It also found that a minimum
 film below 0.1 um, the published criterion of starvation, needs the meniscus at about -1.03 b, an oil layer of about
 0.11 um. Its films are given to two digits only, which is what the tolerance allows for.
 """

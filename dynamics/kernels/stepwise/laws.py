@@ -1,4 +1,4 @@
-"""Restoring forces as function pointers; what a law takes and gives is told in `dynamics.kernels.stepwise`.
+"""Restoring forces as function pointers; what a law takes and gives is described in `dynamics.kernels.stepwise`.
 
 Parameters q of the laws with contacts begin with half the backlash, the film's damping and the film's thickness.
 Helpers live here too, because compiled laws are kept on disk by the date of this file.

@@ -198,7 +198,7 @@ def height(surfaces: FloatArray, i: int, q: FloatArray, x: float, v: float) -> f
 
 @helper
 def clear(surfaces: FloatArray, i: int, q: FloatArray, y: FloatArray, path: FloatArray) -> bool:
-    """Tell whether a step stays far from surface i: over twice its whole excursion at the twelve stages."""
+    """Return whether a step stays far from surface i: over twice its whole excursion at the twelve stages."""
     here = height(surfaces, i, q, y[0], y[1])
     farthest = 0.0
     for s in range(1, STAGES + 1):

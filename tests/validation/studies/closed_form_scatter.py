@@ -85,8 +85,8 @@ def main(count: int, seed: int) -> None:
     for key in keys:
         m = 100 * np.percentile(mean[key], [0, 5, 50, 95, 100])
         r = 100 * np.percentile(root_mean_square[key], [50, 95, 100])
-        told = "".join(f"{v:+9.1f}" for v in m) + "".join(f"{v:9.1f}" for v in r)
-        print(f"{', '.join(key):34} {told} {1e3 * np.median(seconds[key]):6.1f} ms")
+        columns = "".join(f"{v:+9.1f}" for v in m) + "".join(f"{v:9.1f}" for v in r)
+        print(f"{', '.join(key):34} {columns} {1e3 * np.median(seconds[key]):6.1f} ms")
     for pairs in ("coupled", "independent"):
         print(f"{f'fem, {pairs}':34}{1e3 * np.median(seconds['fem', pairs]):79.1f} ms")
 

@@ -72,8 +72,8 @@ def main(count: int, seed: int) -> None:
         ("films solved over foreseen, tangent", tangent / foreseen),
         ("films solved less formula, over foreseen", np.abs(secant - formula_secant) / np.abs(foreseen)),
     ):
-        told = " ".join(f"{v:7.2f}" for v in np.percentile(values, [0, 5, 50, 95, 100]))
-        print(f"{name:44} 0, 5, 50, 95, 100 %: {told}")
+        columns = " ".join(f"{v:7.2f}" for v in np.percentile(values, [0, 5, 50, 95, 100]))
+        print(f"{name:44} 0, 5, 50, 95, 100 %: {columns}")
     probe, films = np.median(seconds, axis=0)
     print(f"CPU, medians: foreseeing {1e3 * probe:.0f} ms, solved films {1e3 * films:.0f} ms")
 

@@ -110,9 +110,9 @@ def main(part: str) -> None:
                 mesh.mean_stiffness / true.mean_stiffness - 1,
                 np.ptp(mesh.transmission_error) / np.ptp(true.transmission_error) - 1,
             )
-            told = " | ".join(f"{100 * value:+.3f} %" for value in values)
+            columns = " | ".join(f"{100 * value:+.3f} %" for value in values)
             models = f"{plan.stiffness.choice} | {plan.film.choice} | {len(series.amplitudes)}"
-            print(f"| {100 * tolerance:g} % | {models} | {told} | {seconds:.2f} |", flush=True)
+            print(f"| {100 * tolerance:g} % | {models} | {columns} | {seconds:.2f} |", flush=True)
 
 
 if __name__ == "__main__":
