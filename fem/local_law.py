@@ -117,10 +117,10 @@ class PairLaws:
 
 
 class Film(Protocol):
-    """What an oil film props the flanks apart, as ``mesh_cycle`` asks for it."""
+    """Separation of the flanks by an oil film, as ``mesh_cycle`` asks for it."""
 
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
-        """Prop s >= 0 [m] and its derivative by the force ds/dF <= 0 [m/N].
+        """Separation s >= 0 [m] and its derivative by the force ds/dF <= 0 [m/N].
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class FilmLaw:
     rho1: Array
 
     def approach(self, force: Array) -> Array:
-        """Prop (..., positions, pairs) [m]."""
+        """Separation (..., positions, pairs) [m]."""
         return self._asked(force, 0)
 
     def slope(self, force: Array) -> Array:
