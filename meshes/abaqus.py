@@ -76,12 +76,14 @@ def mesh_text(gears: Mapping[str, GearMesh], element: str = "CPE6") -> str:
         elements[f"{prefix}GEAR"] = [np.arange(first, first + len(mesh.triangles))]
         for tooth in mesh.teeth:
             elements[f"{prefix}TOOTH_{_signed(tooth)}"] = [first + np.flatnonzero(mesh.tooth == tooth)]
+        middles = mesh.triangles[:, 3:].ravel()
+        order = np.argsort(middles, kind="stable")
         for name, (boundary, tooth_or_all) in set_names(mesh, prefix).items():
             edges = mesh.facets[boundary]
             if tooth_or_all is not None:
                 edges = edges[mesh.facet_tooth[boundary] == tooth_or_all]
             nodes[name] = node + np.unique(edges)
-            owner, side = _sides(mesh, edges)
+            owner, side = _sides(middles, order, edges)
             surfaces.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
             surfaces += [f"{e + first + 1}, S{s}" for e, s in zip(owner, side, strict=True)]
         node, first = node + len(mesh.points), first + len(mesh.triangles)
@@ -101,9 +103,10 @@ def _signed(tooth: int) -> str:
     return str(tooth) if tooth >= 0 else f"MINUS_{-tooth}"
 
 
-def _sides(mesh: GearMesh, edges: Integers) -> tuple[list[int], list[int]]:
-    """Element of each edge and which of its sides (1, 2, 3) it is, by the node in the edge's middle."""
-    middles = mesh.triangles[:, 3:].ravel()
-    order = np.argsort(middles, kind="stable")
+def _sides(middles: Integers, order: Integers, edges: Integers) -> tuple[list[int], list[int]]:
+    """Element of each edge and which of its sides (1, 2, 3) it is, by the node in the edge's middle.
+
+    ``middles`` are those of all elements, three each; ``order`` sorts them.
+    """
     place = order[np.searchsorted(middles, edges[:, 2], sorter=order)]
     return (place // 3).tolist(), (place % 3 + 1).tolist()
