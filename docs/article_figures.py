@@ -73,7 +73,7 @@ def deflection() -> Figure:
 
 def report(name: str, results: xr.Dataset) -> None:
     """Print the numbers that docs/validation/article_figures.md compares."""
-    face = 1e-9 / float(results.face_width)
+    face = 1e-9 / float(results.pair_face_width)
     dry, wet = results.dry_secant_stiffness.values, results.lubricated_secant_stiffness.values
     share = results.dry_load_share.values
     alone = np.nanmax(share, axis=1) > 0.9

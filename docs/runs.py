@@ -25,7 +25,7 @@ IMAGES = HERE / "images"
 def results(scene: Scene, stages: Sequence[Stage[Any]] = ()) -> xr.Dataset:
     """Give what ``results.nc`` of a scene holds, of some stages alone where they are given; nothing is written."""
     keep_compiled_code()
-    from flankfilm.outputs import results_dataset
+    from flankfilm.output.run import results_dataset
     from flankfilm.stages.catalogue import goals
     from flankfilm.stages.engine import Engine
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from base import Faults, Limit
+from base import Faults, Limit, described
 from ehl.lubricant import Lubricant
 from ehl.rheology import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE
 
@@ -141,8 +141,9 @@ class LineContact:
         )
 
     @property
+    @described("m", shown="um")
     def half_width(self) -> float:
-        """Half-width of the dry contact b = sqrt(8 w R/(pi E')) [m]."""
+        """Half-width of the dry contact, b = sqrt(8 w R/(pi E'))."""
         return math.sqrt(8.0 * self.load * self.radius / (math.pi * self.reduced_modulus))
 
     @property

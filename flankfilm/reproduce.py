@@ -81,7 +81,7 @@ def _without_none(raw: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
-    from flankfilm.dataset import provenance
+    from flankfilm.output.files import provenance
 
     here = provenance("")
     found = []

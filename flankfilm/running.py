@@ -9,7 +9,7 @@ from typing import Any
 
 from flankfilm.cache import Cache, user_cache
 from flankfilm.folder import claim
-from flankfilm.outputs import results_dataset, results_tables, write_data
+from flankfilm.output.run import results_dataset, write_data
 from flankfilm.progress import Progress, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
@@ -64,11 +64,7 @@ def run_scene(
     found = Results(scene, folder, values, engine.runs, (), time.perf_counter() - start, dataset)
     if folder is None:
         return found
-    files = engine.timed(
-        "data files",
-        "netCDF and CSV files",
-        lambda: write_data(folder, dataset, results_tables(scene, values)),
-    )
+    files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, dataset))
     if "vtk" in scene.wants:
         files += engine.timed(
             "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)

@@ -116,7 +116,8 @@ def approaches(folder):
     lubricated, dry = folder / "mesh_cycle_lubricated.csv", folder / "mesh_cycle_dry.csv"
     with (lubricated if lubricated.exists() else dry).open(newline="") as file:
         return [
-            (float(row["phase"]), 1e-6 * float(row["transmission_error_um"])) for row in csv.DictReader(file)
+            (float(row["position"]), 1e-6 * float(row["transmission_error_um"]))
+            for row in csv.DictReader(file)
         ]
 
 

@@ -16,7 +16,7 @@ __all__ = ["application"]
 STUDY = """
 title = "Geometry"
 scene = "scene.toml"
-outputs = ["contact_ratio", "mean_secant_N_per_mm_um", "transmission_error_um"]
+outputs = ["contact_ratio", "mean_secant_stiffness_N_per_mm_um", "transmission_error_um"]
 design = "sobol"
 samples = {rows}
 [vary]

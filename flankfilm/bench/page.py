@@ -11,9 +11,9 @@ from flankfilm.bench.measuring import CaseResult
 from flankfilm.bench.peers import PeerRow
 from flankfilm.bench.run import Bench
 from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries, summary_cells
-from flankfilm.dataset import write_text
 from flankfilm.figures import bench as figures
 from flankfilm.figures.style import to_svg
+from flankfilm.output.files import write_text
 from flankfilm.report.page import Drawing, Fact, Headline, Part, Table, render
 
 __all__ = ["write_page"]

@@ -14,7 +14,7 @@ from flankfilm.bench.machine import Machine
 from flankfilm.bench.measuring import CaseResult, Row, gain
 from flankfilm.bench.peers import PeerRow
 from flankfilm.bench.run import Bench
-from flankfilm.dataset import write_csv, write_text
+from flankfilm.output.files import write_csv, write_text
 
 if TYPE_CHECKING:
     from rich.table import Table

@@ -30,7 +30,7 @@ class MeshCycle:
     )
 
     label: str = quantity("", "model of the mesh cycle")
-    position: Array = quantity("1", "travel after a pair is at A, over the base pitch", "position")
+    position: Array = quantity("1", "position, base pitches from A", "position")
     rho1: Array = quantity(
         "m",
         "curvature radius of the pinion's flank at the contact; nan without contact",
@@ -38,11 +38,19 @@ class MeshCycle:
         shown="mm",
     )
     forces: Array = quantity("N", "normal force of each pair", "position pair")
-    load_share: Array = quantity("1", "each pair's share of the torque", "position pair")
-    secant_stiffness: Array = quantity("N/m", "force over deflection", "position", error="mean_error")
-    stiffness: Array = quantity("N/m", "slope of force over deflection", "position", error="mean_error")
+    load_share: Array = quantity("1", "load share: each pair's share of the torque", "position pair")
+    secant_stiffness: Array = quantity(
+        "N/m", "secant stiffness: force over deflection", "position", error="mean_error"
+    )
+    stiffness: Array = quantity(
+        "N/m", "tangent stiffness: slope of force over deflection", "position", error="mean_error"
+    )
     transmission_error: Array = quantity(
-        "m", "deflection along the line of action", "position", shown="um", error="error"
+        "m",
+        "loaded transmission error: deflection along the line of action",
+        "position",
+        shown="um",
+        error="error",
     )
     error: float | None
     cost: Cost
@@ -53,13 +61,13 @@ class MeshCycle:
     @property
     @described("N/m", error="mean_error")
     def mean_secant_stiffness(self) -> float:
-        """Mean of force over deflection."""
+        """Mean mesh stiffness (secant)."""
         return float(self.secant_stiffness.mean())
 
     @property
     @described("N/m", error="mean_error")
     def mean_stiffness(self) -> float:
-        """Mean slope of force over deflection."""
+        """Mean mesh stiffness (tangent)."""
         return float(self.stiffness.mean())
 
     @property
@@ -69,8 +77,9 @@ class MeshCycle:
         return float(np.ptp(self.transmission_error))
 
     @property
+    @described("1")
     def mean_error(self) -> float | None:
-        """Estimated relative numerical error of the mean secant: that of the positions and of their number."""
+        """Estimated relative numerical error of the mean secant stiffness: of the positions and of their number."""
         return None if self.error is None else self.error + sampling_error(self.secant_stiffness)
 
     def curve(self, kind: str) -> Array:

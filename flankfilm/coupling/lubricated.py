@@ -58,22 +58,24 @@ class FilmAlongPath:
     rho1: Array = quantity("m", "curvature radius of the pinion's flank at the film", "point", shown="mm")
     load: Array = quantity("N/m", "force per length of face", "point", shown="N/mm")
     central_thickness: Array = quantity(
-        "m", "film on the line of centres", "point", shown="um", error="error"
+        "m", "central film, on the line of centres", "point", shown="um", error="error"
     )
-    minimum_thickness: Array = quantity("m", "least film", "point", shown="um", error="error")
-    hertz_pressure: Array = quantity("Pa", "peak pressure of the dry contact", "point", shown="GPa")
-    stiffness: Mapping[str, Array] = quantity(
-        "N/m", "film stiffness of the whole face by definition", "point"
+    minimum_thickness: Array = quantity("m", "minimum film", "point", shown="um", error="error")
+    hertz_pressure: Array = quantity(
+        "Pa", "Hertz pressure, the largest of the dry contact", "point", shown="GPa"
     )
+    stiffness: Mapping[str, Array] = quantity("N/m", "film stiffness of the whole face", "point")
     inlet: Array | None = quantity(
         "1", "where oil fills the gap, in half-widths ahead of the middle", "point"
     )
-    flow: Array | None = quantity(
+    oil_layer: Array | None = quantity(
         "m", "layer of oil at ambient pressure that passes the contact", "point", shown="um"
     )
-    starvation: Array | None = quantity("1", "central film over that of the smooth, flooded contact", "point")
-    film_ratio: Array | None = quantity("1", "Lambda, least distance of the mean planes over sigma", "point")
-    asperity_share: Array | None = quantity("1", "share of the load that the asperities carry", "point")
+    starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
+    film_ratio: Array | None = quantity(
+        "1", "film ratio Lambda, least distance of the mean planes over sigma", "point"
+    )
+    asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
     at_pitch: tuple[StiffnessRow, ...]
     profiles: Mapping[str, Film]
     error: float | None
@@ -375,7 +377,7 @@ class _Run:
                 for name in film_points.definitions(self.model.name)
             },
             inlet=np.array([film.inlet / film.contact.half_width for film in inside]) if solved else None,
-            flow=np.array([film.flow for film in inside]) if solved else None,
+            oil_layer=np.array([film.flow for film in inside]) if solved else None,
             starvation=central / flooded if path.flooded else None,
             film_ratio=_of_mixed(path, "film_ratio") if rough else None,
             asperity_share=_of_mixed(path, "asperity_share") if rough else None,

@@ -57,10 +57,12 @@ class SpeedSweep:
 
     headline = ("least_grazing", "half_backlash")
 
-    frequency: Array = quantity("1", "mesh over natural frequency", "value")
-    speed: Array | None = quantity("rad/s", "pinion speed", "value", shown="rpm")
-    states: Mapping[str, Array] = quantity("1", "displacement and velocity at tau = 0", "value kept state")
-    labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "value")
+    frequency: Array = quantity("1", "mesh frequency over natural frequency", "frequency")
+    speed: Array | None = quantity("rad/s", "pinion speed", "frequency", shown="rpm")
+    states: Mapping[str, Array] = quantity(
+        "1", "displacement and velocity at tau = 0", "frequency kept state"
+    )
+    labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "frequency")
     grazings: Array = quantity(
         "1", "where the orbit that never leaves contact touches the backlash", "grazing"
     )

@@ -40,7 +40,7 @@ class SinglePairs:
 
     travel: Array = quantity("m", "travel from A along the path of contact", "path", shown="mm")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
-    curves: Mapping[str, Array] = quantity("N/m", "stiffness of one pair by model", "path")
+    stiffness: Mapping[str, Array] = quantity("N/m", "stiffness of one pair", "path")
     iso: Iso6336Stiffness
     error: float | None
     cost: Cost
@@ -142,7 +142,7 @@ def single_pairs(
     return SinglePairs(
         travel=path.position,
         rho1=path.rho1,
-        curves={
+        stiffness={
             MODELS[model]: single_pair_stiffness(pair, force, path.rho1, model, compliance)
             for model in models
         },

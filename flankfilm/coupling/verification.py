@@ -70,12 +70,14 @@ class Curves:
     headline = ("label",)
 
     label: str = quantity("", "model")
-    single_stiffness: Array = quantity("N/m", "secant stiffness of one pair under the whole force", "path")
-    secant_stiffness: Array = quantity("N/m", "force over deflection of the mesh", "position")
+    single_stiffness: Array = quantity("N/m", "stiffness of one pair, secant, under the whole force", "path")
+    secant_stiffness: Array = quantity(
+        "N/m", "secant stiffness of the mesh: force over deflection", "position"
+    )
     transmission_error: Array = quantity("m", "deflection along the line of action", "position", shown="um")
     pairs: Integers = quantity("1", "pairs on the path of contact", "position")
     cost: Cost
-    error: float | None = None
+    error: float | None = quantity("1", "relative numerical error", default=None)
     means: Mapping[str, float] = field(default_factory=dict)
     left_out: tuple[str, ...] = ()
 
@@ -122,7 +124,7 @@ class Verification:
     pair: GearPair
     torque: float = quantity("N m", "torque of the pinion")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
-    position: Array = quantity("1", "travel after a pair is at A, over the base pitch", "position")
+    position: Array = quantity("1", "position, base pitches from A", "position")
     references: tuple[Curves, ...]
     models: tuple[Curves, ...]
     differences: tuple[Difference, ...]

@@ -62,8 +62,8 @@ def export_rexs(
         The scene file (TOML); its sections pair and material count.
     """
     from flankfilm.build import gear_pair
-    from flankfilm.dataset import write_text
     from flankfilm.exchange.rexs_write import rexs_text
+    from flankfilm.output.files import write_text
     from flankfilm.scene import read_scene
 
     wanted = read_scene(scene)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.dataset import write_csv, write_text
+from flankfilm.output.files import write_csv, write_text
 
 if TYPE_CHECKING:
     from gears.contour import Contour

@@ -176,15 +176,15 @@ def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None
 
 
 def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View:
-    need(results, 'run a scene that wants "vtk" with this version', "field_point", "module", "base_radius")
-    prefix = "lubricated" if "lubricated_phase" in results else "dry"
+    need(results, 'run a scene that wants "vtk" with this version', "field_point", "pair_module")
+    prefix = "lubricated" if "lubricated_position" in results else "dry"
     error = results[f"{prefix}_transmission_error"].values
     scale, position = frame.scale, frame.position
     if scale is None:
-        scale = _round(SHOWN * float(results["module"]) / float(error.max()))
+        scale = _round(SHOWN * float(results["pair_module"]) / float(error.max()))
     if position is None:
         at_pitch = float(results["path_point_rho1"][2] - results["path_point_rho1"][0])
-        position = at_pitch / float(results["base_pitch"]) % 1.0
+        position = at_pitch / float(results["pair_base_pitch"]) % 1.0
     x, y = results["field_centre"].values.tolist()
     step, ticks = _scale_of_colours(results, folder, frame.field)
     return View(
@@ -196,8 +196,8 @@ def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View
         ticks=ticks,
         centre=(x, y),
         reach=0.8 * float(results["field_reach"]),
-        base_radius=float(results["base_radius"][0]),
-        phase=tuple(results[f"{prefix}_phase"].values.tolist()),
+        base_radius=float(results["pair_base_radii"][0]),
+        position=tuple(results[f"{prefix}_position"].values.tolist()),
         error=tuple(error.tolist()),
         seconds=0.0,
         only=position,

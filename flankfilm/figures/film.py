@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures.reading import CYCLE_LABEL, PATH_LABEL, mark_path, need, text, travel
+from base import Array
+from flankfilm.figures.reading import PATH_LABEL, label_of, mark_path, need, read, text, travel
 from flankfilm.figures.style import Style, colours, figure, from_zero, legend_above, looks, styled
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FILM = 'run a scene that wants "film"'
 SOLVED = 'run a scene that wants "film" with film.model = "ehl"'
 THROUGH = "distance from the line of centres [half-widths]"
 
-SHARES = {
-    "film_starvation": "central film\nover flooded [-]",
-    "film_ratio": "film ratio\nLambda [-]",
-    "film_asperity_share": "asperities' share\nof the load [-]",
-}
+POINTS = ("near_A", "after_B", "C", "before_D", "near_E")
+"""Contacts through which films are given, in the order of the path."""
+
+SHARES = ("film_starvation", "film_ratio", "film_asperity_share")
 
 
 def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -41,13 +42,15 @@ def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figur
         drawn = figure(height=4.2)
         upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         first, second, third = looks(3)
-        upper.plot(at, 1e6 * results["film_central_thickness"].values, label="central film", **first)
-        upper.plot(at, 1e6 * results["film_minimum_thickness"].values, label="minimum film", **second)
-        upper.set(ylabel="film thickness [µm]")
+        for name, look in (("central", first), ("minimum", second)):
+            film = read(results, f"film_{name}_thickness")
+            upper.plot(at, film.values, label=f"{name} film", **look)
+        upper.set(ylabel=film.named("film thickness"))
         from_zero(upper)
         legend_above(drawn, upper)
-        lower.plot(at, 1e-9 * results["film_hertz_pressure"].values, color=third["color"])
-        lower.set(xlabel=PATH_LABEL, ylabel="Hertz pressure [GPa]")
+        pressure = read(results, "film_hertz_pressure")
+        lower.plot(at, pressure.values, color=third["color"])
+        lower.set(xlabel=PATH_LABEL, ylabel=pressure.named("Hertz pressure"))
         from_zero(lower)
         mark_path(results, (upper, lower), upper)
     return drawn
@@ -63,15 +66,15 @@ def film_shares(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    shown = {name: label for name, label in SHARES.items() if name in results}
+    shown = [read(results, name) for name in SHARES if name in results]
     if not shown:
         need(results, "run a scene with a starved film or a section [roughness]", *SHARES)
     with styled(style):
         drawn = figure(height=0.8 + 1.5 * len(shown))
         panels = drawn.subplots(len(shown), 1, sharex=True, squeeze=False).ravel().tolist()
-        for axes, (name, label), colour in zip(panels, shown.items(), colours(len(shown)), strict=True):
-            axes.plot(travel(results, "film_rho1"), results[name].values, color=colour)
-            axes.set(ylabel=label)
+        for axes, share, colour in zip(panels, shown, colours(len(shown)), strict=True):
+            axes.plot(travel(results, "film_rho1"), share.values, color=colour)
+            axes.set(ylabel=share.label)
             from_zero(axes)
         panels[-1].set(xlabel=PATH_LABEL)
         mark_path(results, panels, panels[0])
@@ -88,22 +91,17 @@ def film_profiles(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    points = [name for name in "ABCDE" if f"film_profile_{name}_x" in results]
+    points = [name for name in POINTS if f"film_profile_{name}_x" in results]
     if not points:
         need(results, SOLVED, "film_profile_C_x")
     with styled(style):
         drawn = figure(height=4.4)
         upper, lower = drawn.subplots(2, 1, sharex=True)
-        thickest = 0.0
         for name, look in zip(points, looks(len(points)), strict=True):
-            x, pressure, thickness = _through(results, name)
-            upper.plot(x, pressure, label=name, **look)
-            lower.plot(x, thickness, **look)
-            thickest = max(thickest, float(np.interp(0.0, x, thickness)))
-        upper.set(ylabel="pressure [GPa]")
+            _through(upper, lower, results, name, {"label": name.replace("_", " "), **look})
         from_zero(upper)
         legend_above(drawn, upper, columns=5)
-        lower.set(xlabel=THROUGH, ylabel="film thickness [µm]", xlim=(-2.0, 1.5), ylim=(0, 3 * thickest))
+        lower.set(xlabel=THROUGH, xlim=(-2.0, 1.5), ylim=(0, 3 * _thickest(lower)))
     return drawn
 
 
@@ -121,29 +119,41 @@ def film_families(
     style : mapping, optional
         rcParams that overrule the house's.
     """
+    (name,) = [name for name in POINTS if name.endswith(point)]
     with styled(style):
         drawn = figure(7.6, 4.4)
         (pressure, hertz), (thickness, along) = drawn.subplots(2, 2)
-        thickest = 0.0
         for (label, results), look in zip(family.items(), looks(len(family)), strict=True):
-            need(results, SOLVED, f"film_profile_{point}_x", "film_rho1")
-            x, p, h = _through(results, point)
-            pressure.plot(x, p, label=label, **look)
-            thickness.plot(x, h, **look)
-            thickest = max(thickest, float(np.interp(0.0, x, h)))
-            at = travel(results, "film_rho1")
-            hertz.plot(at, 1e-9 * results["film_hertz_pressure"].values, **look)
-            along.plot(at, 1e6 * results["film_minimum_thickness"].values, **look)
+            need(results, SOLVED, f"film_profile_{name}_x", "film_rho1")
+            _through(pressure, thickness, results, name, {"label": label, **look})
+            for axes, what in ((hertz, "film_hertz_pressure"), (along, "film_minimum_thickness")):
+                shown = read(results, what)
+                axes.plot(travel(results, "film_rho1"), shown.values, **look)
+                axes.set(ylabel=shown.label)
+                from_zero(axes)
         legend_above(drawn, pressure)
-        pressure.set(ylabel=f"pressure at {point} [GPa]", xlim=(-1.5, 1.2))
+        for axes in (pressure, thickness):
+            axes.set(xlim=(-1.5, 1.2))
         from_zero(pressure)
-        thickness.set(ylabel=f"film at {point} [µm]", xlim=(-1.5, 1.2), ylim=(0, 2 * thickest))
-        thickness.set(xlabel=THROUGH)
-        hertz.set(ylabel="Hertz pressure [GPa]")
-        from_zero(hertz)
-        along.set(xlabel="travel along the path from A [mm]", ylabel="least film [µm]")
-        from_zero(along)
+        thickness.set(xlabel=THROUGH, ylim=(0, 2 * _thickest(thickness)))
+        along.set(xlabel=PATH_LABEL)
     return drawn
+
+
+def _through(upper: Axes, lower: Axes, results: xr.Dataset, point: str, look: Mapping[str, object]) -> None:
+    """Draw pressure and film through the contact at a point over the place in half-widths."""
+    name = f"film_profile_{point}"
+    x = results[f"{name}_x"].values / float(results[f"{name}_half_width"])
+    for axes, what in ((upper, "pressure"), (lower, "thickness")):
+        shown = read(results, f"{name}_{what}")
+        axes.plot(x, shown.values, **look)  # type: ignore[arg-type]
+        axes.set(ylabel=shown.label)
+
+
+def _thickest(axes: Axes) -> float:
+    """Largest film on the line of centres among the curves of a panel."""
+    curves = (np.asarray(line.get_xydata()).T for line in axes.lines)
+    return max(float(np.interp(0.0, x, thickness)) for x, thickness in curves)
 
 
 def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -157,23 +167,26 @@ def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, FILM, "dry_tangent_stiffness", "lubricated_tangent_stiffness", "lubricated_model")
-    dry, phase = results["dry_tangent_stiffness"].values, results["dry_phase"].values
-    cycles = {text(results, "lubricated_model"): results["lubricated_tangent_stiffness"].values}
+    need(results, FILM, "dry_stiffness", "lubricated_stiffness", "lubricated_label")
+    dry = read(results, "dry_stiffness", per_face=True)
+    cycles: dict[str, Array] = {
+        text(results, "lubricated_label"): read(results, "lubricated_stiffness", per_face=True).values
+    }
     if "held_model" in results:
-        held = results["held_tangent_stiffness"].values
+        held = read(results, "held_stiffness", per_face=True).values
         cycles = dict(zip(results["held_model"].values.tolist(), held, strict=True))
+    position = read(results, "dry_position")
     with styled(style):
         drawn = figure(height=4.4)
         upper, lower = drawn.subplots(2, 1, sharex=True)
         *own, last = looks(len(cycles) + 1)
         for (label, tangent), look in zip(cycles.items(), own, strict=True):
-            upper.plot(phase, 1e-9 * tangent, label=label, **look)
-            lower.plot(phase, 100 * (tangent / dry - 1), **look)
-        upper.plot(phase, 1e-9 * dry, label=text(results, "dry_model"), **last)
-        upper.set(ylabel="tangent stiffness [N/nm]")
+            upper.plot(position.values, tangent, label=label, **look)
+            lower.plot(position.values, 100 * (tangent / dry.values - 1), **look)
+        upper.plot(position.values, dry.values, label=text(results, "dry_label"), **last)
+        upper.set(ylabel=dry.named("tangent stiffness"))
         from_zero(upper)
-        lower.set(xlabel=CYCLE_LABEL, ylabel="change by the film [%]")
+        lower.set(xlabel=position.label, ylabel="change by the film [%]")
         legend_above(drawn, upper, columns=2)
     return drawn
 
@@ -194,16 +207,9 @@ def film_stiffness(results: xr.Dataset, *, style: Style | None = None) -> Figure
         drawn = figure(height=3.6)
         axes = drawn.subplots()
         for name, look in zip(names, looks(len(names)), strict=True):
-            label = name.removeprefix("film_stiffness_").replace("_", " ")
-            axes.plot(travel(results, "film_rho1"), results[name].values, label=label, **look)
-        axes.set(xlabel=PATH_LABEL, ylabel="film stiffness, whole face [N/m]", yscale="log")
+            k = read(results, name)
+            axes.plot(travel(results, "film_rho1"), k.values, label=label_of(results, name), **look)
+        axes.set(xlabel=PATH_LABEL, ylabel=k.label, yscale="log")
         mark_path(results, (axes,), axes)
         legend_above(drawn, axes)
     return drawn
-
-
-def _through(results: xr.Dataset, point: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Place [half-widths], pressure [GPa] and film [um] through the contact at a point."""
-    name = f"film_profile_{point}"
-    x = results[f"{name}_x"].values / float(results[f"{name}_half_width"])
-    return x, 1e-9 * results[f"{name}_pressure"].values, 1e6 * results[f"{name}_thickness"].values

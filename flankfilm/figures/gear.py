@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flankfilm.figures.reading import PATH_LABEL, mark_path, need, travel
+from base import Array
+from flankfilm.figures.reading import PATH_LABEL, mark_path, need, read, travel
 from flankfilm.figures.style import Style, colours, figure, legend_above, looks, styled
 
 if TYPE_CHECKING:
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
+PAIR = "run a scene with a section [pair]"
+VTK = 'run a scene that wants "vtk"'
+FIELDS = ("field_point", "field_von_mises", "field_triangles", "field_centre", "field_reach")
 
 SHADES = ("#dce9f5", "#f8e6d8")
 
@@ -30,8 +32,9 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, "run a scene with a section [pair]", "outline_pinion", "outline_wheel", "path_point_place")
-    outlines = [1e3 * results[f"outline_{name}"].values for name in ("pinion", "wheel")]
+    need(results, PAIR, "outline_pinion", "outline_wheel", "path_point_place", "pair_bore_radii")
+    outlines = [read(results, f"outline_{name}") for name in ("pinion", "wheel")]
+    centres, bores = (read(results, name).values for name in ("outline_centre", "pair_bore_radii"))
     with styled(style):
         drawn = figure(height=4.4)
         whole, close = drawn.subplots(1, 2, width_ratios=(2, 3))
@@ -39,26 +42,24 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         middle, reach = _path(close, results)
         for shape, colour, shade in zip(outlines, lines, SHADES, strict=True):
             look = {"facecolor": shade, "edgecolor": colour, "linestyle": "-", "linewidth": 0.7}
-            whole.fill(*shape.T, **look)
-            close.fill(*_nearby(shape, middle, reach).T, **look)
-        for centre, radius, colour in zip(
-            1e3 * results["gear_centre"].values, 1e3 * results["bore_radius"].values, lines, strict=True
-        ):
+            whole.fill(*shape.values.T, **look)
+            close.fill(*_nearby(shape.values, middle, reach).T, **look)
+        for centre, radius, colour in zip(centres, bores, lines, strict=True):
             turn = np.linspace(0, 2 * np.pi, 181)
             circle = centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])
             whole.fill(*circle.T, facecolor="#ffffff", edgecolor=colour, linestyle="-", linewidth=0.7)
         for axes in (whole, close):
             axes.set_aspect("equal")
             axes.grid(visible=False)
-            axes.set(xlabel="x [mm]")
-        whole.set(ylabel="y [mm]")
+            axes.set(xlabel=shape.named("x"))
+        whole.set(ylabel=shape.named("y"))
     return drawn
 
 
 def _path(axes: Axes, results: xr.Dataset) -> tuple[Array, float]:
     """Draw the path of contact with its points; return middle and half-width of the picture [mm]."""
-    names = [str(name) for name in results["path_point_name"].values]
-    places = dict(zip(names, 1e3 * results["path_point_place"].values, strict=True))
+    names = results["path_point"].values.tolist()
+    places = dict(zip(names, read(results, "path_point_place").values, strict=True))
     ends = np.array([places["A"], places["E"]])
     axes.plot(*ends.T, color="#000000", linewidth=1.2, zorder=3)
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
@@ -101,35 +102,37 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, "run a scene with a section [pair]", "kinematic_rho1", "path_point_rho1")
-    at, known = travel(results, "kinematic_rho1"), "kinematic_sliding" in results
-    radii = {"rho1": "pinion, R1", "rho2": "wheel, R2", "radius": "reduced, R"}
-    mean, sliding = (
-        (results["kinematic_entrainment"].values, results["kinematic_sliding"].values) if known else (at, at)
-    )
-    velocities = {
-        "pinion, u1": mean + sliding / 2,
-        "wheel, u2": mean - sliding / 2,
-        "entrainment, (u1 + u2)/2": mean,
-        "sliding, u1 - u2": sliding,
-    }
+    need(results, PAIR, "path_rho1", "path_point_rho1")
+    at, known = travel(results, "path_rho1"), "path_sliding" in results
+    radii = {"path_rho1": "pinion, R1", "path_rho2": "wheel, R2", "path_radius": "reduced, R"}
     with styled(style):
         drawn = figure(height=4.8 if known else 2.6)
         panels = drawn.subplots(1 + known, 1, sharex=True, squeeze=False).ravel().tolist()
         for (name, label), look in zip(radii.items(), looks(3), strict=True):
-            panels[0].plot(at, 1e3 * results[f"kinematic_{name}"].values, label=label, **look)
-        panels[0].set(ylabel="curvature radius [mm]")
+            radius = read(results, name)
+            panels[0].plot(at, radius.values, label=label, **look)
+        panels[0].set(ylabel=radius.named("curvature radius"))
         legend_above(drawn, panels[0])
         if known:
-            for (label, speed), look in zip(velocities.items(), looks(4), strict=True):
-                panels[1].plot(at, speed, label=label, **look)
-            panels[1].set(ylabel="velocity [m/s]")
-            panels[1].legend(
-                loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2, handlelength=2.6
-            )
+            _velocities(panels[1], results, at)
         panels[-1].set(xlabel=PATH_LABEL)
         mark_path(results, panels, panels[0])
     return drawn
+
+
+def _velocities(axes: Axes, results: xr.Dataset, at: Array) -> None:
+    """Draw the velocities of both flanks, their mean and their difference."""
+    mean, sliding = read(results, "path_entrainment"), read(results, "path_sliding")
+    curves = {
+        "pinion, u1": mean.values + sliding.values / 2,
+        "wheel, u2": mean.values - sliding.values / 2,
+        mean.meaning: mean.values,
+        sliding.meaning: sliding.values,
+    }
+    for (label, speed), look in zip(curves.items(), looks(4), strict=True):
+        axes.plot(at, speed, label=label, **look)
+    axes.set(ylabel=mean.named("velocity"))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2, handlelength=2.6)
 
 
 def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -146,36 +149,37 @@ def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     from matplotlib.tri import Triangulation
 
-    need(results, 'run a scene that wants "vtk"', "field_point", "field_von_mises", "field_triangles")
-    points, cells = 1e3 * results["field_point"].values, results["field_triangles"].values
-    stress, centre = 1e-6 * results["field_von_mises"].values, 1e3 * results["field_centre"].values
-    reach = 1e3 * float(results["field_reach"])
+    need(results, VTK, *FIELDS)
+    points, stress, centre, reach = (
+        read(results, f"field_{name}") for name in ("point", "von_mises", "centre", "reach")
+    )
+    cells, half = results["field_triangles"].values, float(reach.values)
     with styled(style):
         drawn = figure(height=4.3)
         axes = drawn.subplots()
         top = stress_of_nearly_all(results)
-        x, y = points.T
+        x, y = points.values.T
         painted = axes.tripcolor(
-            Triangulation(x, y, cells), stress, shading="gouraud", vmin=0.0, vmax=top, rasterized=True
+            Triangulation(x, y, cells), stress.values, shading="gouraud", vmin=0.0, vmax=top, rasterized=True
         )
-        drawn.colorbar(painted, ax=axes, label="von Mises stress [MPa]", extend="max")
+        drawn.colorbar(painted, ax=axes, label=stress.label, extend="max")
         axes.set_aspect("equal")
         axes.grid(visible=False)
-        x, y = centre.tolist()
-        axes.set(xlim=(x - reach, x + reach), ylim=(y - 0.75 * reach, y + 0.75 * reach))
-        axes.set(xlabel="x [mm]", ylabel="y [mm]")
+        x, y = centre.values.tolist()
+        axes.set(xlim=(x - half, x + half), ylim=(y - 0.75 * half, y + 0.75 * half))
+        axes.set(xlabel=points.named("x"), ylabel=points.named("y"))
     return drawn
 
 
 def stress_of_nearly_all(results: xr.Dataset) -> float:
     """Von Mises stress that 99.7 % of the pictured area stays below [MPa]."""
-    need(results, 'run a scene that wants "vtk"', "field_point", "field_von_mises", "field_triangles")
+    need(results, VTK, *FIELDS)
     points, cells = results["field_point"].values, results["field_triangles"].values
     a, b, c = (points[cells[:, i]] for i in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     near = np.linalg.norm(a - results["field_centre"].values, axis=1) < float(results["field_reach"])
     area = np.where(near, np.abs(ux * vy - uy * vx), 0.0)
-    mean = results["field_von_mises"].values[cells].mean(axis=1)
+    mean = read(results, "field_von_mises").values[cells].mean(axis=1)
     order = np.argsort(mean)
     below = np.cumsum(area[order])
-    return 1e-6 * float(mean[order][np.searchsorted(below, 0.997 * below[-1])])
+    return float(mean[order][np.searchsorted(below, 0.997 * below[-1])])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flankfilm.figures.reading import need, per_face
+from flankfilm.figures.reading import need, read
 from flankfilm.figures.style import Style, colours, figure, from_zero, legend_above, looks, styled
 
 if TYPE_CHECKING:
@@ -22,23 +22,20 @@ def root_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "root-stress"', "root_tension_Pa_pinion")
+    need(results, 'run a scene that wants "root-stress"', "root_pinion_tension", "root_wheel_tension")
     with styled(style):
         drawn = figure(height=3.6)
         axes = drawn.subplots()
-        for name, colour in zip(("pinion", "wheel"), colours(2), strict=True):
-            way = results[f"root_way_base_pitches_{name}"].values
+        for i, (name, colour) in enumerate(zip(("pinion", "wheel"), colours(2), strict=True)):
+            travel = read(results, f"root_{name}_travel")
             for what, dash in (("tension", "-"), ("compression", "--")):
-                stress = 1e-6 * results[f"root_{what}_Pa_{name}"].values
-                axes.plot(way, stress, color=colour, linestyle=dash, label=f"{name}, {what}")
-            if f"iso6336_3_sigma_F0_{name}" in results:
-                nominal = 1e-6 * float(results[f"iso6336_3_sigma_F0_{name}"])
+                stress = read(results, f"root_{name}_{what}")
+                axes.plot(travel.values, stress.values, color=colour, linestyle=dash, label=f"{name}, {what}")
+            if "iso6336_3_stresses" in results:
+                nominal = float(read(results, "iso6336_3_stresses").values[i])
                 axes.axhline(nominal, color=colour, linestyle=":", label=f"{name}, ISO 6336-3 at D")
         axes.axhline(0.0, color="black", linewidth=0.6)
-        axes.set(
-            xlabel="travel since the tooth's pair was at A [base pitches]",
-            ylabel="stress along the fillet [MPa]",
-        )
+        axes.set(xlabel=travel.label, ylabel=stress.named("stress along the fillet"))
         legend_above(drawn, axes)
     return drawn
 
@@ -53,21 +50,18 @@ def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "torques"', "torque_secant_stiffness", "face_width")
-    torque, scale = results["torque"].values, per_face(results)
+    names = {"secant": "torque_secant_stiffness", "tangent": "torque_stiffness"}
+    need(results, 'run a scene that wants "torques"', *names.values(), "pair_face_width")
+    torque, error = read(results, "torque"), read(results, "torque_transmission_error")
     with styled(style):
         drawn = figure(height=2.8)
         left, right = drawn.subplots(1, 2)
-        for kind, look in zip(("secant", "tangent"), looks(2), strict=True):
-            k = scale * results[f"torque_{kind}_stiffness"].values
-            left.plot(torque, k, marker=".", label=kind, **look)
-        left.set(xlabel="torque of the pinion [N m]", ylabel="mean stiffness [N/(mm µm)]")
-        error = 1e6 * results["torque_transmission_error"].values
-        right.plot(torque, error, ".-", color=colours(1)[0])
-        right.set(
-            xlabel="torque of the pinion [N m]",
-            ylabel="transmission error,\npeak to peak [µm]",
-        )
+        for (kind, name), look in zip(names.items(), looks(2), strict=True):
+            k = read(results, name, per_face=True)
+            left.plot(torque.values, k.values, marker=".", label=kind, **look)
+        left.set(xlabel=torque.label, ylabel=k.named("mean stiffness"))
+        right.plot(torque.values, error.values, ".-", color=colours(1)[0])
+        right.set(xlabel=torque.label, ylabel=error.label)
         from_zero(right)
         legend_above(drawn, left)
     return drawn
@@ -83,18 +77,18 @@ def revolution(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "revolution"', "revolution_transmission_error")
+    curves = {
+        "under load": "revolution_transmission_error",
+        "without load": "revolution_unloaded_transmission_error",
+    }
+    need(results, 'run a scene that wants "revolution"', *curves.values())
+    position = read(results, "revolution_position")
     with styled(style):
         drawn = figure(height=2.8)
         axes = drawn.subplots()
-        travel = results["revolution_travel"].values
-        for (name, label), colour in zip(
-            (("", "under load"), ("unloaded_", "without load")), colours(2), strict=True
-        ):
-            error = 1e6 * results[f"revolution_{name}transmission_error"].values
-            axes.plot(travel, error, color=colour, linewidth=0.9, label=label)
-        axes.set(
-            xlabel="travel after the first pair is at A [base pitches]", ylabel="transmission error [µm]"
-        )
+        for (label, name), colour in zip(curves.items(), colours(2), strict=True):
+            error = read(results, name)
+            axes.plot(position.values, error.values, color=colour, linewidth=0.9, label=label)
+        axes.set(xlabel=position.label, ylabel=error.named("transmission error"))
         legend_above(drawn, axes)
     return drawn

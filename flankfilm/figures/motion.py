@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures.reading import need
+from flankfilm.figures.reading import Reading, need, read
 from flankfilm.figures.style import MARK, Style, colours, figure, legend_above, styled
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-FREQUENCY = "mesh frequency over natural frequency [-]"
-SPEED = "pinion speed [rpm]"
 SMOOTH = 5000
 """Most points of a curve that is drawn as a curve; longer ones become pixels, so that files stay small."""
 
@@ -33,8 +31,7 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's.
     """
     need(results, SWEEP, "sweep_frequency", "sweep_up", "sweep_down")
-    fast = "sweep_speed_rpm" in results
-    parameter = results["sweep_speed_rpm" if fast else "sweep_frequency"].values
+    parameter = over_speed(results, "sweep")
     rows = {d: [str(n) for n in results[f"sweep_{d}_label"].values] for d in ("up", "down")}
     names = _most_frequent([label for row in rows.values() for label in row], 8)
     rest = ["other"] if any(label not in names for row in rows.values() for label in row) else []
@@ -46,17 +43,17 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         # the larger dots lie below, so that both show where the sweeps agree
         for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=True):
             points = results[f"sweep_{direction}"].values
-            x, y = np.repeat(parameter, points.shape[1]), points[:, :, 0].ravel()
+            x, y = np.repeat(parameter.values, points.shape[1]), points[:, :, 0].ravel()
             upper.plot(x, y, ".", color=colour, markersize=size, rasterized=True)
             upper.plot([], [], ".", color=colour, markersize=8, label=direction)
         upper.set(ylabel="displacement at tau = 0 [-]")
         legend_above(drawn, upper)
         for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=True):
             height = np.array([names.index(label) if label in names else len(names) for label in row])
-            lower.plot(parameter, height + shift, ".", color=colour, markersize=2, rasterized=True)
+            lower.plot(parameter.values, height + shift, ".", color=colour, markersize=2, rasterized=True)
         lower.set_yticks(range(len(names) + len(rest)), [*names, *rest])
         lower.margins(y=0.15)
-        lower.set(xlabel=SPEED if fast else FREQUENCY, ylabel="motion n-p-q")
+        lower.set(xlabel=parameter.label, ylabel="motion n-p-q")
         lower.invert_yaxis()
     return drawn
 
@@ -71,11 +68,13 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, SWEEP, "portrait_motion", "portrait_displacement", "portrait_section", "half_backlash")
+    need(
+        results, SWEEP, "portrait_motion", "portrait_displacement", "portrait_section", "sweep_half_backlash"
+    )
     count = results["portrait_motion"].size
     columns = max(2, min(3, count))
     rows = -(-count // columns)
-    edge = float(results["half_backlash"])
+    edge = float(results["sweep_half_backlash"])
     of_sample, of_point = results["portrait_of_sample"].values, results["portrait_of_point"].values
     with styled(style):
         drawn = figure(height=2.6 * rows + 0.3)
@@ -85,18 +84,26 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         first, second = colours(2)
         for i, axes in zip(range(count), grid.ravel(), strict=False):
             mine = of_sample == i
-            x, v = (results[f"portrait_{name}"].values[mine] for name in ("displacement", "velocity"))
-            axes.plot(x, v, color=first, linewidth=0.8, rasterized=x.size > SMOOTH)
+            x, v = (read(results, f"portrait_{name}") for name in ("displacement", "velocity"))
+            many = int(mine.sum()) > SMOOTH
+            axes.plot(x.values[mine], v.values[mine], color=first, linewidth=0.8, rasterized=many)
             section = results["portrait_section"].values[of_point == i]
             axes.plot(section[:, 0], section[:, 1], "o", color=second, markersize=3.5)
             for at in (-edge, edge):
                 axes.axvline(at, color=MARK, linewidth=0.8, linestyle=":")
-            motion, way = (str(results[f"portrait_{name}"].values[i]) for name in ("motion", "direction"))
-            axes.set_title(
-                f"{motion} at ω = {float(results['portrait_frequency'][i]):.4g}, {way}", fontsize=8.5
+            motion, direction = (
+                str(results[f"portrait_{name}"].values[i]) for name in ("motion", "direction")
             )
-            axes.set(xlabel="displacement X [-]", ylabel="velocity dX/dτ [-]")
+            axes.set_title(
+                f"{motion} at ω = {float(results['portrait_frequency'][i]):.4g}, {direction}", fontsize=8.5
+            )
+            axes.set(xlabel=x.label, ylabel=v.label)
     return drawn
+
+
+def over_speed(results: xr.Dataset, prefix: str) -> Reading:
+    """Places of motions: the pinion's speed where the scene has one, else the frequency."""
+    return read(results, f"{prefix}_{'speed' if f'{prefix}_speed' in results else 'frequency'}")
 
 
 def _most_frequent(labels: Sequence[str], limit: int) -> list[str]:

@@ -1,23 +1,130 @@
-"""What the figures read from a dataset of results, and the marks that they share."""
+"""What the figures read from a dataset of results: numbers in the unit that people read, labels, and shared marks.
+
+The one place that turns a variable into numbers and a label; both follow from the variable's attributes.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from base import Array
+from base.results import figures
+from base.units import factor, suffix
 from flankfilm.figures.style import MARK
+from flankfilm.output.tables import read_in
+from flankfilm.output.variables import sentence
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
-
 PATH_LABEL = "travel along the path of contact from A [mm]"
-CYCLE_LABEL = "travel after a pair is at A [base pitches]"
+
+PER_FACE = "N/(mm um)"
+"""Unit that people read a stiffness in, per face width."""
+
+WIDEST = 34
+"""Most characters of a line of a label."""
+
+LONGEST = 60
+"""Most characters of a meaning that is not cut at a comma."""
+
+NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A variable as people read it.
+
+    Attributes
+    ----------
+    values : ndarray
+        In `unit`.
+    meaning : str
+        What it is.
+    unit : str
+        As it is written on an axis; "-" for pure numbers.
+    """
+
+    values: Array
+    meaning: str
+    unit: str
+
+    @property
+    def label(self) -> str:
+        """Meaning with its unit, for an axis or the head of a column."""
+        return self.named(self.meaning)
+
+    def named(self, meaning: str) -> str:
+        """The same for another meaning, such as what several curves have in common."""
+        unit = f"[{self.unit}]".replace(" ", NO_BREAK)
+        return fill(f"{meaning} {unit}", WIDEST).replace(NO_BREAK, " ")
+
+
+def read(results: xr.Dataset, name: str, *, per_face: bool = False) -> Reading:
+    """Read a variable in the unit that people read.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+    name : str
+        Of the variable.
+    per_face : bool
+        Whether a stiffness is divided by the face width: N/(mm um) instead of N/m.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> about = {"units": "m", "display_units": "um", "long_name": "transmission error"}
+    >>> found = read(xr.Dataset({"dry_transmission_error": ("dry_position", [2e-6, 3e-6], about)}),
+    ...              "dry_transmission_error")
+    >>> found.values, found.label
+    (array([2., 3.]), 'transmission error [µm]')
+    """
+    about = results[name].attrs
+    width = float(results["pair_face_width"]) if per_face else None
+    return _reading(results[name].values, about["units"], read_in(results, name), about["long_name"], width)
+
+
+def read_figure(result: object, name: str, face_width: float | None = None) -> Reading:
+    """Read a figure of a record in the unit that people read.
+
+    Parameters
+    ----------
+    result : object
+        A record.
+    name : str
+        Of the figure.
+    face_width : float, optional
+        By which a stiffness is divided [m]: N/(mm um) instead of N/m.
+    """
+    figure = figures(type(result))[name]
+    value = np.asarray(getattr(result, name))
+    return _reading(value, figure.unit, figure.read_in, sentence(figure.meaning), face_width)
+
+
+def _reading(values: Array, unit: str, shown: str, meaning: str, face_width: float | None) -> Reading:
+    scale = 1.0 if shown == unit else factor(shown)
+    if face_width is not None:
+        shown, scale = PER_FACE, factor(PER_FACE) * face_width
+    return Reading(values if scale == 1.0 else values / scale, _short(meaning), unit_text(shown))
+
+
+def _short(meaning: str) -> str:
+    """What a variable is, without explanations: up to a colon or semicolon, or where that is long to a comma."""
+    head = re.split("[:;]", meaning, maxsplit=1)[0]
+    return head if len(head) <= LONGEST else head.partition(", ")[0]
+
+
+def unit_text(unit: str, pure: str = "-") -> str:
+    """Unit as it is written on a page; `pure` for numbers without one."""
+    return pure if unit in ("1", "") else unit.replace("um", "µm").replace("m2", "m²").replace("m3", "m³")
 
 
 def need(results: xr.Dataset, wants: str, *names: str) -> None:
@@ -42,11 +149,6 @@ def need(results: xr.Dataset, wants: str, *names: str) -> None:
         raise ValueError(f"{title}: no {', '.join(missing)} to draw; {wants}")
 
 
-def per_face(results: xr.Dataset) -> float:
-    """Factor from N/m at the whole face to N/(mm um)."""
-    return 1e-9 / float(results["face_width"])
-
-
 def text(results: xr.Dataset, name: str) -> str:
     """Give a variable that is one text."""
     return str(results[name].values.item())
@@ -58,15 +160,15 @@ def travel(results: xr.Dataset, name: str) -> Array:
     return np.asarray(1e3 * (results[name].values - start))
 
 
-def two_pitches(phase: Array, values: Array) -> tuple[Array, Array]:
+def two_pitches(position: Array, values: Array) -> tuple[Array, Array]:
     """Repeat a curve over a second base pitch."""
-    return np.concatenate([phase, phase + 1]), np.concatenate([values, values])
+    return np.concatenate([position, position + 1]), np.concatenate([values, values])
 
 
 def mark_path(results: xr.Dataset, panels: Sequence[Axes], named: Axes) -> None:
     """Mark A to E in all panels, and name them above one."""
     for name, at in zip(
-        results["path_point_name"].values, travel(results, "path_point_rho1").tolist(), strict=True
+        results["path_point"].values, travel(results, "path_point_rho1").tolist(), strict=True
     ):
         for axes in panels:
             axes.axvline(at, color=MARK, linewidth=0.8)
@@ -81,19 +183,16 @@ def label_of(results: xr.Dataset, name: str) -> str:
     return str(results[name].attrs["long_name"]).partition(": ")[2]
 
 
-def words(name: str) -> str:
-    """Name of a variable without its unit, as a person writes it."""
-    for unit in ("_N_per_mm_um", "_um", "_mm", "_percent", "_deg", "_GPa", "_MPa", "_m_per_s"):
-        name = name.removesuffix(unit)
-    return name.replace("_", " ")
+def words(results: xr.Dataset, name: str) -> str:
+    """Name of a study's output without its unit, as a person writes it."""
+    return name.removesuffix(f"_{suffix(read_in(results, name))}").replace("_", " ")
 
 
-def unit(results: xr.Dataset, name: str, pure: str = "-") -> str:
-    """Unit of a variable; `pure` for numbers without one."""
-    held = str(results[name].attrs["units"]).replace("um", "µm")
-    return pure if held == "1" else held
+def unit_of(results: xr.Dataset, name: str, pure: str = "-") -> str:
+    """Unit of a variable as people read it; `pure` for numbers without one."""
+    return unit_text(read_in(results, name), pure)
 
 
 def titled(results: xr.Dataset, name: str) -> str:
-    """Give a variable's name with its unit, for an axis or the head of a column."""
-    return f"{words(name)} [{unit(results, name)}]"
+    """Give a study's output with its unit, for an axis or the head of a column."""
+    return f"{words(results, name)} [{unit_of(results, name)}]"

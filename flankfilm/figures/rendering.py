@@ -81,7 +81,7 @@ def draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
 
     unit, factor = SHOWN_UNITS.get(view.field.rpartition("_")[2], ("", 1.0))
     # the pinion turns ahead by the deflection, as much exaggerated as the displacements
-    turn = view.scale * float(np.interp(at, view.phase, view.error)) / view.base_radius
+    turn = view.scale * float(np.interp(at, view.position, view.error)) / view.base_radius
     for name, angle in (("pinion", turn), ("wheel", 0.0)):
         gear = pv.read(files[name])
         near = np.linalg.norm(gear.cell_centers().points[:, :2] - view.centre, axis=1) < 1.7 * view.reach

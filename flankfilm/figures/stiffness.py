@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.reading import (
-    CYCLE_LABEL,
     PATH_LABEL,
-    Array,
+    Reading,
     label_of,
     mark_path,
     need,
-    per_face,
+    read,
     text,
     travel,
     two_pitches,
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 STIFFNESS = 'run a scene that wants "stiffness"'
 
+KINDS = {"secant": "secant_stiffness", "tangent": "stiffness"}
+"""Names of the curves of a mesh cycle."""
+
 
 def single_pairs(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw the stiffness of one pair of teeth along the path of contact, one curve a model.
@@ -37,16 +40,16 @@ def single_pairs(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "closed-forms"', "path_rho1", "face_width")
-    names = [str(n) for n in results.data_vars if str(n).startswith("single_pair_")]
+    need(results, 'run a scene that wants "closed-forms"', "single_pair_rho1", "pair_face_width")
+    names = [str(n) for n in results.data_vars if str(n).startswith("single_pair_stiffness_")]
     with styled(style):
         drawn = figure()
         axes = drawn.subplots()
         for name, look in zip(names, looks(len(names)), strict=True):
-            k = per_face(results) * results[name].values
-            axes.plot(travel(results, "path_rho1"), k, label=label_of(results, name), **look)
+            k = read(results, name, per_face=True)
+            axes.plot(travel(results, "single_pair_rho1"), k.values, label=label_of(results, name), **look)
         mark_path(results, (axes,), axes)
-        axes.set(xlabel=PATH_LABEL, ylabel="one pair [N/(mm µm)]")
+        axes.set(xlabel=PATH_LABEL, ylabel=k.label)
         from_zero(axes)
         legend_above(drawn, axes, columns=4)
     return drawn
@@ -64,15 +67,8 @@ def mesh_stiffness(results: xr.Dataset, kind: str = "secant", *, style: Style | 
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    cycles = _cycles(results, f"{kind}_stiffness")
-    with styled(style):
-        drawn = figure(height=3.8)
-        axes = drawn.subplots()
-        for (label, (phase, k)), look in zip(cycles.items(), looks(len(cycles)), strict=True):
-            axes.plot(*two_pitches(phase, per_face(results) * k), label=label, **look)
-        axes.set(xlabel=CYCLE_LABEL, ylabel=f"mesh, {kind} [N/(mm µm)]")
-        from_zero(axes)
-        legend_above(drawn, axes, columns=2)
+    drawn = _over_the_cycle(results, KINDS[kind], 3.8, style, per_face=True)
+    from_zero(drawn.axes[0])
     return drawn
 
 
@@ -86,13 +82,30 @@ def transmission_error(results: xr.Dataset, *, style: Style | None = None) -> Fi
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    cycles = _cycles(results, "transmission_error")
+    return _over_the_cycle(results, "transmission_error", 3.2, style)
+
+
+def _over_the_cycle(
+    results: xr.Dataset, what: str, height: float, style: Style | None, *, per_face: bool = False
+) -> Figure:
+    """Draw a curve of the mesh cycle over two base pitches by every model, the one that counts first."""
+    prefix = _final(results)
+    own = list(dict.fromkeys((prefix, "dry")))
+    need(results, STIFFNESS, *(f"{name}_{what}" for name in own))
+    curves = {
+        text(results, f"{name}_label"): read(results, f"{name}_{what}", per_face=per_face) for name in own
+    }
+    if "other_model" in results:
+        others = read(results, f"other_{what}", per_face=per_face)
+        for label, values in zip(results["other_model"].values.tolist(), others.values, strict=True):
+            curves[label] = Reading(values, others.meaning, others.unit)
+    position = read(results, f"{prefix}_position")
     with styled(style):
-        drawn = figure(height=3.2)
+        drawn = figure(height=height)
         axes = drawn.subplots()
-        for (label, (phase, error)), look in zip(cycles.items(), looks(len(cycles)), strict=True):
-            axes.plot(*two_pitches(phase, 1e6 * error), label=label, **look)
-        axes.set(xlabel=CYCLE_LABEL, ylabel="loaded transmission error [µm]")
+        for (label, curve), look in zip(curves.items(), looks(len(curves)), strict=True):
+            axes.plot(*two_pitches(position.values, curve.values), label=label, **look)
+        axes.set(xlabel=position.label, ylabel=curve.label)
         legend_above(drawn, axes, columns=2)
     return drawn
 
@@ -108,17 +121,15 @@ def load_share(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's.
     """
     prefix = _final(results)
-    rho = results[f"{prefix}_rho1"].values.ravel()
-    order = np.flatnonzero(np.isfinite(rho))
-    order = order[np.argsort(rho[order])]
-    share = results[f"{prefix}_load_share"].values.ravel()[order]
+    at, share = travel(results, f"{prefix}_rho1").ravel(), read(results, f"{prefix}_load_share")
+    order = np.flatnonzero(np.isfinite(at))
+    order = order[np.argsort(at[order])]
     with styled(style):
         drawn = figure(height=2.8)
         axes = drawn.subplots()
-        at = 1e3 * (rho[order] - float(results["path_point_rho1"][0]))
-        axes.plot(at, share, ".-", color=colours(1)[0], markersize=3)
+        axes.plot(at[order], share.values.ravel()[order], ".-", color=colours(1)[0], markersize=3)
         mark_path(results, (axes,), axes)
-        axes.set(xlabel=PATH_LABEL, ylabel="share of the force [-]", ylim=(-0.02, 1.05))
+        axes.set(xlabel=PATH_LABEL, ylabel=share.label, ylim=(-0.02, 1.05))
     return drawn
 
 
@@ -132,58 +143,43 @@ def fourier(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "fourier" and computes its stiffness', "sampled_harmonic")
-    prefix, scale = _final(results), per_face(results)
-    kind = text(results, "fourier_kind")
+    need(results, 'run a scene that wants "fourier" and computes its stiffness', "fourier_harmonics")
+    prefix, kind = _final(results), text(results, "fourier_kind")
     order = results["fourier_amplitude"].size
     series = {f"{kind}, order {order}": "fourier"}
     if "fourier_other_mean" in results:
         series[f"{'tangent' if kind == 'secant' else 'secant'}, order {order}"] = "fourier_other"
+    samples = read(results, f"{prefix}_{KINDS[kind]}", per_face=True)
+    position = read(results, f"{prefix}_position")
     with styled(style):
         drawn = figure(height=3.2)
         left, right = drawn.subplots(1, 2, width_ratios=(3, 1))
-        samples = results[f"{prefix}_{kind}_stiffness"].values
-        phase, k = two_pitches(results[f"{prefix}_phase"].values, scale * samples)
-        left.plot(phase, k, ".", color="#777777", markersize=3, label=kind)
+        curve = two_pitches(position.values, samples.values)
+        left.plot(*curve, ".", color="#777777", markersize=3, label=kind)
         fine = np.linspace(0, 2, 401)
         for (label, name), look in zip(series.items(), looks(len(series)), strict=True):
-            left.plot(fine, scale * _sum(results, name, fine), label=label, **look)
-        left.set(xlabel=CYCLE_LABEL, ylabel="stiffness [N/(mm µm)]")
+            left.plot(fine, _sum(results, name, fine), label=label, **look)
+        left.set(xlabel=position.label, ylabel=samples.named("stiffness"))
         legend_above(drawn, left)
-        harmonics = results["sampled_harmonic"].values[:12]
-        numbers = np.arange(1, harmonics.size + 1)
-        right.bar(numbers, harmonics, color=colours(1)[0])
-        right.set(
-            xlabel="harmonic [-]",
-            ylabel="amplitude over the mean [-]",
-            xticks=numbers[:: max(1, numbers.size // 5)],
-        )
+        harmonics = read(results, "fourier_harmonics")
+        numbers = np.arange(1, harmonics.values[:12].size + 1)
+        right.bar(numbers, harmonics.values[:12], color=colours(1)[0])
+        right.set(xlabel="harmonic [-]", ylabel=harmonics.label, xticks=numbers[:: max(1, numbers.size // 5)])
     return drawn
 
 
 def _sum(results: xr.Dataset, name: str, turns: Array) -> Array:
-    """Fourier series at `turns` base pitches after A."""
-    amplitude, phase = results[f"{name}_amplitude"].values, results[f"{name}_phase"].values
+    """Fourier series at `turns` base pitches after A, per face width."""
+    mean, amplitude = (
+        read(results, f"{name}_{part}", per_face=True).values for part in ("mean", "amplitude")
+    )
+    phase = results[f"{name}_phase"].values
     angle = 2 * np.pi * turns[:, None] * np.arange(1, amplitude.size + 1) + phase
-    return np.asarray(float(results[f"{name}_mean"]) + np.cos(angle) @ amplitude)
+    return np.asarray(mean + np.cos(angle) @ amplitude)
 
 
 def _final(results: xr.Dataset) -> str:
     """Which mesh cycle counts: the one with film where there is one."""
-    prefix = "lubricated" if "lubricated_phase" in results else "dry"
-    need(results, STIFFNESS, f"{prefix}_phase", "face_width")
+    prefix = "lubricated" if "lubricated_position" in results else "dry"
+    need(results, STIFFNESS, f"{prefix}_position", f"{prefix}_label", "pair_face_width")
     return prefix
-
-
-def _cycles(results: xr.Dataset, what: str) -> dict[str, tuple[Array, Array]]:
-    """Label of each model to phase and one curve; the one that counts first."""
-    prefix = _final(results)
-    found = {}
-    for name in dict.fromkeys((prefix, "dry")):
-        need(results, STIFFNESS, f"{name}_{what}", f"{name}_model")
-        label = text(results, f"{name}_model")
-        found[label] = results[f"{name}_phase"].values, results[f"{name}_{what}"].values
-    if "other_model" in results:
-        curves = zip(results["other_phase"].values, results[f"other_{what}"].values, strict=True)
-        found |= dict(zip(results["other_model"].values.tolist(), curves, strict=True))
-    return found

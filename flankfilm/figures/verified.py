@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.figures.reading import CYCLE_LABEL, PATH_LABEL, mark_path, need, per_face, travel
+from flankfilm.figures.reading import PATH_LABEL, mark_path, need, read, travel
 from flankfilm.figures.style import Style, figure, from_zero, looks, styled
 
 if TYPE_CHECKING:
@@ -32,11 +32,15 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
         "give the verify.nc of a verification",
         "model",
         "reference",
-        "model_single",
-        "reference_single",
+        "model_single_stiffness",
+        "reference_single_stiffness",
     )
-    scale, at = per_face(found), travel(found, "path_rho1")
-    phase = np.concatenate([found["phase"].values, found["phase"].values + 1])
+    at, position = travel(found, "path_rho1"), read(found, "mesh_position")
+    both = np.concatenate([position.values, position.values + 1])
+    single, secant = (
+        {kind: read(found, f"{kind}_{what}", per_face=True) for kind in ("reference", "model")}
+        for what in ("single_stiffness", "secant_stiffness")
+    )
     like = int(found["like_for_like"])
     labels = [str(n) for n in found["reference"].values]
     with styled(style):
@@ -44,22 +48,19 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
         one, mesh, off = drawn.subplots(3, 1)
         for i, line in ((0, "-"), (like, "--")):
             label = labels[i] if i == 0 else f"finite elements {labels[i]}"
-            one.plot(
-                at, scale * found["reference_single"].values[i], color="#000000", linestyle=line, label=label
-            )
-            secant = np.tile(found["reference_secant"].values[i], 2)
-            mesh.plot(phase, scale * secant, color="#000000", linestyle=line)
+            one.plot(at, single["reference"].values[i], color="#000000", linestyle=line, label=label)
+            mesh.plot(both, np.tile(secant["reference"].values[i], 2), color="#000000", linestyle=line)
         for i, (name, look) in enumerate(zip(found["model"].values, looks(found["model"].size), strict=True)):
-            single = found["model_single"].values[i]
-            one.plot(at, scale * single, label=str(name), **look)
-            mesh.plot(phase, scale * np.tile(found["model_secant"].values[i], 2), **look)
-            off.plot(at, 100 * (single / found["reference_single"].values[like] - 1), **look)
+            curve = single["model"].values[i]
+            one.plot(at, curve, label=str(name), **look)
+            mesh.plot(both, np.tile(secant["model"].values[i], 2), **look)
+            off.plot(at, 100 * (curve / single["reference"].values[like] - 1), **look)
         error = 100 * float(found["reference_error"][like])
         off.axhspan(-error, error, color="#bbbbbb", linewidth=0)
         off.axhline(0.0, color="#000000", linewidth=0.8, linestyle="--")
-        one.set(xlabel=PATH_LABEL, ylabel="one pair [N/(mm µm)]")
+        one.set(xlabel=PATH_LABEL, ylabel=single["model"].label)
         from_zero(one)
-        mesh.set(xlabel=CYCLE_LABEL, ylabel="mesh, secant [N/(mm µm)]")
+        mesh.set(xlabel=position.label, ylabel=secant["model"].label)
         from_zero(mesh)
         off.set(xlabel=PATH_LABEL, ylabel="one pair, difference\nfrom dashed black line [%]")
         for axes in (one, off):

@@ -27,7 +27,7 @@ class View:
         Half its width [m].
     base_radius : float
         Of the pinion [m].
-    phase, error : tuple of float
+    position, error : tuple of float
         Positions of the mesh cycle [base pitches], and the loaded transmission error there [m].
     seconds : float
         Length of the animation; 0 for one picture.
@@ -48,7 +48,7 @@ class View:
     centre: tuple[float, float]
     reach: float
     base_radius: float
-    phase: tuple[float, ...]
+    position: tuple[float, ...]
     error: tuple[float, ...]
     seconds: float
     only: float

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf, write_text
 from flankfilm.optimisation.run import Optimum
-from flankfilm.studies.files import unit_of
-from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.output.files import provenance, write_csv, write_netcdf, write_text
+from flankfilm.studies.files import of_rows
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,25 +64,20 @@ def phases(found: Optimum) -> tuple[float, float, float] | None:
 
 def dataset(found: Optimum) -> xr.Dataset:
     """Give every point of an optimisation along ``point``: keys as coordinates, outputs, and which are best."""
-    task, along = found.task, ("point",)
-    points = found.evaluations
-    quantities = {
-        key: Quantity(
-            along, np.asarray([p.values[i] for p in points]), unit_of(key), f"key {key} of the scene"
-        )
-        for i, key in enumerate(task.keys)
-    }
-    for i, name in enumerate(task.outputs):
-        values = [p.result.values[i] for p in points]
-        quantities[name] = Quantity(along, values, OUTPUTS[name].unit, OUTPUTS[name].meaning)
-    best = np.isin(np.arange(len(points)), found.best)
-    fine = np.array([p.tolerance == task.tolerances[1] for p in points])
-    quantities["best"] = Quantity(along, best.astype(np.int8), "1", "1 for the optimum, or for the front")
-    quantities["fine"] = Quantity(along, fine.astype(np.int8), "1", "1 at the scene's own tolerance")
-    quantities["seconds"] = Quantity(along, [p.result.seconds for p in points], "s", "cost of the point")
+    task, points = found.task, found.evaluations
+    best = np.isin(np.arange(len(points)), found.best).astype(np.int8)
+    fine = np.array([point.tolerance == task.tolerances[1] for point in points], dtype=np.int8)
     scene = json.dumps(task.raw_scene(points[found.best[0]].values, task.tolerances[1]))
     attributes = {"title": task.title, "objectives_json": json.dumps(task.objectives), **provenance(scene)}
-    return to_dataset(quantities, attributes).set_coords(list(task.keys))
+    values, results = [point.values for point in points], [point.result for point in points]
+    return (
+        of_rows("point", task.keys, values, task.outputs, results)
+        .assign(
+            best=("point", best, {"units": "1", "long_name": "1 for the optimum, or for the front"}),
+            fine=("point", fine, {"units": "1", "long_name": "1 at the scene's own tolerance"}),
+        )
+        .assign_attrs(attributes)
+    )
 
 
 def write_optimum(found: Optimum, folder: Path) -> list[Path]:

@@ -7,14 +7,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.cycle import MeshCycle, sampling_error
-from flankfilm.dataset import provenance, write_text
+from flankfilm.figures.reading import read_figure
+from flankfilm.output.files import provenance, write_text
 from flankfilm.report import diagram_parts, film_parts, load_parts, mesh_parts, motion_parts, run_parts
 from flankfilm.report.page import Fact, Headline, Part, render
 from flankfilm.report.run_parts import CostRow
 from flankfilm.report.text import percent, seconds
 
 if TYPE_CHECKING:
+    from flankfilm.coupling import LubricatedCycle
     from flankfilm.results import Results
+
+
+Work = tuple[str, float | None, float | None, str]
+"""Figure, share of the tolerance, error, and what was done."""
+
+NOTHING: Work = ("", None, None, "")
+
+LEAST_SECONDS = 0.005
+"""Time of a stage that is listed although it has no error of its own [s]."""
 
 
 def headlines(results: Results) -> list[Headline]:
@@ -26,26 +37,9 @@ def headlines(results: Results) -> list[Headline]:
     if (film := values.get("film")) is not None:
         shown += film_parts.headlines(film)
     if (roots := values.get("root stress")) is not None:
-        gears = (roots.stress.pinion, roots.stress.wheel)
-        largest = [f"{1e-6 * gear.greatest_tension.stress_Pa:.4g}" for gear in gears]
-        shown.append(
-            Headline(
-                "greatest root stress, pinion and wheel",
-                " and ".join(largest),
-                f"error {percent(roots.stress.error)}",
-                "MPa",
-            )
-        )
+        shown.append(load_parts.headline(roots))
     if (fourier := values.get("fourier")) is not None:
-        kappa = (
-            fourier.stiffness.amplitudes[0] / fourier.stiffness.mean if fourier.stiffness.amplitudes else 0.0
-        )
-        left = (
-            "given"
-            if fourier.fit is None
-            else f"remainder {100 * fourier.fit.remainder_rms:.2g} % of the mean"
-        )
-        shown.append(Headline("first harmonic over the mean", f"{kappa:.4f}", left))
+        shown.append(motion_parts.fourier_headline(fourier))
     if (sweep := values.get("sweep")) is not None:
         shown.append(motion_parts.headline(sweep))
     if (diagram := values.get("diagram")) is not None:
@@ -64,7 +58,8 @@ def summary(results: Results) -> list[str]:
 
 def final_cycle(results: Results) -> MeshCycle | None:
     """Return the mesh cycle with the film where there is one, else the dry one."""
-    return results.values.get("film") or results.values.get("dry cycle")
+    found: MeshCycle | None = results.values.get("film", results.values.get("dry cycle"))
+    return found
 
 
 def write_report(results: Results, folder: Path) -> Path:
@@ -107,20 +102,15 @@ def _result_parts(results: Results) -> list[Part | None]:
         parts.append(mesh_parts.geometry(pair, data))
     if cycle is not None and pair is not None:
         film = values.get("film")
-        cycles = [cycle]
-        if film is not None:
-            cycles.append(values["dry cycle"])
-        cycles += values.get("other cycles", ())
-        changes = (
-            {} if film is None else {"secant": film.secant_stiffness_change, "tangent": film.stiffness_change}
-        )
+        cycles = dict.fromkeys((cycle, values["dry cycle"], *values.get("other cycles", ())))
+        notes = _film_notes(results, film)
         parts.append(
-            mesh_parts.stiffness(values.get("closed forms"), cycles, changes, _model_note(results), data)
+            mesh_parts.stiffness(values.get("closed forms"), list(cycles), notes, pair.face_width, data)
         )
         if film is not None:
             parts.append(film_parts.film(film, data, scene.tolerance))
-    if pair is not None and (torques := values.get("torques")) is not None:
-        parts.append(load_parts.over_torque(torques, pair.face_width, data))
+    if (torques := values.get("torques")) is not None:
+        parts.append(load_parts.over_torque(torques, data))
     if (whole := values.get("revolution")) is not None:
         parts.append(load_parts.revolution(whole, data))
     if (roots := values.get("root stress")) is not None:
@@ -138,9 +128,16 @@ def _result_parts(results: Results) -> list[Part | None]:
     return parts
 
 
-def _model_note(results: Results) -> str:
-    plan = results.values.get("plan")
-    return f"Film: {plan.film.reason}." if plan is not None else ""
+def _film_notes(results: Results, film: LubricatedCycle | None) -> list[str]:
+    """Why there is a film or none, and what it changes."""
+    notes = [] if results.plan is None else [f"Film: {results.plan.film.reason}."]
+    if film is not None:
+        for kind, name in (("secant", "secant_stiffness_change"), ("tangent", "stiffness_change")):
+            change = read_figure(film, name)
+            notes.append(
+                f"The film changes the mean {kind} stiffness by {float(change.values):+.2f} {change.unit}."
+            )
+    return notes
 
 
 def _run_parts(results: Results) -> list[Part | None]:
@@ -158,43 +155,35 @@ def _run_parts(results: Results) -> list[Part | None]:
 
 def _cost_rows(results: Results) -> list[CostRow]:
     """Error and work of each stage that ran, in the order of the house."""
-    plan = results.plan
-    scene_tolerance = results.scene.tolerance
-    rows = []
-    for name, run in results.runs.items():
-        value: Any = results.values.get(name)
-        figure, allowed, error, note = "", None, None, ""
-        if name == "bodies":
-            figure, allowed, error = (
-                "tooth compliance",
-                results.values["plan"].resolution.compliance,
-                value.error,
-            )
-            note = f"{value.cost.unknowns:,} unknowns"
-        elif name == "dry cycle":
-            figure, allowed, error = (
-                "mean stiffness, from sampling",
-                results.values["plan"].resolution.sampling,
-                sampling_error(value.secant_stiffness),
-            )
-            note = f"{value.position.size} positions"
-        elif name == "fillets":
-            figure, allowed, error = "greatest root stress per load", scene_tolerance, value.error
-            note = f"{value.cost.unknowns:,} unknowns"
-        elif name == "film" and value.film.model == "ehl":
-            figure, allowed, error = "film thickness", results.values["plan"].film_tolerance, value.film.error
-            note = f"{value.film.rho1.size} films of up to {value.film.cost.unknowns} unknowns, {value.rounds} rounds"
-        elif name == "fourier" and value.fit is not None:
-            figure, error = "what the series leaves out", value.fit.remainder_rms
-            allowed = None if plan is None else plan.series
-            note = f"order {len(value.stiffness.amplitudes)}"
-        elif name == "sweep":
-            figure, error = "settled motions", value.error
-            note = f"{value.cost.periods:,} periods"
-        elif name == "diagram":
-            figure, error = "special points", value.diagram.error
-            note = f"{len(value.diagram.branches)} branches"
-        elif run.seconds < 0.005:
-            continue
-        rows.append(CostRow(run.title, figure, allowed, error, note, run.seconds, run.cached))
-    return rows
+    return [
+        CostRow(run.title, *_work(name, results), run.seconds, run.cached)
+        for name, run in results.runs.items()
+        if _work(name, results) != NOTHING or run.seconds >= LEAST_SECONDS
+    ]
+
+
+def _work(name: str, results: Results) -> Work:
+    """Which figure a stage's error belongs to, what was allowed, the error, and what was done for it."""
+    value: Any = results.values.get(name)
+    plan, tolerance = results.plan, results.scene.tolerance
+    if name == "bodies" and plan is not None:
+        work = f"{value.cost.unknowns:,} unknowns"
+        return "tooth compliance", plan.resolution.compliance, value.error, work
+    if name == "dry cycle" and plan is not None:
+        sampled = sampling_error(value.secant_stiffness)
+        work = f"{value.position.size} positions"
+        return "mean stiffness, from sampling", plan.resolution.sampling, sampled, work
+    if name == "fillets":
+        return "greatest root stress per load", tolerance, value.error, f"{value.cost.unknowns:,} unknowns"
+    if name == "film" and plan is not None and value.film.model == "ehl":
+        film = value.film
+        work = f"{film.rho1.size} films of up to {film.cost.unknowns} unknowns, {value.rounds} rounds"
+        return "film thickness", plan.film_tolerance, film.error, work
+    if name == "fourier" and value.fit is not None:
+        allowed = None if plan is None else plan.series
+        return "what the series leaves out", allowed, value.remainder, f"order {value.order}"
+    if name == "sweep":
+        return "settled motions", None, value.error, f"{value.cost.periods:,} periods"
+    if name == "diagram":
+        return "special points", None, value.error, f"{value.branches} branches"
+    return NOTHING

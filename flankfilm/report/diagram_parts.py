@@ -86,9 +86,8 @@ def _notes(stage: SpeedDiagram) -> list[str]:
     if stage.force_factor.size:
         i = int(np.argmax(stage.force_factor))
         value, force, standard = (
-            stage.force_frequency[i],
-            stage.force_factor[i],
-            stage.force_factor_iso6336[i],
+            float(curve[i])
+            for curve in (stage.force_frequency, stage.force_factor, stage.force_factor_iso6336)
         )
         beside = (
             f"; ISO 6336-1, method B, has K_v = {standard:.3g} there (pitch deviation: the error's peak-to-peak "

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm import figures
+from flankfilm.figures.reading import read_figure
+from flankfilm.output.run import held_as_it_is
 from flankfilm.report.page import Drawing, Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
@@ -16,66 +18,66 @@ if TYPE_CHECKING:
     from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
-def film(stage: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
+HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
+
+
+def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
+    stage = cycle.film
     verdict = (
         f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
-        f"{100 * stage.secant_stiffness_change:+.3f} % and the mean tangent stiffness by "
-        f"{100 * stage.stiffness_change:+.3f} %."
+        f"{100 * cycle.secant_stiffness_change:+.3f} % and the mean tangent stiffness by "
+        f"{100 * cycle.stiffness_change:+.3f} %."
     )
-    if abs(stage.secant_stiffness_change) < tolerance:
+    if abs(cycle.secant_stiffness_change) < tolerance:
         verdict += (
             f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be "
             "left out."
         )
     rounds = (
-        f"Films and load share agree after {stage.rounds} rounds; the last changed a pair's force by "
-        f"{stage.mismatch:.1e} of the whole."
+        f"Films and load share agree after {cycle.rounds} rounds; the last changed a pair's force by "
+        f"{cycle.mismatch:.1e} of the whole."
     )
-    tables = [_definitions(stage.film)]
-    if stage.otherwise:
-        tables.insert(0, _otherwise(stage))
+    tables = (*((_otherwise(cycle),) if cycle.otherwise else ()), _definitions(stage))
     return Part(
         "film",
         "Oil film",
-        (verdict, *_supply(stage.film), *_mixed(stage.film)),
-        tuple(_figures(stage, results)),
-        tuple(tables),
-        (rounds, "Steady, isothermal, " + {"flooded": "fully flooded."}.get(stage.film.supply, "starved.")),
+        (verdict, *_supply(stage), *_mixed(stage)),
+        tuple(_figures(cycle, results)),
+        tables,
+        (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
     )
 
 
-def _figures(stage: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
-    caption = "Film thickness and Hertz pressure along the path of contact; steps where the load share steps."
-    drawn = [picture(figures.film_along_path, results, caption)]
-    if any(
-        known is not None
-        for known in (stage.film.starvation, stage.film.film_ratio, stage.film.asperity_share)
-    ):
-        caption = (
+def _figures(cycle: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
+    stage = cycle.film
+    captions = {
+        figures.film_along_path: "Film thickness and Hertz pressure along the path of contact; steps where the load "
+        "share steps."
+    }
+    if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
+        captions[figures.film_shares] = (
             "How far the contact is starved and how much its asperities carry, along the path of contact."
         )
-        drawn.append(picture(figures.film_shares, results, caption))
-    if stage.film.profiles:
-        caption = (
+    if stage.profiles:
+        captions[figures.film_profiles] = (
             "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
             "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
         )
-        drawn.append(picture(figures.film_profiles, results, caption))
-    if stage.otherwise:
-        caption = (
+    if cycle.otherwise:
+        captions[figures.film_changes] = (
             "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
             "layer stayed when the load changes."
         )
-        drawn.append(picture(figures.film_changes, results, caption))
-    return drawn
+    return [picture(draw, results, caption) for draw, caption in captions.items()]
 
 
 def _definitions(stage: FilmAlongPath) -> Table:
     """Film stiffness by every definition: at C with what it costs, and its range along the path."""
+    ends = {name: (number(k.min()), number(k.max())) for name, k in stage.stiffness.items()}
     if not stage.at_pitch:
-        known = ("film stiffness by", "least [N/m]", "largest [N/m]")
-        return Table(known, tuple((n, number(k.min()), number(k.max())) for n, k in stage.stiffness.items()))
+        heads: tuple[str, ...] = ("film stiffness by", "least [N/m]", "largest [N/m]")
+        return Table(heads, tuple((name, *both) for name, both in ends.items()))
     heads = (
         "film stiffness by",
         "what it is",
@@ -85,21 +87,24 @@ def _definitions(stage: FilmAlongPath) -> Table:
         "least [N/m]",
         "largest [N/m]",
     )
-    rows: list[tuple[str, ...]] = []
-    for row in stage.at_pitch:
-        k = stage.stiffness.get(row.definition)
-        ends = ("-", "-") if k is None else (number(k.min()), number(k.max()))
-        error = percent(row.error)
-        loss = percent(row.loss) if np.isfinite(row.loss) else "-"
-        rows.append((row.definition, row.meaning, number(row.stiffness), error, loss, *ends))
-    note = "Formulas are of flooded contacts." if stage.supply != "flooded" else ""
-    return Table(heads, tuple(rows), note)
+    rows = tuple(
+        (
+            row.definition,
+            row.meaning,
+            number(row.stiffness),
+            percent(row.error),
+            percent(row.loss) if np.isfinite(row.loss) else "-",
+            *ends.get(row.definition, ("-", "-")),
+        )
+        for row in stage.at_pitch
+    )
+    return Table(heads, rows, "Formulas are of flooded contacts." if stage.supply != "flooded" else "")
 
 
-def _otherwise(stage: LubricatedCycle) -> Table:
+def _otherwise(lubricated: LubricatedCycle) -> Table:
     """The mesh without film, flooded, and starved with either held."""
-    dry = stage.dry
-    cycles = {"no film": dry, _as_it_is(stage.film): stage, **stage.otherwise}
+    dry = lubricated.dry
+    cycles = {"no film": dry, held_as_it_is(lubricated): lubricated, **lubricated.otherwise}
     heads = (
         "mesh stiffness with",
         "mean secant",
@@ -122,19 +127,15 @@ def _otherwise(stage: LubricatedCycle) -> Table:
     return Table(heads, rows, "Stiffness in N/m at the whole face.")
 
 
-def _as_it_is(stage: FilmAlongPath) -> str:
-    return f"this film, {stage.supply.replace('-', ' ')} held"
-
-
 def _supply(stage: FilmAlongPath) -> tuple[str, ...]:
-    if stage.starvation is None or stage.inlet is None or stage.flow is None:
+    if stage.starvation is None or stage.inlet is None or stage.oil_layer is None:
         return ()
-    held = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}[stage.supply]
+    layer = read_figure(stage, "oil_layer")
     return (
-        f"{held} stays as it is when the load changes. Along the path the central film is "
+        f"{HELD[stage.supply]} stays as it is when the load changes. Along the path the central film is "
         f"{stage.starvation.min():.3f} to {stage.starvation.max():.3f} of the flooded one, the gap fills "
         f"{-stage.inlet.max():.4f} to {-stage.inlet.min():.4f} half-widths ahead of the contact's middle, and "
-        f"a layer of {1e6 * stage.flow.min():.3g} to {1e6 * stage.flow.max():.3g} µm passes.",
+        f"a layer of {layer.values.min():.3g} to {layer.values.max():.3g} {layer.unit} passes.",
     )
 
 
@@ -152,13 +153,14 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
     stage = cycle.film
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
+    least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     shown = [
-        Headline("least film on the path", f"{1e6 * stage.least_film:.3g}", note, "µm"),
+        Headline("least film on the path", f"{float(least.values):.3g}", note, least.unit),
         Headline(
             "what the film changes",
-            f"{100 * cycle.secant_stiffness_change:+.2f}",
+            f"{float(change.values):+.2f}",
             "of the mean secant stiffness",
-            "%",
+            change.unit,
         ),
     ]
     if stage.starvation is not None:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base.units import factor
 from flankfilm import figures
+from flankfilm.figures.reading import read_figure, unit_text
 from flankfilm.report.page import Drawing, Headline, Part, Table, picture
 from flankfilm.report.text import number, percent
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     """Fourier stiffness with its remainder."""
     series = stage.stiffness
-    unit = "N/m" if stage.fit is not None or series.mean != 1.0 else "-"
+    unit = unit_text(str(results["fourier_mean"].attrs["units"]))
     rows = tuple(
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
@@ -52,6 +52,13 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     )
 
 
+def fourier_headline(stage: MeshSeries) -> Headline:
+    """First harmonic and what the series leaves out."""
+    kappa = stage.amplitude[0] / stage.mean if stage.order else 0.0
+    left = "given" if stage.remainder is None else f"remainder {100 * stage.remainder:.2g} % of the mean"
+    return Headline("first harmonic over the mean", f"{kappa:.4f}", left)
+
+
 def scaling(stage: PairOscillator) -> Part:
     """Physical and dimensionless quantities side by side."""
     if stage.scales is None:
@@ -79,9 +86,8 @@ def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     ]
     if stage.grazings.size:
         at = ", ".join(f"{g:.6g}" for g in stage.grazings)
-        if stage.speed is not None:
-            rpm = stage.grazings * stage.speed[0] / stage.frequency[0] / factor("rpm")
-            at += " (" + ", ".join(f"{n:.0f}" for n in rpm) + " rpm)"
+        if (rpm := _speed(stage)) is not None:
+            at += " (" + ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + " rpm)"
         notes.insert(
             0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
         )
@@ -94,11 +100,13 @@ def headline(stage: SpeedSweep) -> Headline:
     if not stage.grazings.size:
         return Headline("edge of the backlash touched at", "none in range", note)
     first = float(np.min(stage.grazings))
-    if stage.speed is None:
+    if (rpm := _speed(stage)) is None:
         return Headline("edge of the backlash touched at ω", number(first, 6), note)
-    return Headline(
-        "edge of the backlash touched at",
-        number(first * stage.speed[0] / stage.frequency[0] / factor("rpm"), 5),
-        note,
-        "rpm",
-    )
+    return Headline("edge of the backlash touched at", number(rpm * first, 5), note, "rpm")
+
+
+def _speed(stage: SpeedSweep) -> float | None:
+    """Pinion speed at the frequency 1 [rpm]; None for an oscillator in its own units."""
+    if stage.speed is None:
+        return None
+    return float(read_figure(stage, "speed").values[0] / stage.frequency[0])

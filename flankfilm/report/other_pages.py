@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm import figures
-from flankfilm.dataset import write_text
-from flankfilm.figures.reading import titled, unit, words
+from flankfilm.figures.reading import titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
+from flankfilm.output.files import write_text
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, render
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import number, percent, seconds
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import Verification
     from flankfilm.optimisation.run import Optimum
+    from flankfilm.optimisation.task import Task
+    from flankfilm.studies.plan import Plan, Value
+    from flankfilm.studies.row import RowResult
     from flankfilm.studies.run import StudyResults
 
 MOST_ROWS = 100
@@ -42,7 +45,9 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
     """
     plan, rows = found.plan, len(found.rows)
     headlines = [
-        Headline(words(name), *_range(data, name)) for name in plan.outputs if np.isfinite(data[name]).any()
+        Headline(words(data, name), *_range(data, name))
+        for name in plan.outputs
+        if np.isfinite(data[name]).any()
     ]
     failed = Counter(row.fault for row in found.failures)
     notes = [f"{count} rows failed: {fault}" for fault, count in failed.most_common(20)]
@@ -54,21 +59,18 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         drawn.append(
             picture(draw, data, f"Every output against {plan.keys[0]}; the other keys make families.")
         )
-    cells = [
-        (str(row.index), *(_cell(v) for v in plan.rows[row.index]), *(number(v, 5) for v in row.values))
-        for row in found.rows[:MOST_ROWS]
-    ]
-    heads = ("row", *plan.keys, *(titled(data, n) for n in plan.outputs))
+    left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
+    shown = found.rows[:MOST_ROWS]
+    table = _rows(data, plan, [(plan.rows[row.index], row) for row in shown], left)
     facts = [
         Fact(f"{rows} rows, {plan.design}", "rows"),
         Fact(f"{seconds(float(data['seconds'].sum()))} of work"),
         *([Fact(f"{len(found.failures)} failed", "faults")] if found.failures else []),
     ]
-    left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
     parts = [
         Part("study", "Outputs", figures=tuple(drawn)),
         *([Part("faults", "Rows that failed", notes=tuple(notes))] if notes else []),
-        Part("rows", "Rows", tables=(Table(heads, tuple(cells), left),)),
+        Part("rows", "Rows", tables=(table,)),
         _inputs(data),
     ]
     return _write(folder, plan.title or "Study", facts, headlines, parts)
@@ -89,18 +91,15 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     first = dict(zip(task.outputs, chosen[0].result.values, strict=True))
     which = "" if len(chosen) == 1 else "where the first objective is best"
     headlines = [
-        Headline(words(name), number(first[name], 5), which, unit(data, name, "")) for name in task.outputs
+        Headline(words(data, name), number(first[name], 5), which, unit_of(data, name, ""))
+        for name in task.outputs
     ]
     if len(chosen) == 1:
         headlines += [
-            Headline(key, number(value, 6) if isinstance(value, float) else str(value), "at the optimum")
+            Headline(key, _cell(value), "at the optimum")
             for key, value in zip(task.keys, chosen[0].values, strict=True)
         ]
-    heads = (*task.keys, *(titled(data, n) for n in task.outputs))
-    cells = [
-        (*(_cell(v) for v in point.values), *(number(v, 5) for v in point.result.values))
-        for point in chosen[:MOST_ROWS]
-    ]
+    table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
     one = len(task.objectives) == 1
     caption = (
         "The objective of every point, in the order in which they were computed."
@@ -118,7 +117,7 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     ]
     parts = [
         Part("points", "Points", figures=(picture(figures.optimum, data, caption),)),
-        Part("best", "Optimum" if one else "Front", tables=(Table(heads, tuple(cells)),), notes=(note,)),
+        Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,)),
         _inputs(data),
     ]
     return _write(folder, task.title or "Optimisation", facts, headlines, parts)
@@ -152,6 +151,7 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
     tables = tuple(_differences(found, reference.label) for reference in (whole, like))
     cost = "; ".join(f"{c.label} {seconds(c.cost.seconds)}" for c in (*found.references, *found.models))
     shared = f"Finite elements {seconds(found.cost.seconds)} once; then each model: {cost}."
+    work = found.cost.seconds + sum(c.cost.seconds for c in found.references)
     caption = (
         "Closed forms beside finite elements (black: with all parts; dashed: without what closed forms lack). Grey: "
         "the numerical error of the latter."
@@ -161,9 +161,7 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
             f"{found.pair.pinion.teeth}/{found.pair.wheel.teeth} teeth, module {1e3 * found.pair.module:g} mm"
         ),
         Fact(f"pinion: {found.torque:g} N m"),
-        Fact(
-            f"{seconds(found.cost.seconds + sum(c.cost.seconds for c in found.references))} of work", "costs"
-        ),
+        Fact(f"{seconds(work)} of work", "costs"),
     ]
     parts = [
         Part("curves", "Curves", figures=(picture(figures.verification, data, caption),)),
@@ -184,7 +182,7 @@ def _differences(found: Verification, reference: str) -> Table:
         own = f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %"
         cells = [mine.get((figure, model)) for model in models]
         values = ["" if d is None else f"{d.value:.4g} ({100 * d.difference:+.1f} %)" for d in cells]
-        rows.append((f"{figure} [{first.unit.replace('um', 'µm')}]".replace("[1]", "[-]"), own, *values))
+        rows.append((f"{figure} [{unit_text(first.unit)}]", own, *values))
     against = reference if reference == "finite elements" else f"finite elements {reference}"
     return Table(("figure", "finite elements", *models), tuple(rows), f"Against {against}")
 
@@ -201,12 +199,27 @@ def _range(data: xr.Dataset, name: str) -> tuple[str, str, str]:
     return (
         low if low == high else f"{low} to {high}",
         str(data[name].attrs["long_name"]),
-        unit(data, name, ""),
+        unit_of(data, name, ""),
     )
 
 
-def _cell(value: float | str) -> str:
-    return value if isinstance(value, str) else number(value, 6)
+def _rows(
+    data: xr.Dataset,
+    asked: Plan | Task,
+    points: Sequence[tuple[Sequence[Value], RowResult]],
+    caption: str = "",
+) -> Table:
+    """Numbers of rows, values of their keys, and their outputs."""
+    heads = ("row", *asked.keys, *(titled(data, name) for name in asked.outputs))
+    cells = tuple(
+        (str(result.index), *map(_cell, values), *(number(value, 5) for value in result.values))
+        for values, result in points
+    )
+    return Table(heads, cells, caption)
+
+
+def _cell(value: Value) -> str:
+    return number(value, 6) if isinstance(value, float | int) else value
 
 
 def _write(

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import TYPE_CHECKING
 
+from flankfilm.figures.reading import Reading
 from flankfilm.figures.style import to_svg
+from flankfilm.report.text import number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,6 +46,12 @@ def _side(column: Sequence[str]) -> str:
     filled = [cell for cell in column if cell not in ("", "-", "unknown")]
     words = sum(not re.match(r"[-+±.]?\d", cell) for cell in filled)
     return "t" if 2 * words > len(filled) else "n"
+
+
+def table_of(readings: Sequence[Reading], digits: int = 4, caption: str = "") -> Table:
+    """Table of curves beside each other, each headed by its meaning and unit."""
+    cells = zip(*([number(value, digits) for value in one.values.tolist()] for one in readings), strict=True)
+    return Table(tuple(one.label for one in readings), tuple(cells), caption)
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base.units import FACTORS, suffix
-from flankfilm.dataset import Quantity, provenance, to_dataset, write_netcdf
+from base.units import unit_of
+from flankfilm.output.files import provenance, write_netcdf
 from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.plan import Value
+from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
 
 if TYPE_CHECKING:
@@ -19,29 +22,47 @@ if TYPE_CHECKING:
 
 def dataset(found: StudyResults) -> xr.Dataset:
     """Give a study as a dataset along ``row``: varied keys as coordinates, outputs, cost and faults."""
-    plan = found.plan
-    columns = {key: np.asarray([row[i] for row in plan.rows]) for i, key in enumerate(plan.keys)}
-    quantities = {
-        key: Quantity(("row",), values, unit_of(key), f"key {key} of the scene")
-        for key, values in columns.items()
-    }
-    for i, name in enumerate(plan.outputs):
-        output = OUTPUTS[name]
-        values = np.array([row.values[i] for row in found.rows])
-        quantities[name] = Quantity(("row",), values, output.unit, output.meaning)
-    seconds = np.array([row.seconds for row in found.rows])
-    quantities["seconds"] = Quantity(("row",), seconds, "s", "cost of the row")
-    faults = np.asarray([row.fault for row in found.rows], dtype=object)
-    quantities["fault"] = Quantity(("row",), faults, "1", "why a row failed; empty where it did not")
+    plan, rows = found.plan, found.rows
     attributes = {"title": plan.title, "design": plan.design, **provenance(json.dumps(plan.scene))}
-    return to_dataset(quantities, attributes).set_coords(list(plan.keys))
+    data = of_rows("row", plan.keys, plan.rows, plan.outputs, rows)
+    about = {"units": "", "long_name": "why a row failed; empty where it did not"}
+    faults = np.array([row.fault for row in rows], dtype=object)
+    return data.assign(fault=("row", faults, about)).assign_attrs(attributes)
 
 
-def unit_of(key: str) -> str:
-    """Unit that a scene's key ends in, "1" where it carries none."""
-    endings = ((suffix(unit), unit) for unit in sorted(FACTORS, key=len, reverse=True))
-    last = key.rpartition(".")[2]
-    return next((unit for ending, unit in endings if ending and last.endswith(f"_{ending}")), "1")
+def of_rows(
+    axis: str,
+    keys: Sequence[str],
+    points: Sequence[Sequence[Value]],
+    outputs: Sequence[str],
+    results: Sequence[RowResult],
+) -> xr.Dataset:
+    """Rows along an axis: keys as coordinates, outputs, and what each row cost.
+
+    Parameters
+    ----------
+    axis : str
+    keys : sequence of str
+        Of the scene, which vary.
+    points : sequence of sequence
+        Their values, one for each row.
+    outputs : sequence of str
+    results : sequence of RowResult
+    """
+    import xarray as xr
+
+    varied = {
+        key: (axis, np.asarray(values), {"units": unit_of(key), "long_name": f"key {key} of the scene"})
+        for key, values in zip(keys, zip(*points, strict=True), strict=True)
+    }
+    columns = zip(*(row.values for row in results), strict=True)
+    found = {
+        name: (axis, np.array(values), {"units": OUTPUTS[name].unit, "long_name": OUTPUTS[name].meaning})
+        for name, values in zip(outputs, columns, strict=True)
+    }
+    seconds = np.array([row.seconds for row in results])
+    cost = (axis, seconds, {"units": "s", "long_name": f"cost of the {axis}"})
+    return xr.Dataset({**found, "seconds": cost}, varied)
 
 
 def write_study(found: StudyResults, folder: Path) -> list[Path]:

@@ -11,8 +11,8 @@ from typing import Any, Literal
 
 from base import Fault, InputError
 from flankfilm.cache import code_digest
-from flankfilm.dataset import write_text
 from flankfilm.folder import claim
+from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.table import ROWS, Columns, Line, append, locked, read_lines
 

@@ -1,19 +1,32 @@
-"""What a study can ask of a row: one number each, from the stages that it needs and no others."""
+"""What a study can ask of a row: one number each, from the stages that it needs and no others.
+
+An output is a figure of a stage's result, or its least, largest or mean value; unit and meaning are the figure's own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from base import Figure
+from base.results import figures
+from base.units import factor
 from flankfilm.build import pinion_speed
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.lubricated import FilmAlongPath, LubricatedCycle
+from flankfilm.coupling.single_pairs import CLOSED_FORMS
+from flankfilm.figures.drawn import Path
+from flankfilm.figures.reading import PER_FACE
+from flankfilm.output.passages import Passage
+from flankfilm.output.tables import spelt
+from flankfilm.output.variables import sentence
 from flankfilm.stages.catalogue import FILM, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.stages.engine import Engine
-
-if TYPE_CHECKING:
-    from flankfilm.coupling import MeshCycle
+from gears import GearPair
 
 
 @dataclass(frozen=True)
@@ -35,52 +48,63 @@ class Output:
     value: Callable[[Engine], float]
 
 
-def _stiffness(unit: str, meaning: str, value: Callable[[MeshCycle, float], Any]) -> Output:
-    """Figure of the mesh cycle, with the film where the scene has one; the scale is to N/(mm um)."""
+Named = tuple[str, Output]
+Take = Callable[[Any], Any]
+
+
+def _output(name: str, figure: Figure, want: str, value: Callable[[Engine], Any], said: str = "{}") -> Named:
+    """An output by its name, from a function that gives its value in SI; None stands for nan."""
 
     def of(engine: Engine) -> float:
-        return float(value(engine[MESH], 1e-9 / engine[PAIR].face_width))
+        found = value(engine)
+        return float("nan") if found is None else float(found) / factor(figure.read_in)
 
-    return Output(unit, meaning, ("stiffness",), of)
-
-
-def _harmonic(order: int) -> Output:
-    def share(cycle: MeshCycle, scale: float) -> float:
-        return cycle.harmonic(order)
-
-    return _stiffness("1", f"amplitude of harmonic {order} of the secant stiffness over its mean", share)
+    meaning = sentence(figure.meaning)
+    if said != "{}":
+        meaning = said.format(re.split("[:,;]", meaning, maxsplit=1)[0])
+    return spelt(name, figure.read_in), Output(figure.read_in, meaning, (want,), of)
 
 
-def _geometry(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
-    return Output(unit, meaning, ("geometry",), lambda engine: float(value(engine[PAIR])))
+def _from(stage: Callable[[Engine], Any], kind: type, want: str) -> Callable[..., Named]:
+    """Maker of outputs from the figures of a stage's result."""
+
+    def make(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
+        about = figures(kind)[figure]
+
+        def value(engine: Engine) -> Any:
+            found = getattr(stage(engine), figure)
+            return None if found is None else take(found)
+
+        return _output(name or figure, about, want, value, said)
+
+    return make
 
 
-def _film(unit: str, meaning: str, value: Callable[[Any], Any]) -> Output:
-    return Output(unit, meaning, ("film",), lambda engine: float(value(engine[FILM].film)))
+def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
+    """Stiffness of the mesh per face width, with the film where the scene has one."""
+    about = Figure("N/m", figures(MeshCycle)[figure].meaning, shown=PER_FACE)
+    return _output(
+        name or figure,
+        about,
+        "stiffness",
+        lambda engine: take(getattr(engine[MESH], figure)) / engine[PAIR].face_width,
+        said,
+    )
 
 
-def _difference(model: str, reference: str) -> Output:
-    """Difference of a closed form's mean mesh stiffness from finite elements held to the path."""
-
-    def of(engine: Engine) -> float:
-        return 100.0 * engine[VERIFICATION].difference(model, reference)
-
-    meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
-    return Output("%", meaning, ("closed-forms",), of)
+_pair = _from(lambda engine: engine[PAIR], GearPair, "geometry")
+_mesh = _from(lambda engine: engine[MESH], MeshCycle, "stiffness")
+_film = _from(lambda engine: engine[FILM].film, FilmAlongPath, "film")
+_lubricated = _from(lambda engine: engine[FILM], LubricatedCycle, "film")
 
 
-def _sliding(pair: Any) -> float:
-    ends = pair.path_at(np.array([pair.points.A, pair.points.E]))
-    return float(max(np.abs(part).max() for part in ends.specific_sliding))
+def _ends(engine: Engine) -> Any:
+    """Path of contact at A and E."""
+    points = engine[PAIR].points
+    return engine[PAIR].path_at(np.array([points.A, points.E]))
 
 
-def _sliding_speed(engine: Engine) -> float:
-    pair = engine[PAIR]
-    ends = pair.path_at(np.array([pair.points.A, pair.points.E]))
-    return float(np.abs(ends.sliding(pinion_speed(engine.scene))).max())
-
-
-def _at_point(point: str, name: str) -> Callable[[Engine], float]:
+def _at_point(point: str, figure: str) -> Take:
     """A curve along the path at A, B, C, D or E: of the nearest film, since curves step at B and D.
 
     B and D count as ends of the single-pair zone.
@@ -91,195 +115,171 @@ def _at_point(point: str, name: str) -> Callable[[Engine], float]:
         inside = {"B": 1e-6, "D": -1e-6}.get(point, 0.0)
         towards = film.rho1 - (getattr(points, point) + inside)
         nearest = np.abs(towards) if not inside else np.where(towards * inside > 0, np.abs(towards), np.inf)
-        return float(getattr(film, name)[int(np.argmin(nearest))])
+        return float(getattr(film, figure)[int(np.argmin(nearest))])
 
     return of
 
 
-def _film_at(point: str, name: str, scale: float) -> Callable[[Engine], float]:
-    of = _at_point(point, name)
-    return lambda engine: scale * of(engine)
+def _at_points() -> Iterator[Named]:
+    """Film and pressure at the points of the path."""
+    for name, figure in (("least_film", "minimum_thickness"), ("hertz_pressure", "hertz_pressure")):
+        about = figures(FilmAlongPath)[figure]
+        for point in "ABCDE":
+            yield _output(f"{name}_at_{point}", about, "film", _at_point(point, figure), f"{{}} at {point}")
 
 
-def _through(value: Callable[[Any], float | None]) -> Callable[[Engine], float]:
+def _through(name: str, figure: Figure, value: Take) -> Named:
     """Figure of the pressure and film through the contact nearest to C; nan where it has none."""
 
-    def of(engine: Engine) -> float:
+    def of(engine: Engine) -> Any:
         film = engine[FILM].film.profiles.get("C")
-        found = None if film is None else value(film)
-        return float("nan") if found is None else float(found)
+        return None if film is None else value(film)
+
+    return _output(f"{name}_at_C", figure, "film", of)
+
+
+def _of_spike(value: Callable[[Any, Any], float]) -> Take:
+    """Figure of the spike of a film that was solved for it; None where grids do not resolve it."""
+
+    def of(film: Any) -> float | None:
+        known = film.spike is not None and np.isfinite(film.spike.error)
+        return value(film.spike, film.contact) if known else None
 
     return of
 
 
-def _spike(film: Any) -> Any:
-    """Spike of a film that was solved for it; None where grids do not resolve it."""
-    return film.spike if film.spike is not None and np.isfinite(film.spike.error) else None
+def _roots() -> Iterator[Named]:
+    """Greatest stresses along the fillets."""
+    for gear in ("pinion", "wheel"):
+        for kind in ("tension", "compression"):
+            yield _output(
+                f"root_{kind}_{gear}",
+                Figure(
+                    "Pa",
+                    f"greatest {kind} along the fillets of the {gear}",
+                    shown=figures(Passage)[kind].shown,
+                ),
+                "root-stress",
+                lambda engine, gear=gear, kind=kind: (
+                    getattr(  # type: ignore[misc]
+                        getattr(engine[ROOT_STRESS].stress, gear), f"greatest_{kind}"
+                    ).stress_Pa
+                ),
+            )
 
 
-def _mixed(name: str, worst: Callable[[Any], Any]) -> Callable[[Any], float]:
-    def of(film: Any) -> float:
-        values = getattr(film, name)
-        return float("nan") if values is None else float(worst(values))
+def _differences() -> Iterator[Named]:
+    """Differences of the closed forms' mean mesh stiffness from finite elements held to the path."""
+    forms = {**{key.replace("-", "_"): label for key, label in CLOSED_FORMS.items()}, "iso6336": "ISO 6336-1"}
+    for end, reference in (
+        ("", "held to the path"),
+        ("_like_for_like", "without hub wind-up and coupling"),
+    ):
+        for name, model in forms.items():
+            meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
+            yield _output(
+                f"{name}{end}",
+                Figure("1", meaning, shown="%"),
+                "closed-forms",
+                lambda engine, model=model, reference=reference: engine[VERIFICATION].difference(  # type: ignore[misc]
+                    model, reference
+                ),
+            )
 
-    return of
+
+def _harmonic(order: int) -> Named:
+    meaning = f"amplitude of harmonic {order} of the secant stiffness over its mean"
+    return _output(
+        f"harmonic_{order}", Figure("1", meaning), "stiffness", lambda engine: engine[MESH].harmonic(order)
+    )
 
 
-def _at_pitch_point(film: Any, pair: Any) -> float:
-    return float(np.interp(pair.points.C, film.rho1, film.central_thickness))
-
-
-def _root(meaning: str, peak: str, gear: str) -> Output:
-    def of(engine: Engine) -> float:
-        found = getattr(engine[ROOT_STRESS].stress, gear)
-        return 1e-6 * float(getattr(found, peak).stress_Pa)
-
-    return Output("MPa", f"{meaning} of the {gear}", ("root-stress",), of)
-
-
-_FORMS = {
-    "ishikawa": "Ishikawa",
-    "weber_banaschek": "Weber-Banaschek",
-    "potential_energy": "potential energy, Sainsot body",
-    "iso6336": "ISO 6336-1",
-}
-
-_LIKE = "without hub wind-up and coupling"
-
-OUTPUTS: Mapping[str, Output] = {
-    "contact_ratio": _geometry("1", "transverse contact ratio", lambda pair: pair.contact_ratio),
-    "axis_distance_mm": _geometry(
-        "mm", "distance of the axes", lambda pair: 1e3 * pair.working_centre_distance
-    ),
-    "working_pressure_angle_deg": _geometry(
-        "deg", "working pressure angle", lambda pair: np.degrees(pair.working_pressure_angle)
-    ),
-    "specific_sliding": _geometry("1", "largest specific sliding of both flanks, A to E", _sliding),
-    "sliding_speed_m_per_s": Output("m/s", "largest sliding speed, A to E", ("geometry",), _sliding_speed),
-    "mean_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)",
-        "mean secant stiffness of the mesh",
-        lambda cycle, scale: scale * cycle.mean_secant_stiffness,
-    ),
-    "mean_tangent_N_per_mm_um": _stiffness(
-        "N/(mm um)", "mean tangent stiffness of the mesh", lambda cycle, scale: scale * cycle.mean_stiffness
-    ),
-    "least_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)",
-        "least secant stiffness of the mesh",
-        lambda cycle, scale: scale * cycle.secant_stiffness.min(),
-    ),
-    "largest_secant_N_per_mm_um": _stiffness(
-        "N/(mm um)",
-        "largest secant stiffness of the mesh",
-        lambda cycle, scale: scale * cycle.secant_stiffness.max(),
-    ),
-    "transmission_error_um": _stiffness(
-        "um",
-        "loaded transmission error, peak to peak",
-        lambda cycle, _: 1e6 * cycle.transmission_error_range,
-    ),
-    **{f"harmonic_{order}": _harmonic(order) for order in range(1, 6)},
-    "stiffness_error": _stiffness(
-        "1",
-        "estimated relative numerical error of the mean secant stiffness; nan where unknown",
-        lambda cycle, _: np.nan if cycle.mean_error is None else cycle.mean_error,
-    ),
-    **{
-        f"root_{kind}_{gear}_MPa": _root(meaning, f"greatest_{kind}", gear)
-        for gear in ("pinion", "wheel")
-        for kind, meaning in (
-            ("tension", "greatest tension along the fillets"),
-            ("compression", "greatest compression along the fillets"),
-        )
-    },
-    "efficiency": _stiffness(
-        "1",
-        "power out over power in, sliding of the dry contacts alone",
-        lambda cycle, _: np.nan if cycle.contact is None else cycle.contact.efficiency,
-    ),
-    "least_film_um": _film("um", "least film along the path", lambda film: 1e6 * film.least_film),
-    "least_central_film_um": _film(
-        "um",
-        "least film on the line of centres along the path",
-        lambda film: 1e6 * film.central_thickness.min(),
-    ),
-    "film_at_C_um": Output(
-        "um",
-        "film on the line of centres at the pitch point",
-        ("film",),
-        lambda engine: 1e6 * _at_pitch_point(engine[FILM].film, engine[PAIR]),
-    ),
-    "hertz_pressure_GPa": _film(
-        "GPa", "largest Hertz pressure along the path", lambda film: 1e-9 * film.greatest_pressure
-    ),
-    "film_change_percent": Output(
-        "%",
-        "what the film changes the mean secant stiffness by",
-        ("film",),
-        lambda engine: 100 * engine[FILM].secant_stiffness_change,
-    ),
-    **{
-        f"{kind}_at_{point}_{unit}": Output(
-            unit, f"{meaning} at {point}", ("film",), _film_at(point, name, scale)
-        )
-        for kind, name, unit, scale, meaning in (
-            ("least_film", "minimum_thickness", "um", 1e6, "least film in the contact"),
-            ("hertz_pressure", "hertz_pressure", "GPa", 1e-9, "Hertz pressure"),
-        )
-        for point in "ABCDE"
-    },
-    "spike_at_C_GPa": Output(
-        "GPa",
-        "pressure spike of the contact at C; nan where it is narrower than grids resolve",
-        ("film",),
-        _through(lambda film: None if _spike(film) is None else 1e-9 * _spike(film).pressure),
-    ),
-    "spike_over_hertz_at_C": Output(
-        "1",
-        "pressure spike of the contact at C over its Hertz pressure",
-        ("film",),
-        _through(
-            lambda film: None if _spike(film) is None else _spike(film).pressure / film.contact.peak_pressure
+OUTPUTS: Mapping[str, Output] = dict(
+    (
+        _pair("contact_ratio"),
+        _pair("working_centre_distance", name="centre_distance"),
+        _pair("working_pressure_angle"),
+        _output(
+            "specific_sliding",
+            Figure("1", "largest specific sliding of both flanks, A to E"),
+            "geometry",
+            lambda engine: max(np.abs(part).max() for part in _ends(engine).specific_sliding),
         ),
-    ),
-    "spike_position_at_C": Output(
-        "1",
-        "place of the pressure spike at C, in half-widths after the middle",
-        ("film",),
-        _through(
-            lambda film: None if _spike(film) is None else _spike(film).position / film.contact.half_width
+        _output(
+            "sliding_speed",
+            figures(Path)["sliding"],
+            "geometry",
+            lambda engine: np.abs(_ends(engine).sliding(pinion_speed(engine.scene))).max(),
+            "largest {}, A to E",
         ),
-    ),
-    "neck_position_at_C": Output(
-        "1",
-        "place of the least film at C, in half-widths after the middle",
-        ("film",),
-        _through(lambda film: film.minimum_position / film.contact.half_width),
-    ),
-    "neck_depth_at_C": Output(
-        "1",
-        "least over central film of the contact at C",
-        ("film",),
-        _through(lambda film: film.minimum_thickness / film.central_thickness),
-    ),
-    "film_ratio": _film(
-        "1", "least film ratio Lambda along the path; nan if smooth", _mixed("film_ratio", np.min)
-    ),
-    "asperity_share": _film(
-        "1", "largest asperity share along the path; nan if smooth", _mixed("asperity_share", np.max)
-    ),
-    "starvation": _film(
-        "1",
-        "least central film over the flooded one along the path; nan if flooded",
-        _mixed("starvation", np.min),
-    ),
-    "film_error": _film(
-        "1",
-        "largest estimated relative error of the films; nan where unknown",
-        lambda film: np.nan if film.error is None else film.error,
-    ),
-    **{f"{name}_percent": _difference(label, "held to the path") for name, label in _FORMS.items()},
-    **{f"{name}_like_for_like_percent": _difference(label, _LIKE) for name, label in _FORMS.items()},
-}
+        _per_face("mean_secant_stiffness"),
+        _per_face("mean_stiffness"),
+        _per_face("secant_stiffness", np.min, "least_secant_stiffness", "least {}"),
+        _per_face("secant_stiffness", np.max, "largest_secant_stiffness", "largest {}"),
+        _mesh("transmission_error_range", name="transmission_error"),
+        *(_harmonic(order) for order in range(1, 6)),
+        _mesh("mean_error", name="stiffness_error"),
+        *_roots(),
+        _output(
+            "efficiency",
+            Figure("1", "power out over power in"),
+            "stiffness",
+            lambda engine: getattr(engine[MESH].contact, "efficiency", None),
+            "{}, sliding of the dry contacts alone",
+        ),
+        _film("least_film"),
+        _film("central_thickness", np.min, "least_central_film", "least {} along the path"),
+        _output(
+            "film_at_C",
+            figures(FilmAlongPath)["central_thickness"],
+            "film",
+            lambda engine: np.interp(
+                engine[PAIR].points.C, engine[FILM].film.rho1, engine[FILM].film.central_thickness
+            ),
+            "{} at the pitch point",
+        ),
+        _film("greatest_pressure", name="hertz_pressure"),
+        _lubricated("secant_stiffness_change", name="film_change"),
+        *_at_points(),
+        _through(
+            "spike",
+            Figure(
+                "Pa",
+                "pressure spike of the contact at C; nan where it is narrower than grids resolve",
+                shown="GPa",
+            ),
+            _of_spike(lambda spike, contact: spike.pressure),
+        ),
+        _through(
+            "spike_over_hertz",
+            Figure("1", "pressure spike of the contact at C over its Hertz pressure"),
+            _of_spike(lambda spike, contact: spike.pressure / contact.peak_pressure),
+        ),
+        _through(
+            "spike_position",
+            Figure("1", "place of the pressure spike at C, in half-widths after the middle"),
+            _of_spike(lambda spike, contact: spike.position / contact.half_width),
+        ),
+        _through(
+            "neck_position",
+            Figure("1", "place of the least film at C, in half-widths after the middle"),
+            lambda film: film.minimum_position / film.contact.half_width,
+        ),
+        _through(
+            "neck_depth",
+            Figure("1", "least over central film of the contact at C"),
+            lambda film: film.minimum_thickness / film.central_thickness,
+        ),
+        _film("film_ratio", np.min, said="least {} along the path; nan if smooth"),
+        _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
+        _film("starvation", np.min, said="least {} along the path; nan if flooded"),
+        _output(
+            "film_error",
+            Figure("1", "largest estimated relative error of the films; nan where unknown"),
+            "film",
+            lambda engine: engine[FILM].film.error,
+        ),
+        *_differences(),
+    )
+)
 """Outputs by the name that a study file gives them; the unit is part of it."""

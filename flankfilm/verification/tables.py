@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from flankfilm.coupling.verification import UNITS, Curves, Difference, Verification
-from flankfilm.dataset import Quantity, provenance, to_dataset, write_csv, write_netcdf
-from flankfilm.picture_outputs import geometry_quantities
+from flankfilm.figures.drawn import path
+from flankfilm.output.files import provenance, write_csv, write_netcdf
+from flankfilm.output.variables import identifier, merged, of_models, of_record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,33 +72,22 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     scene : Scene
         That was verified.
     """
-    models = [model for model in found.models if model.single_stiffness.size]
-    quantities = geometry_quantities(found.pair) | {
-        "path_rho1": Quantity(("path",), found.rho1, "m", "curvature radius of the pinion's flank"),
-        "phase": Quantity(
-            ("position",), found.position, "1", "travel after a pair is at A, over the base pitch"
+    import xarray as xr
+
+    models = {model.label: model for model in found.models if model.single_stiffness.size}
+    like = {"units": "1", "long_name": "reference without what closed forms lack"}
+    parts = (
+        of_record("pair", found.pair),
+        of_record("path", path(found.pair), ("point", "point_rho1")),
+        of_record("path", found, ("rho1",)),
+        of_record("mesh", found, ("position",)),
+        of_models(
+            "reference", {curves.label: curves for curves in found.references}, "reference", "reference"
         ),
-        "like_for_like": Quantity(
-            (), found.references.index(found.like_for_like), "1", "reference without what closed forms lack"
-        ),
-        "reference_error": Quantity(
-            ("reference",), [c.error or 0.0 for c in found.references], "1", "relative numerical error"
-        ),
-    }
-    for kind, curves in (("reference", found.references), ("model", models)):
-        quantities |= {
-            kind: Quantity((kind,), np.array([c.label for c in curves]), "1", kind),
-            f"{kind}_single": Quantity(
-                (kind, "path"), [c.single_stiffness for c in curves], "N/m", "one pair, secant"
-            ),
-            f"{kind}_secant": Quantity(
-                (kind, "position"), [c.secant_stiffness for c in curves], "N/m", "mesh, secant"
-            ),
-            f"{kind}_transmission_error": Quantity(
-                (kind, "position"), [c.transmission_error for c in curves], "m", "deflection"
-            ),
-        }
-    return to_dataset(quantities, {"title": scene.title, **provenance(scene.model_dump_json())})
+        of_models("model", models, "model"),
+        xr.Dataset({"like_for_like": ((), found.references.index(found.like_for_like), like)}),
+    )
+    return merged(parts, {"title": scene.title, **provenance(scene.model_dump_json())})
 
 
 def write_verification(found: Verification, scene: Scene, folder: Path) -> list[Path]:
@@ -122,20 +110,17 @@ def _write_tables(found: Verification, folder: Path) -> list[Path]:
     columns["reference_error_percent"] = [100 * d.reference_error for d in found.differences]
     columns["difference_percent"] = [100 * d.difference for d in found.differences]
     ordered = {name: columns[name] for name in (*names, "difference_percent")}
-    all_curves = [c for c in (*found.references, *found.models) if c.single_stiffness.size]
+    curves = {identifier(c.label): c for c in (*found.references, *found.models) if c.single_stiffness.size}
     files = {
         "verify": ordered,
         "verify_one_pair": {
             "travel_from_A_mm": 1e3 * (found.rho1 - found.pair.points.A),
-            **{f"{_identifier(c.label)}_N_per_m": c.single_stiffness for c in all_curves},
+            **{f"{name}_N_per_m": one.single_stiffness for name, one in curves.items()},
         },
         "verify_mesh": {
-            "phase": found.position,
-            **{f"{_identifier(c.label)}_N_per_m": c.secant_stiffness for c in all_curves},
-            **{
-                f"{_identifier(c.label)}_transmission_error_um": 1e6 * np.asarray(c.transmission_error)
-                for c in all_curves
-            },
+            "position": found.position,
+            **{f"{name}_N_per_m": one.secant_stiffness for name, one in curves.items()},
+            **{f"{name}_transmission_error_um": 1e6 * one.transmission_error for name, one in curves.items()},
         },
     }
     paths = []
@@ -143,8 +128,3 @@ def _write_tables(found: Verification, folder: Path) -> list[Path]:
         paths.append(folder / f"{name}.csv")
         write_csv(paths[-1], content)
     return paths
-
-
-def _identifier(label: str) -> str:
-    words = "".join(c if c.isalnum() else " " for c in label.lower()).split()
-    return "_".join(words)

@@ -9,7 +9,7 @@ import pytest
 
 from base.files import replacing
 from flankfilm.cache import Cache, CacheWarning, code_digest
-from flankfilm.dataset import write_text
+from flankfilm.output.files import write_text
 
 
 def test_a_kept_value_comes_back(tmp_path):

@@ -160,7 +160,7 @@ def test_results_carry_units_scene_and_the_known_grazing(oscillator_run):
         assert found.sweep_up.shape == (400, 64, 2)
         assert found.sweep_up.attrs["units"] == "1"
         assert json.loads(found.attrs["scene_json"])["dynamics"]["damping_ratio"] == 0.05
-        grazing = found.contact_grazing_frequency.values
+        grazing = found.sweep_grazings.values
     assert abs(grazing[0] - 0.633533993217297) < 1e-12
 
 
@@ -177,5 +177,5 @@ def test_csv_reads_back(oscillator_run):
     import pandas as pd
 
     table = pd.read_csv(oscillator_run / "out" / "csv" / "sweep_up.csv")
-    assert list(table.columns) == ["frequency", "displacement", "velocity", "motion"]
+    assert list(table.columns) == ["frequency", "up_displacement", "up_velocity", "up_label"]
     assert len(table) == 400 * 64

@@ -57,7 +57,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 def test_example_of_branches(tmp_path: Path):
     """The folds of the lubricated scan, in the files and in the report."""
     folder = run(EXAMPLE.read_text(encoding="utf-8"), tmp_path)
-    jumps = [(float(r["frequency"]), r["speed"], r["motion"]) for r in rows(folder / "csv" / "jumps.csv")]
+    jumps = [(float(r["frequency"]), r["direction"], r["motion"]) for r in rows(folder / "csv" / "jumps.csv")]
     assert jumps[0] == (pytest.approx(0.5694026368887, abs=1e-11), "falling", "1-1-1")
     assert jumps[1] == (pytest.approx(0.6555759637891, abs=1e-11), "rising", "1-1-0")
     text = (folder / "report.html").read_text(encoding="utf-8")
@@ -83,11 +83,11 @@ def test_jump_speeds_of_a_pair_with_their_budget(tmp_path: Path):
     assert jumps
     for jump in jumps:
         assert 7000 < float(jump["speed_rpm"]) < 12000
-        series, second = float(jump["error_series"]), float(jump["second_harmonic"])
-        assert math.isfinite(float(jump["error_stiffness"]))
+        series, second = float(jump["error_by_series"]), float(jump["second_harmonic"])
+        assert math.isfinite(float(jump["error_by_stiffness"]))
         assert abs(second) <= series * (1 + 1e-12)
     forces = rows(folder / "csv" / "force_over_speed.csv")
-    assert all(float(r["K_v_iso6336"]) >= 1.0 for r in forces)
+    assert all(float(r["factor_iso6336"]) >= 1.0 for r in forces)
     text = (folder / "report.html").read_text(encoding="utf-8")
     assert "tangent, order 2" in text
     assert "secant, order 3" in text

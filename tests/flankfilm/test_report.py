@@ -20,7 +20,7 @@ from flankfilm.figures.style import to_svg
 from flankfilm.optimisation.files import dataset as optimum_dataset
 from flankfilm.optimisation.run import Evaluation, Optimum
 from flankfilm.optimisation.task import read_task
-from flankfilm.outputs import results_dataset, write_data
+from flankfilm.output.run import results_dataset, write_data
 from flankfilm.report.contents import write_report
 from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
 from flankfilm.results import Results
@@ -127,7 +127,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
         engine[stage]
     values = engine.results()
     data = results_dataset(scene, values)
-    write_data(folder, data, {})
+    write_data(folder, data)
     run = Results(scene, folder, values, engine.runs, (), 1.0, data)
     pages = {"run": write_report(run, folder)}
     study, verified = some_study(folder), engine[VERIFICATION]

@@ -17,7 +17,7 @@ from base import InputError, SolverError
 from fem.vtk import write_vtk_series
 from flankfilm.cache import Cache
 from flankfilm.figures import Frame, animate_cycle, animation, tooth_picture
-from flankfilm.outputs import results_dataset, write_data
+from flankfilm.output.run import results_dataset, write_data
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from flankfilm.stages.engine import Engine
@@ -50,7 +50,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     engine = Engine(scene, Cache(None))
     for stage in (DRY_CYCLE, MESH, FIELDS):
         engine[stage]
-    write_data(folder, results_dataset(scene, engine.results()), {})
+    write_data(folder, results_dataset(scene, engine.results()))
     cycle: fem.MeshCycle = engine[MESH].contact
     write_vtk_series(folder, engine[PAIR], cycle, engine[COMPLIANCE], (0, 40, 80))
     return folder

@@ -1,61 +1,20 @@
-"""Results as one labelled dataset: netCDF with units, and CSV for curves."""
+"""Files of data: netCDF, CSV and text, each replaced as a whole; and what says how they were made."""
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base.files import replacing
+from base import replacing
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """One variable of the results.
-
-    Attributes
-    ----------
-    dims : tuple of str
-        Names of its axes.
-    values : array_like
-        SI values.
-    units : str
-        Unit as written into the file; "1" for pure numbers.
-    meaning : str
-        What it is, in words.
-    """
-
-    dims: tuple[str, ...]
-    values: ArrayLike
-    units: str
-    meaning: str
-
-
-def to_dataset(quantities: Mapping[str, Quantity], attributes: Mapping[str, str | float]) -> xr.Dataset:
-    """Gather quantities into a dataset.
-
-    Parameters
-    ----------
-    quantities : mapping
-        Name to quantity; axes of one name have one length throughout.
-    attributes : mapping
-        Of the whole file: text and numbers alone, since netCDF holds nothing else.
-    """
-    import xarray as xr
-
-    variables = {
-        name: xr.Variable(q.dims, np.asarray(q.values), {"units": q.units, "long_name": q.meaning})
-        for name, q in quantities.items()
-    }
-    return xr.Dataset(variables, attrs=dict(attributes))
 
 
 def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
@@ -74,8 +33,6 @@ def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
     columns : mapping
         Name to values, shape (n,); numbers are written so that they read back exactly.
     """
-    import csv
-
     listed = {name: np.asarray(values).tolist() for name, values in columns.items()}
     with replacing(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

@@ -1,0 +1,208 @@
+"""What a run writes as data: one netCDF file with everything, one CSV for each curve."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from base import Array, quantity, record
+from flankfilm.build import pinion_speed
+from flankfilm.figures import drawn
+from flankfilm.output.branches import branch_tables
+from flankfilm.output.files import provenance, write_csv, write_netcdf
+from flankfilm.output.passages import fillet_stress, passage
+from flankfilm.output.tables import columns
+from flankfilm.output.variables import joined, merged, of_list, of_models, of_record
+from flankfilm.stages.decisions import decisions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    import fem
+    from flankfilm.coupling import LubricatedCycle, MeshSeries, RootStresses, SpeedSweep
+    from flankfilm.scene import Scene
+
+CONTACTS = ("unloaded_transmission_error", "hertz_pressure", "half_width")
+"""Figures of a loaded contact by finite elements that stand beside those which every model has."""
+
+THROUGH = ("x", "pressure", "thickness", "central_thickness", "minimum_thickness")
+"""Figures of whole films."""
+
+CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file: columns of the record with a prefix, named, or all along an axis; without the figure `about` none."""
+
+    prefix: str
+    about: str
+    names: tuple[str, ...] = ()
+    axis: str = ""
+
+
+TABLES: Mapping[str, Table] = {
+    "single_pair_stiffness": Table("single_pair", "rho1", axis="path"),
+    "mesh_cycle_dry": Table("dry", "position", CYCLE),
+    "contacts_dry": Table(
+        "dry", "hertz_pressure", ("position", "forces", "hertz_pressure", "half_width", "sliding")
+    ),
+    "torques": Table("torque", "torque", axis="torque"),
+    "revolution": Table(
+        "revolution",
+        "position",
+        ("position", "transmission_error", "unloaded_transmission_error", "secant_stiffness"),
+    ),
+    "root_stress_pinion": Table("root_pinion", "travel", axis="instant"),
+    "fillet_stress_pinion": Table("fillet_pinion", "arc", axis="arc"),
+    "root_stress_wheel": Table("root_wheel", "travel", axis="instant"),
+    "fillet_stress_wheel": Table("fillet_wheel", "arc", axis="arc"),
+    "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
+    "film_along_path": Table("film", "rho1", axis="point"),
+    "sweep_up": Table("sweep", "up", ("speed", "frequency", "up", "up_label")),
+    "sweep_down": Table("sweep", "down", ("speed", "frequency", "down", "down_label")),
+    "diagram": Table("diagram", "frequency", axis="point"),
+    "special_points": Table("special", "frequency", axis="point"),
+    "jumps": Table("jump", "frequency", axis="jump"),
+    "stable_motions": Table("stable", "motion", axis="range"),
+    "force_over_speed": Table("force", "factor", axis="force"),
+}
+"""CSV files by name."""
+
+
+def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
+    """Give everything that a run found as one dataset: what ``results.nc`` holds and figures are drawn from.
+
+    Parameters
+    ----------
+    scene : Scene
+        What was asked for.
+    values : mapping
+        Stage name to result.
+    """
+    decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
+    attributes = {"title": scene.title, **decided, **provenance(scene.model_dump_json())}
+    return merged(_records(values, _speed(scene)), attributes)
+
+
+def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Columns of the CSV files by name: one table for each curve."""
+    return {
+        file: columns(data, table.prefix, table.names, table.axis)
+        for file, table in TABLES.items()
+        if joined(table.prefix, table.about) in data.variables
+    }
+
+
+def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
+    """Write ``results.nc`` and the CSV files; return what was written."""
+    write_netcdf(folder / "results.nc", data)
+    files = [folder / "results.nc"]
+    for name, table in results_tables(data).items():
+        files.append(folder / "csv" / f"{name}.csv")
+        write_csv(files[-1], table)
+    return files
+
+
+@record
+class Sliding:
+    """Sliding of loaded contacts; nan where nothing touches."""
+
+    specific_sliding: Array = quantity("1", "sliding over the flank's own speed", "gear position pair")
+    sliding: Array | None = quantity("m/s", "sliding speed u1 - u2, negative before C", "position pair")
+
+    @classmethod
+    def of(cls, contact: fem.MeshCycle, speed: float | None) -> Sliding:
+        """Sliding of a loaded contact at a speed of the pinion [rad/s], where there is one."""
+        touching = contact.forces > 0
+        return cls(
+            np.where(touching, contact.specific_sliding, np.nan),
+            None if speed is None else np.where(touching, contact.sliding(speed), np.nan),
+        )
+
+
+def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Dataset]:
+    """Variables of all records that a run gave, in the order of the stages."""
+    for prefix, name in (("single_pair", "closed forms"), ("dry", "dry cycle"), ("torque", "torques")):
+        if (found := values.get(name)) is not None:
+            yield of_record(prefix, found)
+    if (pair := values.get("pair")) is not None:
+        yield of_record("pair", pair)
+        yield of_record("outline", drawn.outlines(pair))
+        yield of_record("path", drawn.path(pair, speed))
+    if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
+        yield of_record("dry", dry.contact, CONTACTS)
+        yield of_record("dry", Sliding.of(dry.contact, speed))
+    if others := values.get("other cycles"):
+        yield of_models("other", {cycle.label: cycle for cycle in others}, "model of the mesh cycle")
+    if (lubricated := values.get("film")) is not None:
+        yield from _lubricated(lubricated)
+    if (whole := values.get("revolution")) is not None:
+        yield of_record("revolution", whole)
+    if (roots := values.get("root stress")) is not None:
+        yield from _roots(roots)
+    if (series := values.get("fourier")) is not None:
+        yield _fourier(series)
+    if (sweep := values.get("sweep")) is not None:
+        yield from _sweep(sweep)
+    if (diagram := values.get("diagram")) is not None:
+        yield from (of_record(prefix, found) for prefix, found in branch_tables(diagram).items())
+    if (fields := values.get("fields")) is not None and pair is not None:
+        yield of_record("field", drawn.near_mesh(pair, (fields.pinion, fields.wheel)))
+
+
+def held_as_it_is(cycle: LubricatedCycle) -> str:
+    """Label of a starved film beside others in which something else is held."""
+    return f"this film, {cycle.film.supply.replace('-', ' ')} held"
+
+
+def _lubricated(cycle: LubricatedCycle) -> Iterator[xr.Dataset]:
+    """Mesh cycle with film, the film along the path, whole films, and starved films otherwise."""
+    yield of_record("lubricated", cycle)
+    yield of_record("film", cycle.film)
+    for name, film in cycle.film.profiles.items():
+        prefix = f"film_profile_{name.replace(' ', '_')}"
+        yield of_record(prefix, film, THROUGH)
+        yield of_record(prefix, film.contact, ("half_width",))
+    if cycle.otherwise:
+        held = {held_as_it_is(cycle): cycle, **cycle.otherwise}
+        yield of_models("held", held, "mesh cycle with films that differ in what is held")
+
+
+def _fourier(series: MeshSeries) -> xr.Dataset:
+    """Series of the stiffness; a given one may be over its mean."""
+    found = of_record("fourier", series)
+    if series.kind == "given" and series.mean == 1.0:
+        for name in ("fourier_mean", "fourier_amplitude"):
+            found[name].attrs["units"] = "1"
+    return found
+
+
+def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
+    """Root stress of a passing tooth and along the fillets of both gears, and nominal stress."""
+    for name, gear in (("pinion", found.stress.pinion), ("wheel", found.stress.wheel)):
+        yield of_record(f"root_{name}", passage(gear))
+        yield of_record(f"fillet_{name}", fillet_stress(gear))
+    if found.iso is not None:
+        yield of_record("iso6336_3", found.iso)
+        yield of_list("iso6336_3", "gear", found.iso.sections)
+
+
+def _sweep(found: SpeedSweep) -> Iterator[xr.Dataset]:
+    """States and labels by direction, and portraits."""
+    names = {f"sweep_states_{up}": f"sweep_{up}" for up in found.states}
+    names |= {f"sweep_labels_{up}": f"sweep_{up}_label" for up in found.labels}
+    yield of_record("sweep", found).rename(names)
+    if found.portraits:
+        yield of_record("portrait", drawn.portraits(found.portraits))
+
+
+def _speed(scene: Scene) -> float | None:
+    """Pinion speed [rad/s], where the scene has one."""
+    operating = scene.operating
+    return None if operating is None or operating.pinion_speed_rpm is None else pinion_speed(scene)

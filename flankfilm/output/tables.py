@@ -1,0 +1,93 @@
+"""Tables for CSV files: columns of a dataset's variables in the units that people read, which their names carry."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base.units import factor, suffix
+from flankfilm.output.variables import COMMON, joined
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+ASIDE = ("pair", *COMMON)
+"""Axes whose entries stand beside each other as columns; all others run down the rows."""
+
+
+def columns(
+    data: xr.Dataset, prefix: str, names: Sequence[str] = (), axis: str = ""
+) -> dict[str, NDArray[np.generic]]:
+    """Columns of a record's variables, each repeated along the axes that it lacks.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    prefix : str
+        Of the record.
+    names : sequence of str
+        Figures, in the order of the columns; those that are not there are left out.
+    axis : str
+        Instead of them: all figures along this axis of the record.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (rows,)
+        Called ``<figure>_<unit>``, and by the entry where several stand beside each other.
+    """
+    wanted = [joined(prefix, name) for name in names if joined(prefix, name) in data.variables]
+    if axis:
+        wanted = [n for n in map(str, data.variables) if data[n].dims[:1] == (joined(prefix, axis),)]
+    rows = {
+        dim: data.sizes[dim]
+        for name in wanted
+        for dim in map(str, data[name].dims)
+        if not _aside(dim, prefix)
+    }
+    found = {}
+    for name in wanted:
+        variable = data[name].variable
+        aside = [str(dim) for dim in variable.dims if _aside(str(dim), prefix)]
+        head = spelt(name.removeprefix(f"{prefix}_"), read_in(data, name))
+        for places in product(*(range(data.sizes[dim]) for dim in aside)):
+            picked = dict(zip(aside, places, strict=True))
+            label = "".join(f"_{_entry(dim, place, prefix)}" for dim, place in picked.items())
+            found[head + label] = _shown(data, name, variable.isel(picked).set_dims(rows).values.ravel())
+    return found
+
+
+def spelt(name: str, unit: str) -> str:
+    """Name of a column: the figure's with its unit at the end, once.
+
+    Examples
+    --------
+    >>> spelt("transmission_error", "um"), spelt("speed_rpm", "rpm"), spelt("position", "1")
+    ('transmission_error_um', 'speed_rpm', 'position')
+    """
+    end = suffix(unit)
+    return name if not end or name.endswith(f"_{end}") else f"{name}_{end}"
+
+
+def read_in(data: xr.Dataset, name: str) -> str:
+    """Unit that people read a variable in."""
+    about = data[name].attrs
+    return str(about.get("display_units", about["units"]))
+
+
+def _shown(data: xr.Dataset, name: str, values: NDArray[np.generic]) -> NDArray[np.generic]:
+    unit = read_in(data, name)
+    return (
+        values if unit == data[name].attrs["units"] else np.asarray(values, dtype=np.float64) / factor(unit)
+    )
+
+
+def _aside(dim: str, prefix: str) -> bool:
+    return dim.removeprefix(f"{prefix}_") in ASIDE
+
+
+def _entry(dim: str, place: int, prefix: str) -> str:
+    return COMMON[dim][place] if dim in COMMON else f"{dim.removeprefix(f'{prefix}_')}_{place + 1}"
