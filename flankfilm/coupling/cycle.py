@@ -11,8 +11,6 @@ from base import Array, Cost, described, quantity, record
 if TYPE_CHECKING:
     import fem
 
-__all__ = ["MeshCycle", "peak_to_peak_error", "sampling_error"]
-
 
 @record
 class MeshCycle:

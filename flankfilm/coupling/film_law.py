@@ -31,8 +31,6 @@ from numpy.typing import NDArray
 
 from base import Array
 
-__all__ = ["FilmLaw", "HeldMeniscus", "PlacedFilm"]
-
 _LEAST_RATIO = 0.01
 _LEAST_DISTANCE = 1e-12
 _LARGEST_LOGARITHM = 300.0

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ehl import Film, MixedFilm, StiffnessRow
     from gears import GearPair
 
-__all__ = ["definitions", "profiles", "stiffness_rows"]
-
 SPIKE = 0.01
 """Wanted relative error of the pressure spike in pictures."""
 

@@ -18,17 +18,6 @@ if TYPE_CHECKING:
     Solved: TypeAlias = Film | MixedFilm | FormulaFilm
     Supply: TypeAlias = Meniscus | OilLayer | None
 
-__all__ = [
-    "FilmModel",
-    "PathFilms",
-    "PlacedMeniscus",
-    "contacts_of",
-    "film_inside",
-    "films_of",
-    "held_the_other_way",
-    "law_of",
-]
-
 LEAST_SHARE = 1e-3
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
 separates them by moves the load share by less than their own part."""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from dynamics import Diagram, FourierStiffness, GearOscillator, SpecialPoint
     from dynamics.labelling import Stretch
 
-__all__ = ["Jump", "SpeedDiagram", "jump_points", "jump_speeds"]
-
 DROPPED = 4
 """Harmonics beyond the series that the error budget looks at."""
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import fem
     from gears import GearDeviations, GearPair
 
-__all__ = ["PLAIN_FLANKS", "POSITIONS", "Flanks", "LoadedTeeth", "contact_places"]
-
 POSITIONS = (120, 360, 1080)
 """Numbers of positions tried, the cheapest first; each holds every third of the next one."""
 

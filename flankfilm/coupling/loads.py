@@ -13,8 +13,6 @@ from flankfilm.coupling.loaded_teeth import LoadedTeeth
 if TYPE_CHECKING:
     from fem import MeshCycle
 
-__all__ = ["TorqueCurves", "revolution", "torque_curves"]
-
 REVOLUTION_POSITIONS = 40
 
 

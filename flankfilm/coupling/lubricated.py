@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ehl import Film, Lubricant, StiffnessRow
     from gears import GearPair
 
-__all__ = ["FilmAlongPath", "LubricatedCycle", "film_along_path", "lubricate", "lubricated_cycle"]
-
 FILM_POSITIONS = 40
 """Positions of a base pitch at which films are solved and brought into agreement with the load share."""
 

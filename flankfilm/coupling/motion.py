@@ -16,8 +16,6 @@ from flankfilm.coupling.oscillator import PairOscillator
 if TYPE_CHECKING:
     from dynamics import GearOscillator, SweepResult
 
-__all__ = ["Portrait", "SpeedSweep", "frequencies_of", "speed_sweep"]
-
 MOST_PORTRAITS = 6
 
 
@@ -115,7 +113,7 @@ def speed_sweep(
     >>> oscillator = GearOscillator(series.stiffness, 0.05, 0.1, 0.2, 0.5, 0.2)
     >>> swept = speed_sweep(PairOscillator(oscillator, None, series), frequency=[0.6, 0.65, 0.7])
     >>> [label for label in swept.labels["up"]], round(swept.least_grazing, 4)
-    (['1-0-0', '1-1-0', '1-1-0'], 0.6335)
+    (['1-0-0', '1-1-0', '1-1-1'], 0.6335)
     """
     with unclocked():
         from dynamics import contact_grazing, sweep

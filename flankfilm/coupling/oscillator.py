@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from dynamics import GearOscillator, Scaling
     from gears import GearPair
 
-__all__ = ["PairOscillator", "pair_inertias", "pair_oscillator", "pair_scales"]
-
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
 

@@ -7,19 +7,6 @@ from dataclasses import dataclass
 from base import SolverError
 from flankfilm.coupling.tolerance import CostLaw, Shares, split, step_below
 
-__all__ = [
-    "ASSUMED_CHANGE",
-    "COARSEST_FILMS",
-    "COMPLIANCE",
-    "FILMS",
-    "SAMPLING",
-    "Resolution",
-    "film_law_of_cost",
-    "film_tolerance",
-    "resolution_of",
-    "stiffness_laws",
-]
-
 COMPLIANCE = CostLaw("tooth compliance", coarsest=5e-4, seconds=0.3, power=1.0, finest=3e-6)
 """Meshing, factors and loads of both gears by finite elements."""
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from gears import GearPair
     from gears.closed_form import Iso6336RootStress
 
-__all__ = ["LoadedFields", "RootStresses", "pitch_point_fields", "root_stresses"]
-
 
 @record
 class RootStresses:
@@ -131,7 +129,7 @@ def pitch_point_fields(pair: GearPair, cycle: fem.MeshCycle, compliance: fem.Com
     >>> bodies = fem.compliance(pair)
     >>> cycle = fem.mesh_cycle(pair, torque=600.0, positions=8, compliance=bodies)
     >>> pitch_point_fields(pair, cycle, bodies).position
-    2
+    6
     """
     with unclocked():
         from fem.fields import loaded_fields

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from gears import GearPair, PathOfContact
     from gears.closed_form import Iso6336Stiffness
 
-__all__ = ["CLOSED_FORMS", "MODELS", "SinglePairs", "closed_form", "single_pair_stiffness", "single_pairs"]
-
 CLOSED_FORMS = {
     "ishikawa": "Ishikawa",
     "weber-banaschek": "Weber-Banaschek",

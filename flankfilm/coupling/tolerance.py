@@ -18,8 +18,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-__all__ = ["CostLaw", "Shares", "split", "step_below"]
-
 
 @dataclass(frozen=True)
 class CostLaw:

@@ -7,8 +7,6 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-__all__ = ["distinct", "warned_once"]
-
 
 def distinct(caught: Iterable[warnings.WarningMessage]) -> list[warnings.WarningMessage]:
     """Drop warnings that differ from an earlier one in their numbers alone."""

@@ -43,12 +43,26 @@ def read_scene(path: Path) -> Scene:
     ------
     InputError
         With every fault of the file.
+
+    Examples
+    --------
+    >>> from flankfilm.scene import template
+    >>> _ = Path("pair.toml").write_text(template(), encoding="utf-8")
+    >>> read_scene(Path("pair.toml")).tolerance
+    0.005
     """
     return parse_scene(read_text(path), name=str(path))
 
 
 def parse_scene(text: str, name: str = "scene") -> Scene:
-    """Check the text of a scene file; see `read_scene`."""
+    """Check the text of a scene file; see `read_scene`.
+
+    Examples
+    --------
+    >>> from flankfilm.scene import template
+    >>> parse_scene(template()).operating.pinion_torque_Nm
+    600.0
+    """
     return validated(parse_toml(text, name))
 
 

@@ -12,12 +12,13 @@ import pytest
 
 import flankfilm as ff
 from base import InputError
-from ehl import Lubricant, Meniscus, OilLayer, Roughness
+from ehl import Meniscus, OilLayer, Roughness
+from flankfilm.build import gear_pair, pinion_speed
+from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
 from flankfilm.coupling import LubricatedCycle, MeshCycle
 from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
 from flankfilm.stages.engine import Engine
-from gears import Gear, GearPair, Material
 
 SCENE = """
 wants = [WANTS]
@@ -47,21 +48,16 @@ error_amplitude_um = 10
 sweep = { speed_rpm = [15000, 16000], points = 3 }
 diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
 """
-STEEL = Material(youngs_modulus=200.2e9, poisson_ratio=0.3, density=7850.0)
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-SPEED = 2000 * (math.pi / 30)
-
-
-def pair() -> GearPair:
-    gears = (Gear(teeth=36, bore_radius=0.5e-3 * 33.5), Gear(teeth=40, bore_radius=0.5e-3 * 37.5))
-    plain = GearPair(pinion=gears[0], wheel=gears[1], module=2e-3, face_width=40e-3, material=(STEEL, STEEL))
-    return plain.with_backlash(50e-6)
 
 
 def scene_of(model: str, film: str) -> ff.Scene:
     wants = '"stiffness", "sweep"' if film == "none" else '"stiffness", "film", "sweep"'
     text = SCENE.replace("WANTS", wants).replace("MODEL", model).replace("FILM", film)
     return ff.parse_scene(text)
+
+
+PAIR, OIL, SPEED = (of(scene_of("ishikawa", "ehl")) for of in (gear_pair, lubricant, pinion_speed))
+"""Of the scenes: numbers converted from a scene's units may differ from those written in SI in their last digit."""
 
 
 def run_of(model: str, film: str) -> Engine:
@@ -84,14 +80,14 @@ def run() -> Engine:
 def cycle() -> LubricatedCycle:
     formula = ff.FilmModel("dowson")
     return ff.lubricated_cycle(
-        pair(), 600.0, SPEED, OIL, tolerance=0.01, model="potential-energy", film=formula
+        PAIR, 600.0, SPEED, OIL, tolerance=0.01, model="potential-energy", film=formula
     )
 
 
 def test_a_dry_cycle_by_finite_elements_is_that_of_the_scene():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = ff.mesh_cycle(pair(), 600.0, tolerance=0.01)
+        found = ff.mesh_cycle(PAIR, 600.0, tolerance=0.01)
     same(found, run_of("fem", "none")[DRY_CYCLE])
     assert found.converged
     assert found.error is not None
@@ -112,7 +108,7 @@ def test_the_least_film_of_the_pairs_is_that_of_the_path(cycle: LubricatedCycle)
 
 
 def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: LubricatedCycle):
-    motion = ff.pair_oscillator(pair(), cycle, 600.0, SPEED, error_amplitude=10 * 1e-6)
+    motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, error_amplitude=1e-6 * 10)
     assert motion.oscillator == run[SCALING].oscillator
     speeds = np.linspace(15000, 16000, 3) * math.pi / 30.0
     swept = ff.speed_sweep(motion, speeds)
@@ -124,14 +120,14 @@ def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: L
 
 
 def test_the_verification_is_that_of_the_scene():
-    found = ff.compare_closed_forms(pair(), 600.0, tolerance=0.01)
+    found = ff.compare_closed_forms(PAIR, 600.0, tolerance=0.01)
     assert found.differences == run_of("fem", "none")[VERIFICATION].differences
     with pytest.raises(LookupError, match="no comparison"):
         found.difference("Ishikawa", "no such reference")
 
 
 def test_every_result_says_itself_in_one_line(cycle: LubricatedCycle, tmp_path: Path):
-    motion = ff.pair_oscillator(pair(), cycle, 600.0, SPEED)
+    motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED)
     results = ff.run(scene_of("ishikawa", "dowson"), cache=False)
     for found in (cycle, cycle.dry, cycle.film, motion, results):
         assert len(repr(found)) <= 200
@@ -155,7 +151,7 @@ def test_every_result_says_itself_in_one_line(cycle: LubricatedCycle, tmp_path: 
 def test_faults_of_arguments_are_named(options: dict, where: str):
     given = {"torque": 600.0, "speed": SPEED, "lubricant": OIL, "model": "ishikawa"} | options
     with pytest.raises(InputError) as raised:
-        ff.lubricated_cycle(pair(), **given)
+        ff.lubricated_cycle(PAIR, **given)
     assert [fault.where for fault in raised.value.faults] == [where]
 
 
@@ -169,7 +165,7 @@ def test_formulas_are_refused_for_starved_and_rough_films():
 def test_a_meniscus_inside_a_contact_is_refused():
     held = ff.FilmModel(supply=Meniscus(-0.1e-3))
     with pytest.raises(InputError, match="half-width of a contact"):
-        ff.lubricated_cycle(pair(), 600.0, SPEED, OIL, model="ishikawa", film=held)
+        ff.lubricated_cycle(PAIR, 600.0, SPEED, OIL, model="ishikawa", film=held)
 
 
 def test_speeds_need_scales_and_one_range():
