@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.verification import UNITS, Curves, Difference, Verification
-from flankfilm.figures.drawn import path
+from flankfilm.figures.drawn import outlines, path
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.variables import identifier, merged, of_models, of_record
 
@@ -78,7 +78,8 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     like = {"units": "1", "long_name": "reference without what closed forms lack"}
     parts = (
         of_record("pair", found.pair),
-        of_record("path", path(found.pair), ("point", "point_rho1")),
+        of_record("outline", outlines(found.pair)),
+        of_record("path", path(found.pair), ("point", "point_rho1", "point_place")),
         of_record("path", found, ("rho1",)),
         of_record("mesh", found, ("position",)),
         of_models(
