@@ -9,9 +9,9 @@ import tempfile
 from functools import partial
 from pathlib import Path
 
-from flankfilm.bench.case import Case, work
+from flankfilm.bench.case import Levels, case, work
 
-__all__ = ["application"]
+__all__ = ["work_application"]
 
 STUDY = """
 title = "Geometry"
@@ -28,8 +28,14 @@ samples = {rows}
 """
 
 
-def application(quick: bool) -> tuple[Case, ...]:
-    """Rows computed here and by the command on two processes; the report of the scene that they vary."""
+@case("Studies and reports", "rows")
+def work_application(quick: bool) -> Levels:
+    """Rows computed here and by the command on two processes; the report of the scene that they vary.
+
+    Rows of a study of profile shifts and a bore, without film and cache: one after the other in this process, and by
+    the command on two processes, whose wall time alone counts (what it needs beside the rows is in that of two rows);
+    the page of a run.
+    """
     from flankfilm.report.contents import write_report
     from flankfilm.running import run_scene
     from flankfilm.scene import read_scene, template
@@ -61,19 +67,10 @@ def application(quick: bool) -> tuple[Case, ...]:
         # the folder lives as long as what is measured in it
         return folder, [compute_row(task) for task in tasks]
 
-    return (
-        Case(
-            "work_application",
-            "Studies and reports",
-            "Rows of a study of profile shifts and a bore, without film and cache: one after the other in this "
-            "process, and by the command on two processes, whose wall time alone counts (what it needs beside the "
-            "rows is in that of two rows); the page of a run.",
-            "rows",
-            (
-                work("rows in this process", rows_here, counts[-1]),
-                *(work(f"study of {rows} rows", partial(study, rows), rows) for rows in counts),
-                work("report of a run", lambda: write_report(results, place / "run")),
-            ),
-            None,
-        ),
+    return Levels(
+        (
+            work("rows in this process", rows_here, counts[-1]),
+            *(work(f"study of {rows} rows", partial(study, rows), rows) for rows in counts),
+            work("report of a run", lambda: write_report(results, place / "run")),
+        )
     )

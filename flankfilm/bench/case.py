@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from functools import wraps
+from inspect import signature
+from typing import Any, NamedTuple, ParamSpec
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-__all__ = ["Answer", "Case", "Level", "PeerWork", "Series", "Value", "level", "true_error", "work"]
+from base import Array
 
-Array = NDArray[np.float64]
+__all__ = [
+    "Answer",
+    "Case",
+    "Level",
+    "Levels",
+    "PeerWork",
+    "Series",
+    "Value",
+    "answer",
+    "case",
+    "level",
+    "over",
+    "percent",
+    "true_error",
+    "value",
+    "work",
+]
+
+P = ParamSpec("P")
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,14 +153,78 @@ class Case:
     peers: tuple[PeerWork, ...] = ()
 
 
-def work(name: str, task: Callable[[], Any], size: float = float("nan")) -> Series:
-    """Make a series of one level that is timed and gives no figure."""
-    return Series(name, (Level(name, task, lambda found: Answer(size, {})),))
+class Levels(NamedTuple):
+    """What a case measures, as of `Case`."""
+
+    series: tuple[Series, ...]
+    finest: Level | None = None
+    orders: Mapping[str, float] = {}
+    peers: tuple[PeerWork, ...] = ()
+
+
+def case(title: str, size_name: str) -> Callable[[Callable[P, Levels]], Callable[P, Case]]:
+    """Make a function that gives levels one that gives their case.
+
+    The key is the function's name, followed by its argument `key` where it has one. The work is what its docstring
+    says below the first line. Braces there and in the title hold the function's arguments and its module's constants.
+
+    Parameters
+    ----------
+    title, size_name : str
+        As of `Case`.
+    """
+
+    def decorate(function: Callable[P, Levels]) -> Callable[P, Case]:
+        @wraps(function)
+        def build(*args: P.args, **kwargs: P.kwargs) -> Case:
+            given = signature(function).bind(*args, **kwargs).arguments
+            known = {**function.__globals__, **given}
+            key = "_".join([function.__name__, *filter(None, [given.get("key")])])
+            text = " ".join((function.__doc__ or "").partition("\n")[2].split())
+            return Case(
+                key, title.format(**known), text.format(**known), size_name, *function(*args, **kwargs)
+            )
+
+        return build
+
+    return decorate
+
+
+def value(found: ArrayLike, estimate: float | None = None, over_largest: bool = False) -> Value:
+    """Make a value of one number or of several."""
+    return Value(np.atleast_1d(np.asarray(found, dtype=float)), estimate, over_largest)
+
+
+def answer(size: float, values: Mapping[str, Value], *of: Any) -> Answer:
+    """Make the answer of results that have ``converged`` and ``message``; the first that did not converge fails it."""
+    return Answer(size, values, next((result.message for result in of if not result.converged), ""))
 
 
 def level(name: str, work: Callable[..., Any], answer: Callable[[Any], Answer], *args: Any) -> Level:
     """Make a level whose work is a call with arguments."""
     return Level(name, lambda: work(*args), answer)
+
+
+def over(
+    steps: Iterable[Any],
+    label: Callable[[Any], str],
+    work: Callable[..., Any],
+    answer: Callable[[Any], Answer],
+    *args: Any,
+    name: str,
+) -> Series:
+    """Make a series of calls with `args` and then one of the steps, which `label` names."""
+    return Series(name, tuple(level(label(step), work, answer, *args, step) for step in steps))
+
+
+def percent(tolerance: float) -> str:
+    """Name of a level by its tolerance."""
+    return f"{100 * tolerance:g} %"
+
+
+def work(name: str, task: Callable[[], Any], size: float = float("nan")) -> Series:
+    """Make a series of one level that is timed and gives no figure."""
+    return Series(name, (Level(name, task, lambda found: Answer(size, {})),))
 
 
 def true_error(found: Value, finest: Value) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.bench.case import Answer, Case, Series, Value, level
+from flankfilm.bench.case import Answer, Levels, case, level, over, value
 from flankfilm.bench.examples import example_pair
 
 if TYPE_CHECKING:
@@ -15,45 +15,36 @@ if TYPE_CHECKING:
 
 __all__ = ["elements"]
 
-KINDS = ("P1", "P2 straight", "P2 curved", "P3 curved")
 ORDERS = {"P1": 1.0, "P2 straight": 1.0, "P2 curved": 2.0, "P3 curved": 3.0}
+"""Of the error, by the kind of element; the finest solution is of the last."""
 
 
-def elements(quick: bool) -> tuple[Case, ...]:
-    """Work of a smooth load on one tooth by the kind of element and by refinement."""
+@case("Kinds of elements", "unknowns of the sector")
+def elements(quick: bool) -> Levels:
+    """Work of a smooth load on one tooth by the kind of element and by refinement.
+
+    Pinion of the pair 36/40, one sector held on its cuts: work of a smooth body force in the outer part of the tooth,
+    whose error is the square of the energy norm's. Meshes at hand; assembly, factorisation and solution are timed.
+    """
     from meshes import mesh_sector
 
     profile = example_pair().teeth_profiles[0]
     levels = (0, 1) if quick else (0, 1, 2)
     finest = levels[-1] + 1
-    sectors = {times: mesh_sector(profile, refinements=times) for times in (*levels, finest)}
+    sectors = [mesh_sector(profile, refinements=times) for times in (*levels, finest)]
 
-    def solve(kind: str, times: int) -> tuple[float, int]:
-        return sector_energy(sectors[times], kind)
+    def solve(kinds: tuple[str, ...], times: int) -> tuple[tuple[str, ...], float, int]:
+        return kinds, *sector_energy(sectors[times], kinds[-1])
 
-    def answer(kind: str) -> Any:
-        def of(found: tuple[float, int]) -> Answer:
-            return Answer(
-                found[1], {f"energy, {k}": Value(np.array([found[0]])) for k in KINDS if kind in (k, "")}
-            )
+    def energy(found: tuple[tuple[str, ...], float, int]) -> Answer:
+        kinds, work, unknowns = found
+        return Answer(unknowns, {f"energy, {kind}": value(work) for kind in kinds})
 
-        return of
-
-    return (
-        Case(
-            "elements",
-            "Kinds of elements",
-            "Pinion of the pair 36/40, one sector held on its cuts: work of a smooth body force in the outer part of "
-            "the tooth, whose error is the square of the energy norm's. Meshes at hand; assembly, factorisation and "
-            "solution are timed.",
-            "unknowns of the sector",
-            tuple(
-                Series(kind, tuple(level(f"refined {n} times", solve, answer(kind), kind, n) for n in levels))
-                for kind in KINDS
-            ),
-            level(f"P3 curved, refined {finest} times", solve, answer(""), "P3 curved", finest),
-            {f"energy, {kind}": order for kind, order in ORDERS.items()},
-        ),
+    kinds, label = tuple(ORDERS), "refined {} times".format
+    return Levels(
+        tuple(over(levels, label, solve, energy, (kind,), name=kind) for kind in kinds),
+        level(f"{kinds[-1]}, {label(finest)}", solve, energy, kinds, finest),
+        {f"energy, {kind}": order for kind, order in ORDERS.items()},
     )
 
 

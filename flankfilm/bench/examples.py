@@ -12,12 +12,23 @@ if TYPE_CHECKING:
     from ehl import LineContact
     from gears import GearPair
 
-__all__ = ["PERIODS", "START", "TORQUE", "contacts_along_path", "example_pair", "oscillator", "pitch_point"]
+__all__ = [
+    "DOMAIN",
+    "PERIODS",
+    "START",
+    "TORQUE",
+    "contacts_along_path",
+    "example_pair",
+    "oscillator",
+    "pitch_point",
+]
 
 TORQUE = 600.0
 START = (0.5, 0.2)
 PERIODS = 5
 """Excitation periods after which states are compared."""
+DOMAIN = (-4.0, 1.5)
+"""Half-widths on which the film is solved beside the relaxed iteration."""
 
 
 def example_pair() -> GearPair:

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.bench.case import Answer, Case, Level, Series, Value, level
-from flankfilm.bench.examples import contacts_along_path, pitch_point
-from flankfilm.bench.work_cases import film_work
+from flankfilm.bench.case import (
+    Answer,
+    Case,
+    Level,
+    Levels,
+    answer,
+    case,
+    level,
+    over,
+    percent,
+    value,
+)
+from flankfilm.bench.examples import DOMAIN, contacts_along_path, pitch_point
+from flankfilm.bench.work_cases import work_film
 
 if TYPE_CHECKING:
     from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer
-
-    Supply = Meniscus | OilLayer
 
 __all__ = ["films"]
 
@@ -24,49 +32,65 @@ ORDERS = {THICKNESS: 2.0, STIFFNESS: 2.0}
 FINEST = {False: (3e-5, 0.01), True: (5e-4, 0.01)}
 """Tolerances of film and spike at the pitch point, in full and quick: graded grids alone do not resolve the
 stiffness, grids around the spike do."""
+NODES = "{} nodes".format
 
 
-def answer(film: Film) -> Answer:
+def thickness_and_stiffness(film: Film) -> Answer:
     """Thickness and stiffness of a film, with the solver's estimates of both."""
     values = {
-        THICKNESS: Value(np.array([film.central_thickness, film.minimum_thickness]), film.error),
-        STIFFNESS: Value(np.array([film.stiffness()]), film.errors.approach_stiffness),
+        THICKNESS: value([film.central_thickness, film.minimum_thickness], film.error),
+        STIFFNESS: value(film.stiffness(), film.errors.approach_stiffness),
     }
-    return Answer(film.x.size, values, "" if film.converged else film.message)
+    return answer(film.x.size, values, film)
 
 
 def films(quick: bool) -> tuple[Case, ...]:
     """All cases of the film."""
-    flooded = (*_by_nodes(quick), _by_tolerance(quick))
-    return flooded if quick else (*flooded, *_starved(), _mixed(), _path(), *_relaxed(), film_work())
+    from ehl import LineContact, Meniscus, OilLayer, solve
 
-
-def _by_nodes(quick: bool) -> tuple[Case, ...]:
-    from ehl import LineContact, solve
-
-    contacts: dict[str, tuple[str, LineContact, tuple[float, float | None]]] = {
-        "light": ("M 2, L 1", LineContact.from_moes(2.0, 1.0), (1e-5, None)),
-        "heavy": ("M 100, L 10", LineContact.from_moes(100.0, 10.0), (3e-5, None)),
-        "pitch": ("pitch point", pitch_point(), FINEST[quick]),
-    }
-    counts = (33, 65, 129) if quick else (33, 65, 129, 257, 513)
-    return tuple(
-        Case(
-            f"film_nodes_{key}",
-            f"Film by nodes, {words}",
-            f"Flooded line contact, {words}, from nothing: Newton's method on the given number of nodes and on half as "
-            "many for the estimate, both derivatives included.",
-            "nodes",
-            (Series(words, tuple(level(f"{n} nodes", solve, answer, contact, 0.005, n) for n in counts)),),
-            finest_film(contact, *finest),
-            ORDERS,
-        )
-        for key, (words, contact, finest) in contacts.items()
-        if not quick or key == "pitch"
+    pitch = pitch_point()
+    at_pitch = film_nodes("pitch", "pitch point", pitch, FINEST[quick], quick)
+    if quick:
+        return at_pitch, film_tolerance(quick)
+    half = solve(pitch).central_thickness / 2
+    return (
+        film_nodes("light", "M 2, L 1", LineContact.from_moes(2.0, 1.0), (1e-5, None), quick),
+        film_nodes("heavy", "M 100, L 10", LineContact.from_moes(100.0, 10.0), (3e-5, None), quick),
+        at_pitch,
+        film_tolerance(quick),
+        film_starved("meniscus", "meniscus 0.1 half-widths ahead", Meniscus(-1.1 * pitch.half_width)),
+        film_starved("layer", "layer of half the flooded film", OilLayer(half)),
+        film_mixed(),
+        film_path(),
+        film_relaxed("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
+        film_relaxed("pitch", "pitch point", pitch),
+        work_film(),
     )
 
 
-def _by_tolerance(quick: bool) -> Case:
+@case("Film by nodes, {words}", "nodes")
+def film_nodes(
+    key: str, words: str, contact: LineContact, finest: tuple[float, float | None], quick: bool
+) -> Levels:
+    """Flooded film by the number of nodes.
+
+    Flooded line contact, {words}, from nothing: Newton's method on the given number of nodes and on half as many for
+    the estimate, both derivatives included.
+    """
+    from ehl import solve
+
+    counts = (33, 65, 129) if quick else (33, 65, 129, 257, 513)
+    series = over(counts, NODES, solve, thickness_and_stiffness, contact, 0.005, name=words)
+    return Levels((series,), finest_film(contact, *finest), ORDERS)
+
+
+@case("Film by tolerance, pitch point", "nodes")
+def film_tolerance(quick: bool) -> Levels:
+    """Flooded film by its tolerance, from nothing and from a neighbour.
+
+    Flooded line contact at the pitch point of the pair 36/40, 600 N m and 2000 rpm, to a tolerance: from nothing, and
+    from the film of a load 2 % higher.
+    """
     from ehl import solve
 
     contact = pitch_point()
@@ -80,153 +104,113 @@ def _by_tolerance(quick: bool) -> Case:
     def warm(tolerance: float) -> Film:
         return solve(contact, tolerance=tolerance, start=starts[tolerance])
 
-    return Case(
-        "film_tolerance",
-        "Film by tolerance, pitch point",
-        "Flooded line contact at the pitch point of the pair 36/40, 600 N m and 2000 rpm, to a tolerance: from "
-        "nothing, and from the film of a load 2 % higher.",
-        "nodes",
-        (
-            Series("from nothing", tuple(level(f"{100 * t:g} %", cold, answer, t) for t in tolerances)),
-            Series("from a neighbour", tuple(level(f"{100 * t:g} %", warm, answer, t) for t in tolerances)),
-        ),
-        finest_film(contact, *FINEST[quick]),
-        ORDERS,
+    series = (
+        over(tolerances, percent, cold, thickness_and_stiffness, name="from nothing"),
+        over(tolerances, percent, warm, thickness_and_stiffness, name="from a neighbour"),
     )
+    return Levels(series, finest_film(contact, *FINEST[quick]), ORDERS)
 
 
 def finest_film(contact: LineContact, tolerance: float, spike: float | None) -> Level:
     """Level of a film that the others are compared with."""
     from ehl import solve
 
-    label = f"tolerance {100 * tolerance:g} %" + ("" if spike is None else f", spike {100 * spike:g} %")
-    return Level(label, lambda: solve(contact, tolerance=tolerance, spike=spike), answer)
+    label = f"tolerance {percent(tolerance)}" + ("" if spike is None else f", spike {percent(spike)}")
+    return Level(label, lambda: solve(contact, tolerance=tolerance, spike=spike), thickness_and_stiffness)
 
 
-def _starved() -> tuple[Case, ...]:
-    from ehl import Meniscus, OilLayer, solve
+@case("Starved film, {words}", "nodes")
+def film_starved(key: str, words: str, supply: Meniscus | OilLayer) -> Levels:
+    """Starved film by the number of nodes.
+
+    Line contact at the pitch point, {words}: the flooded film first, then the starved one, by nodes.
+    """
+    from ehl import solve
 
     contact = pitch_point()
-    half = solve(contact).central_thickness / 2
-    supplies: dict[str, tuple[str, Supply]] = {
-        "meniscus": ("meniscus 0.1 half-widths ahead", Meniscus(-1.1 * contact.half_width)),
-        "layer": ("layer of half the flooded film", OilLayer(half)),
-    }
 
-    def fed(supply: Supply, nodes: int) -> Film:
+    def fed(nodes: int) -> Film:
         return solve(contact, nodes=nodes, supply=supply)
 
-    return tuple(
-        Case(
-            f"film_{key}",
-            f"Starved film, {words}",
-            f"Line contact at the pitch point, {words}: the flooded film first, then the starved one, by nodes.",
-            "nodes",
-            (
-                Series(
-                    words,
-                    tuple(level(f"{n} nodes", fed, answer, supply, n) for n in (33, 65, 129, 257)),
-                ),
-            ),
-            level("1025 nodes", fed, answer, supply, 1025),
-            ORDERS,
-        )
-        for key, (words, supply) in supplies.items()
+    series = over((33, 65, 129, 257), NODES, fed, thickness_and_stiffness, name=words)
+    return Levels((series,), level(NODES(1025), fed, thickness_and_stiffness, 1025), ORDERS)
+
+
+@case("Film by relaxation, {words}", "nodes, or sweeps")
+def film_relaxed(key: str, words: str, contact: LineContact) -> Levels:
+    """Newton's method beside the relaxed iteration of many papers, both on the same uniform domain.
+
+    Flooded line contact, {words}, on {DOMAIN[0]:g} to {DOMAIN[1]:g} half-widths: Newton's method with its estimate,
+    and a compiled, relaxed Gauss-Seidel iteration with the fastest of seven pairs of factors.
+    """
+    from ehl import solve
+    from flankfilm.bench.relaxation import fastest_factors, relaxed
+
+    factors = {nodes: fastest_factors(contact, nodes) for nodes in (65, 129)}
+
+    def newton(**resolution: Any) -> Film:
+        return solve(contact, domain=DOMAIN, **resolution)
+
+    def central(size: float, film: float, error: float | None = None) -> Answer:
+        return Answer(size, {"central film": value(film, error)})
+
+    def by_newton(film: Film) -> Answer:
+        return central(film.x.size, film.central_thickness, film.error)
+
+    def sweeps(nodes: int) -> tuple[float, int] | None:
+        return relaxed(contact, nodes, factors[nodes])
+
+    def by_sweeps(found: tuple[float, int] | None) -> Answer:
+        if found is None:
+            return Answer(np.nan, {}, "no factors of the ladder converge")
+        return central(found[1], found[0])
+
+    series = (
+        over((65, 129, 257), NODES, lambda nodes: newton(nodes=nodes), by_newton, name="Newton"),
+        over(factors, NODES, sweeps, by_sweeps, name="relaxed"),
     )
+    return Levels(series, level(percent(2e-4), lambda: newton(tolerance=2e-4), by_newton))
 
 
-def _relaxed() -> Iterator[Case]:
-    """Newton's method beside the relaxed iteration of many papers, both on the same uniform domain."""
-    from ehl import LineContact, solve
-    from flankfilm.bench.relaxation import DOMAIN, fastest_factors, relaxed
+@case("Mixed film", "nodes")
+def film_mixed() -> Levels:
+    """Mixed film by its tolerance.
 
-    quantity = "central film"
-    for key, words, contact in (
-        ("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
-        ("pitch", "pitch point", pitch_point()),
-    ):
-
-        def newton(nodes: int, contact: LineContact = contact) -> Film:
-            return solve(contact, nodes=nodes, domain=DOMAIN)
-
-        def by_newton(film: Film) -> Answer:
-            return Answer(film.x.size, {quantity: Value(np.array([film.central_thickness]), film.error)})
-
-        def by_sweeps(found: tuple[float, int] | None) -> Answer:
-            if found is None:
-                return Answer(np.nan, {}, "no factors of the ladder converge")
-            return Answer(found[1], {quantity: Value(np.array([found[0]]))})
-
-        sweeps = [
-            level(f"{n} nodes", relaxed, by_sweeps, contact, n, fastest_factors(contact, n))
-            for n in (65, 129)
-        ]
-        yield Case(
-            f"film_relaxed_{key}",
-            f"Film by relaxation, {words}",
-            f"Flooded line contact, {words}, on {DOMAIN[0]:g} to {DOMAIN[1]:g} half-widths: Newton's method with its "
-            "estimate, and a compiled, relaxed Gauss-Seidel iteration with the fastest of seven pairs of factors.",
-            "nodes, or sweeps",
-            (
-                Series("Newton", tuple(level(f"{n} nodes", newton, by_newton, n) for n in (65, 129, 257))),
-                Series("relaxed", tuple(sweeps)),
-            ),
-            level("0.02 %", lambda c=contact: solve(c, tolerance=2e-4, domain=DOMAIN), by_newton),
-        )
-
-
-def _mixed() -> Case:
+    Line contact at the pitch point at 0.4 m/s on rough flanks whose heights deviate by two thirds of the smooth film:
+    load shared between film and asperities, to a tolerance. The estimate is of the film alone.
+    """
     from ehl import Roughness, solve, solve_mixed
 
     slow = replace(pitch_point(), entrainment=0.4)
     height = solve(slow).minimum_thickness
     rough = Roughness(deviation=height / 1.5, density=4e10, tip_radius=1e-5)
-    quantity = "film and asperity share"
-
-    def share(tolerance: float) -> MixedFilm:
-        return solve_mixed(slow, rough, tolerance)
 
     def both(found: MixedFilm) -> Answer:
-        values = np.array([found.central_thickness, found.minimum_thickness, found.asperity_share])
-        failure = "" if found.converged else found.message
-        return Answer(found.film.x.size, {quantity: Value(values, found.error)}, failure)
+        shared = (found.central_thickness, found.minimum_thickness, found.asperity_share)
+        return answer(found.film.x.size, {"film and asperity share": value(shared, found.error)}, found)
 
-    return Case(
-        "film_mixed",
-        "Mixed film",
-        "Line contact at the pitch point at 0.4 m/s on rough flanks whose heights deviate by two thirds of the smooth "
-        "film: load shared between film and asperities, to a tolerance. The estimate is of the film alone.",
-        "nodes",
-        (Series("tolerances", tuple(level(f"{100 * t:g} %", share, both, t) for t in (0.02, 0.005, 0.001))),),
-        level("0.02 %", share, both, 2e-4),
-    )
+    series = over((0.02, 0.005, 0.001), percent, solve_mixed, both, slow, rough, name="tolerances")
+    return Levels((series,), level(percent(2e-4), solve_mixed, both, slow, rough, 2e-4))
 
 
-def _path() -> Case:
+@case("Films along the path of contact", "nodes in the mean")
+def film_path() -> Levels:
+    """Films along a path by their tolerance.
+
+    41 flooded contacts from A to E with two jumps of the load share, each from its neighbour, to a tolerance. Error
+    and estimate are the largest of all.
+    """
     from ehl import solve_path
 
     contacts = contacts_along_path(41)
-    quantity = "central and least films"
 
     def along(tolerance: float) -> list[Film]:
         return list(solve_path(contacts, tolerance=tolerance))
 
     def all_of(found: list[Film]) -> Answer:
-        values = np.array([h for f in found for h in (f.central_thickness, f.minimum_thickness)])
-        failure = next((f.message for f in found if not f.converged), "")
-        nodes = float(np.mean([f.x.size for f in found]))
-        return Answer(nodes, {quantity: Value(values, max(f.error for f in found))}, failure)
+        heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
+        values = {"central and least films": value(heights, max(f.error for f in found))}
+        return answer(float(np.mean([f.x.size for f in found])), values, *found)
 
-    return Case(
-        "film_path",
-        "Films along the path of contact",
-        "41 flooded contacts from A to E with two jumps of the load share, each from its neighbour, to a tolerance. "
-        "Error and estimate are the largest of all.",
-        "nodes in the mean",
-        (
-            Series(
-                "tolerances", tuple(level(f"{100 * t:g} %", along, all_of, t) for t in (0.02, 0.005, 0.001))
-            ),
-        ),
-        level("0.05 %", along, all_of, 5e-4),
-    )
+    series = over((0.02, 0.005, 0.001), percent, along, all_of, name="tolerances")
+    return Levels((series,), level("0.05 %", along, all_of, 5e-4))

@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from math import nan
 from time import process_time
 
-__all__ = ["FirstCall", "first_call"]
+from flankfilm.bench.process import output_of
 
-LONGEST = 300.0
+__all__ = ["FirstCall", "first_call"]
 
 
 @dataclass(frozen=True)
@@ -55,30 +54,23 @@ def first_call(solver: str, compiles: bool) -> FirstCall:
     compiles : bool
         Whether to measure a call with nothing kept as well; takes as long as the kernels compile.
     """
-    kept = _in_fresh_process(solver, dict(os.environ))
+    kept = _in_fresh_process(solver)
     if isinstance(kept, str):
         return FirstCall(solver, nan, nan, nan, kept)
+    first, again = kept
     if not compiles:
-        return FirstCall(solver, kept[0], nan, kept[1])
+        return FirstCall(solver, first, nan, again)
     with tempfile.TemporaryDirectory(prefix="flankfilm-") as empty:
-        bare = _in_fresh_process(solver, {**os.environ, "NUMBA_CACHE_DIR": empty})
+        bare = _in_fresh_process(solver, NUMBA_CACHE_DIR=empty)
     if isinstance(bare, str):
-        return FirstCall(solver, kept[0], nan, kept[1], bare)
-    return FirstCall(solver, kept[0], bare[0], kept[1])
+        return FirstCall(solver, first, nan, again, bare)
+    return FirstCall(solver, first, bare[0], again)
 
 
-def _in_fresh_process(solver: str, environment: dict[str, str]) -> tuple[float, float] | str:
+def _in_fresh_process(solver: str, **environment: str) -> list[float] | str:
     command = [sys.executable, "-W", "ignore", "-m", "flankfilm.bench.first_call", solver]
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, env=environment, timeout=LONGEST, check=False
-        )
-    except subprocess.TimeoutExpired:
-        return f"took longer than {LONGEST:g} s"
-    if done.returncode:
-        return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-    first, again = json.loads(done.stdout.splitlines()[-1])
-    return float(first), float(again)
+    printed = output_of(command, env={**os.environ, **environment})
+    return printed if isinstance(printed, str) else [float(time) for time in json.loads(printed[-1])]
 
 
 def _main(solver: str) -> None:

@@ -5,19 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flankfilm.bench.case import Answer, Case, Series, Value, level
+from flankfilm.bench.case import Answer, Case, Levels, case, level, over, value
 from flankfilm.bench.examples import TORQUE, example_pair
-from flankfilm.bench.work_cases import geometry_work
+from flankfilm.bench.work_cases import work_geometry
 
 if TYPE_CHECKING:
+    from base import Array
     from gears import GearPair
     from meshes import SectorMesh
 
-__all__ = ["FORMS", "closed_forms", "independent_pairs", "meshes"]
-
-Array = NDArray[np.float64]
+__all__ = ["FORMS", "gears", "independent_pairs", "mesh"]
 
 FORMS = {
     "ishikawa": "Ishikawa",
@@ -40,43 +38,39 @@ def independent_pairs(pair: GearPair, form: str, positions: int) -> Array:
     return summed
 
 
-def closed_forms(quick: bool) -> tuple[Case, ...]:
-    """Mean of each closed form's mesh stiffness by the number of positions."""
+def gears(quick: bool) -> tuple[Case, ...]:
+    """Closed forms, and work on the geometry."""
+    return (closed_forms(quick),) if quick else (closed_forms(quick), work_geometry())
+
+
+@case("Closed forms", "positions")
+def closed_forms(quick: bool) -> Levels:
+    """Mean of each closed form's mesh stiffness by the number of positions.
+
+    Pair 36/40: mesh stiffness of independent pairs at midpoints of equal intervals of one base pitch. Errors of the
+    mean from sampling alone, where a pair comes in and leaves; what the form itself leaves out is not in them (see the
+    finite elements below, and flankfilm verify).
+    """
     from flankfilm.coupling.cycle import sampling_error
 
     pair = example_pair()
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384, 768)
-    many = 1536 if quick else 6144
+    label, many = "{} positions".format, 1536 if quick else 6144
+    quantities = {form: f"mean, {title}" for form, title in FORMS.items()}
 
-    def answer(stiffness: dict[str, Array]) -> Answer:
-        return Answer(
-            len(next(iter(stiffness.values()))),
-            {
-                f"mean, {FORMS[form]}": Value(np.array([curve.mean()]), sampling_error(curve))
-                for form, curve in stiffness.items()
-            },
-        )
+    def means(stiffness: dict[str, Array]) -> Answer:
+        values = {
+            quantities[form]: value(curve.mean(), sampling_error(curve)) for form, curve in stiffness.items()
+        }
+        return Answer(len(next(iter(stiffness.values()))), values)
 
     def curves(forms: tuple[str, ...], positions: int) -> dict[str, Array]:
         return {form: independent_pairs(pair, form, positions) for form in forms}
 
-    series = tuple(
-        Series(title, tuple(level(f"{n} positions", curves, answer, (form,), n) for n in counts))
-        for form, title in FORMS.items()
-    )
-    return (
-        Case(
-            "closed_forms",
-            "Closed forms",
-            "Pair 36/40: mesh stiffness of independent pairs at midpoints of equal intervals of one base pitch. "
-            "Errors of the mean from sampling alone, where a pair comes in and leaves; what the form itself leaves "
-            "out is not in them (see the finite elements below, and flankfilm verify).",
-            "positions",
-            series,
-            level(f"{many} positions", curves, answer, tuple(FORMS), many),
-            {f"mean, {title}": 1.0 for title in FORMS.values()},
-        ),
-        *(() if quick else (geometry_work(),)),
+    return Levels(
+        tuple(over(counts, label, curves, means, (form,), name=title) for form, title in FORMS.items()),
+        level(label(many), curves, means, tuple(FORMS), many),
+        dict.fromkeys(quantities.values(), 1.0),
     )
 
 
@@ -98,40 +92,29 @@ def enclosed_area(mesh: SectorMesh) -> float:
     return float(np.sum(at_first + 4.0 * cross(middle, last - first) + at_last) / 12.0)
 
 
-def meshes(quick: bool) -> tuple[Case, ...]:
-    """How exactly meshes of one tooth keep its outline, by refinement."""
+@case("Mesh of one tooth", "unknowns of the sector")
+def mesh(quick: bool) -> Levels:
+    """How exactly meshes of one tooth keep its outline, by refinement.
+
+    Pinion of the pair 36/40, one sector: gmsh fills the outline, mid-side nodes go onto the exact curves. Errors of
+    the area inside the curved edges; a mesh has no estimate of its own.
+    """
     from meshes import Sizes, mesh_sector
 
     profile = example_pair().teeth_profiles[0]
     quantity = "area of the sector"
 
-    def answer(mesh: SectorMesh) -> Answer:
-        return Answer(mesh.unknowns, {quantity: Value(np.array([enclosed_area(mesh)]))})
+    def area(sector: SectorMesh) -> Answer:
+        return Answer(sector.unknowns, {quantity: value(enclosed_area(sector))})
 
     def scaled(factor: float) -> SectorMesh:
         return mesh_sector(profile, Sizes().scaled(factor))
 
     factors = (2.0, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
     refinements = (0, 1) if quick else (0, 1, 2)
-    finest = max(refinements) + 2
-    return (
-        Case(
-            "mesh",
-            "Mesh of one tooth",
-            "Pinion of the pair 36/40, one sector: gmsh fills the outline, mid-side nodes go onto the exact curves. "
-            "Errors of the area inside the curved edges; a mesh has no estimate of its own.",
-            "unknowns of the sector",
-            (
-                Series("edge lengths", tuple(level(f"edges x {f:g}", scaled, answer, f) for f in factors)),
-                Series(
-                    "refined",
-                    tuple(
-                        level(f"refined {n} times", mesh_sector, answer, profile, None, n)
-                        for n in refinements
-                    ),
-                ),
-            ),
-            level(f"refined {finest} times", mesh_sector, answer, profile, None, finest),
-            {quantity: 2.0},
-        ),
+    label, finest = "refined {} times".format, max(refinements) + 2
+    series = (
+        over(factors, "edges x {:g}".format, scaled, area, name="edge lengths"),
+        over(refinements, label, mesh_sector, area, profile, None, name="refined"),
     )
+    return Levels(series, level(label(finest), mesh_sector, area, profile, None, finest), {quantity: 2.0})

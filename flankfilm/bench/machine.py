@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Machine", "load", "this_machine"]
+__all__ = ["Machine", "busy", "load", "this_machine"]
 
 LIBRARIES = ("flankfilm", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -52,7 +52,6 @@ class Machine:
     def described(self) -> tuple[tuple[str, str], ...]:
         """Pairs of name and text for tables."""
         memory = f"{self.memory_GiB:.0f} GiB" if self.memory_GiB == self.memory_GiB else "unknown"
-        busy = f"{self.load:.1f} processes" if self.load == self.load else "unknown"
         return (
             ("processor", f"{self.processor}, {self.cores} core{'s' if self.cores > 1 else ''}"),
             ("memory", memory),
@@ -61,8 +60,13 @@ class Machine:
             ("linear algebra", self.blas),
             ("libraries", ", ".join(f"{name} {number}" for name, number in self.libraries.items())),
             ("threads", ", ".join(f"{k}={v}" for k, v in self.threads.items()) or "not limited"),
-            ("load when it began", busy),
+            ("load when it began", busy(self.load)),
         )
+
+
+def busy(load: float) -> str:
+    """Text of a machine's load."""
+    return f"{load:.1f} processes" if load == load else "unknown"
 
 
 def this_machine() -> Machine:

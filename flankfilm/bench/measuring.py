@@ -6,7 +6,8 @@ import math
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from functools import partial
 from statistics import median
 from time import perf_counter, process_time
 from typing import Any
@@ -157,7 +158,8 @@ def measure(
             found, reason, timing = _run(one, repeat)
             if finest is None and case.finest is not None:
                 reason = reason or f"the finest solution failed: {failure}"
-            rows += _rows(case, series.name, one.name, found, finest, timing, reason)
+            about = partial(Row, case.key, series.name, one.name)
+            rows += _rows(about, found, finest, timing, reason)
     estimates = {} if finest is None else {q: _number(v.estimate) for q, v in finest.values.items()}
     return CaseResult(
         solver,
@@ -193,24 +195,17 @@ def quiet() -> Iterator[None]:
 
 
 def _rows(
-    case: Case,
-    series: str,
-    name: str,
-    found: Answer | None,
-    finest: Answer | None,
-    timing: Timing,
-    reason: str,
+    about: Callable[..., Row], found: Answer | None, finest: Answer | None, timing: Timing, reason: str
 ) -> Iterator[Row]:
-    clock = (timing.cpu, timing.wall, timing.median, timing.repeats)
+    """Rows of one level, a quantity each; one alone where there is nothing to compare."""
     if found is None or finest is None:
         size = math.nan if found is None else found.size
-        yield Row(case.key, series, name, "", size, *clock, math.nan, math.nan, reason)
+        yield about("", size, *astuple(timing), math.nan, math.nan, reason)
         return
     for quantity, value in found.values.items():
         error = true_error(value, finest.values[quantity])
         failure = "" if math.isfinite(error) else "cannot be compared with the finest solution"
-        estimate = _number(value.estimate)
-        yield Row(case.key, series, name, quantity, found.size, *clock, error, estimate, failure)
+        yield about(quantity, found.size, *astuple(timing), error, _number(value.estimate), failure)
 
 
 def _number(value: float | None) -> float:

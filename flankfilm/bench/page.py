@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from statistics import median
+from typing import Any
 
+from flankfilm.bench.machine import busy
 from flankfilm.bench.measuring import CaseResult
 from flankfilm.bench.peers import PeerRow
 from flankfilm.bench.run import Bench
@@ -35,24 +37,7 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
         paths.append(folder / f"{name}.svg")
         write_text(paths[-1], text)
     parts = [
-        Part(
-            "overview",
-            "All solvers",
-            (
-                "The works differ; what can be compared is how fast errors fall. A tenth of the error costs the factor "
-                "in the table, from a straight line through the levels that none of the others beats. Estimate over "
-                "true error: above 1 the estimate was on the safe side; only levels whose true error is at least three "
-                "times the estimate of the finest solution count.",
-            ),
-            (
-                Drawing(svg["overview"], "True error over processor time, one work of each solver."),
-                Drawing(
-                    svg["estimates"],
-                    "Estimated over true errors: above the line, the safe side.",
-                ),
-            ),
-            (_summary(found),),
-        ),
+        _overview(found, svg),
         *(_case(case, svg[case.key], _of(case, found.peers)) for case in compared),
         *(_work(case) for case in found.cases if not case.finest),
         _first_calls(found),
@@ -64,9 +49,51 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
     return paths
 
 
+Columns = Mapping[str, Callable[[Any], str]]
+"""Head of a column to the text of its cell."""
+
+
+def _table(records: Sequence[Any], columns: Columns) -> Table:
+    return Table(tuple(columns), tuple(tuple(text(one) for text in columns.values()) for one in records))
+
+
+def _number(value: float) -> str:
+    return _whole(number(value))
+
+
+def _clock(seconds: float) -> str:
+    return _whole(clock(seconds))
+
+
+def _size(case: CaseResult) -> Columns:
+    return {case.size_name: lambda row: f"{row.size:.5g}" if math.isfinite(row.size) else ""}
+
+
+TIMES: Columns = {
+    "time": lambda row: _clock(row.cpu),
+    "median": lambda row: _clock(row.median),
+    "wall": lambda row: _clock(row.wall),
+    "runs": lambda row: str(row.repeats),
+}
+
+
 def _whole(text: str) -> str:
     """Text of one number and unit that is not broken between lines."""
     return text.replace("-", "\u2011").replace(" ", "\u00a0")
+
+
+def _overview(found: Bench, svg: Mapping[str, str]) -> Part:
+    text = (
+        "The works differ; what can be compared is how fast errors fall. A tenth of the error costs the factor in the "
+        "table, from a straight line through the levels that none of the others beats. Estimate over true error: above "
+        "1 the estimate was on the safe side; only levels whose true error is at least three times the estimate of the "
+        "finest solution count."
+    )
+    drawings = (
+        Drawing(svg["overview"], "True error over processor time, one work of each solver."),
+        Drawing(svg["estimates"], "Estimated over true errors: above the line, the safe side."),
+    )
+    return Part("overview", "All solvers", (text,), drawings, (_summary(found),))
 
 
 def _summary(found: Bench) -> Table:
@@ -105,48 +132,31 @@ def _case(case: CaseResult, svg: str, peers: Sequence[PeerRow]) -> Part:
         for quantity, e in case.finest_estimates.items()
     )
     against = f"True errors against {case.finest}; its own estimated error: {finest}."
-    heads = ("series", "level", case.size_name, "time", "median", "wall", "runs", "of", "true", "estimate")
-    cells = tuple(
-        (
-            row.series,
-            row.level,
-            f"{row.size:.5g}" if math.isfinite(row.size) else "",
-            _whole(clock(row.cpu)),
-            _whole(clock(row.median)),
-            _whole(clock(row.wall)),
-            str(row.repeats),
-            row.failure or row.quantity,
-            _whole(number(row.error)),
-            _whole(number(row.estimate)),
-        )
-        for row in case.rows
-    )
+    columns: Columns = {
+        "series": lambda row: row.series,
+        "level": lambda row: row.level,
+        **_size(case),
+        **TIMES,
+        "of": lambda row: row.failure or row.quantity,
+        "true": lambda row: _number(row.error),
+        "estimate": lambda row: _number(row.estimate),
+    }
     caption = "Filled: true error. Open: the solver's own estimate."
     if peers:
         caption += " Black: other programs."
-    return Part(
-        case.key,
-        case.title,
-        (case.work, against),
-        (Drawing(svg, caption),),
-        (Table(heads, cells),),
-    )
+    drawing = Drawing(svg, caption)
+    return Part(case.key, case.title, (case.work, against), (drawing,), (_table(case.rows, columns),))
 
 
 def _work(case: CaseResult) -> Part:
     """Work whose time alone is measured."""
-    heads = ("work", case.size_name, "time", "median", "wall", "runs", "remark")
-    cells = tuple(
-        (
-            row.series,
-            f"{row.size:.5g}" if math.isfinite(row.size) else "",
-            *(_whole(clock(seconds)) for seconds in (row.cpu, row.median, row.wall)),
-            str(row.repeats),
-            row.failure,
-        )
-        for row in case.rows
-    )
-    return Part(case.key, case.title, (case.work,), tables=(Table(heads, cells),))
+    columns: Columns = {
+        "work": lambda row: row.series,
+        **_size(case),
+        **TIMES,
+        "remark": lambda row: row.failure,
+    }
+    return Part(case.key, case.title, (case.work,), tables=(_table(case.rows, columns),))
 
 
 def _first_calls(found: Bench) -> Part:
@@ -157,20 +167,17 @@ def _first_calls(found: Bench) -> Part:
     )
     if found.quick:
         text += " A quick run does not compile from nothing."
-    cells = tuple(
-        (
-            call.solver,
-            _whole(clock(call.again)),
-            _whole(clock(call.kept)),
-            _whole(clock(call.kept - call.again)),
-            _whole(clock(call.nothing_kept)),
-            _whole(clock(call.nothing_kept - call.kept)),
-            call.failure,
-        )
-        for call in found.first_calls
-    )
-    heads = ("solver", "again", "first call", "before it", "nothing kept", "compilation", "remark")
-    return Part("first-calls", "First calls and compilation", (text,), tables=(Table(heads, cells),))
+    columns: Columns = {
+        "solver": lambda call: str(call.solver),
+        "again": lambda call: _clock(call.again),
+        "first call": lambda call: _clock(call.kept),
+        "before it": lambda call: _clock(call.kept - call.again),
+        "nothing kept": lambda call: _clock(call.nothing_kept),
+        "compilation": lambda call: _clock(call.nothing_kept - call.kept),
+        "remark": lambda call: str(call.failure),
+    }
+    tables = (_table(found.first_calls, columns),)
+    return Part("first-calls", "First calls and compilation", (text,), tables=tables)
 
 
 def _peers(peers: Sequence[PeerRow]) -> Part:
@@ -178,24 +185,19 @@ def _peers(peers: Sequence[PeerRow]) -> Part:
         "The same work by other programs in an environment of their own; their processor time without imports and "
         "first calls."
     )
-    cells = tuple(
-        (
-            f"{peer.peer} {peer.version}".strip(),
-            peer.level,
-            peer.case,
-            _whole(clock(peer.cpu)),
-            _whole(clock(peer.first)),
-            _whole(number(peer.error)),
-            peer.failure or peer.note,
-        )
-        for peer in peers
-    )
-    heads = ("program", "setting", "work", "time", "first call", "true error", "remark")
-    return Part("peers", "Other programs", (text,), tables=(Table(heads, cells),))
+    columns: Columns = {
+        "program": lambda peer: f"{peer.peer} {peer.version}".strip(),
+        "setting": lambda peer: str(peer.level),
+        "work": lambda peer: str(peer.case),
+        "time": lambda peer: _clock(peer.cpu),
+        "first call": lambda peer: _clock(peer.first),
+        "true error": lambda peer: _number(peer.error),
+        "remark": lambda peer: str(peer.failure or peer.note),
+    }
+    return Part("peers", "Other programs", (text,), tables=(_table(peers, columns),))
 
 
 def _machine(found: Bench) -> Part:
-    ended = f"{found.load_after:.1f} processes" if math.isfinite(found.load_after) else "unknown"
-    cells = (*found.machine.described(), ("load when it ended", ended))
+    cells = (*found.machine.described(), ("load when it ended", busy(found.load_after)))
     text = f"Least of {found.repeat} or more runs of each level; {'quick' if found.quick else 'complete'}."
     return Part("machine", "Machine and versions", (text,), tables=(Table(("", ""), cells),))

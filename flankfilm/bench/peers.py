@@ -1,28 +1,25 @@
 """Other programs on the same work, in an environment of their own.
 
-A peer is a script that an interpreter of that environment runs with nothing of ours in its way: the work goes in as
-JSON on standard input, what it found comes back as one line of JSON on standard output: ``peer``, ``version``,
-``runs`` (each with ``level``, ``seconds``, ``first`` and ``values``) and perhaps a ``note``, or ``missing`` with what
-could not be imported.
+A peer is a file of ``peer_scripts`` that ``main.py`` there runs with an interpreter of that environment and nothing of
+ours in its way: the work goes in as JSON on standard input, what it found comes back as one line of JSON on standard
+output: ``peer``, ``version``, ``runs`` (each with ``level``, ``seconds``, ``first`` and ``values``) and perhaps a
+``note``, or ``missing`` with what could not be imported.
 """
 
 from __future__ import annotations
 
 import json
 import math
-import subprocess
 from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from flankfilm.bench.case import Case, PeerWork, Value, true_error
+from flankfilm.bench.case import Case, PeerWork, Value, true_error, value
+from flankfilm.bench.process import LONGEST, output_of
 
 __all__ = ["PeerRow", "ask"]
 
-LONGEST = 300.0
+MAIN = Path(__file__).with_name("peer_scripts") / "main.py"
 
 
 @dataclass(frozen=True)
@@ -88,26 +85,13 @@ def ask(python: Path, case: Case, repeat: int, longest: float = LONGEST) -> list
 
 def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str, Any] | str:
     """Return what the script printed, or why it printed nothing."""
-    script = resources.files("flankfilm.bench").joinpath("peer_scripts", f"{work.script}.py")
-    with resources.as_file(script) as path:
-        command = [str(python), "-I", "-W", "ignore", str(path)]
-        try:
-            done = subprocess.run(
-                command,
-                input=json.dumps({**work.given, "repeat": repeat}),
-                capture_output=True,
-                text=True,
-                timeout=longest,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return f"took longer than {longest:g} s"
-        except OSError as error:
-            return f"{python.name} does not run: {error.strerror or error}"
-    if done.returncode:
-        return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+    # neither variables nor packages of the user reach the peer; the scripts find each other
+    command = [str(python), "-E", "-s", "-W", "ignore", str(MAIN), work.script]
+    printed = output_of(command, longest, input=json.dumps({**work.given, "repeat": repeat}))
+    if isinstance(printed, str):
+        return printed
     # programs print lines of their own
-    for line in reversed(done.stdout.splitlines()):
+    for line in reversed(printed):
         try:
             reply = json.loads(line)
         except json.JSONDecodeError:
@@ -118,12 +102,11 @@ def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str,
 
 
 def _rows(case: str, work: PeerWork, reply: dict[str, Any] | str, finest: Value) -> list[PeerRow]:
-    failed = (math.nan, math.nan, math.nan, "")
+    if isinstance(reply, dict) and "missing" in reply:
+        reply = f"not in that environment: {reply['missing']}"
     if isinstance(reply, str):
-        return [PeerRow(case, work.quantity, work.script, "", "", *failed, reply)]
-    if "missing" in reply:
-        reason = f"not in that environment: {reply['missing']}"
-        return [PeerRow(case, work.quantity, work.script, "", "", *failed, reason)]
+        nothing = (math.nan, math.nan, math.nan)
+        return [PeerRow(case, work.quantity, work.script, "", "", *nothing, failure=reply)]
     return [
         PeerRow(
             case,
@@ -133,7 +116,7 @@ def _rows(case: str, work: PeerWork, reply: dict[str, Any] | str, finest: Value)
             str(run["level"]),
             float(run["seconds"]),
             float(run["first"]),
-            true_error(Value(np.array(run["values"], dtype=float)), finest),
+            true_error(value(run["values"]), finest),
             str(reply.get("note", "")),
         )
         for run in reply["runs"]

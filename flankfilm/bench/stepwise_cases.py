@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flankfilm.bench.case import Answer, Case, Series, Value, level
+from flankfilm.bench.case import Answer, Case, Levels, Series, case, level, value
 from flankfilm.bench.examples import PERIODS, START, oscillator
 
 __all__ = ["laws", "stepwise"]
@@ -31,59 +31,46 @@ def laws() -> dict[str, Any]:
 
 def stepwise() -> tuple[Case, ...]:
     """Stepwise flow by tolerance, a law each."""
-    from dynamics import SmoothOscillator
-
-    exact = oscillator()
     return tuple(
-        _case(
-            name,
-            SmoothOscillator(
-                law, exact.damping_ratio, exact.mean_force, exact.error_amplitude, exact.frequency
-            ),
-        )
-        for name, law in laws().items()
+        motion_stepwise(name.split()[-1].replace("/", "_"), name, law) for name, law in laws().items()
     )
 
 
-def _case(name: str, osc: Any) -> Case:
-    from dynamics import period_map
+@case("Stepwise flow, {name}", "evaluations of the force a period")
+def motion_stepwise(key: str, name: str, law: Any) -> Levels:
+    """Stepwise flow by tolerance.
+
+    Time of {MANY} excitation periods by steps of order 8 with all switchings; error of the state after {PERIODS}
+    periods, over its largest component. The oscillator of the exact flow, its contact with {name}.
+    """
+    from dynamics import SmoothOscillator, period_map
     from dynamics.stepwise.flow import StepwiseFlow
 
-    quantity, start = "state", np.array(START)
+    exact, start = oscillator(), np.array(START)
+    osc = SmoothOscillator(law, exact.damping_ratio, exact.mean_force, exact.error_amplitude, exact.frequency)
 
     def run(flow: StepwiseFlow, derivatives: bool) -> StepwiseFlow:
         flow.follow(start, MANY, derivatives=derivatives)
         return flow
 
-    def answer(flow: StepwiseFlow) -> Answer:
-        found = flow.follow(start, PERIODS, derivatives=False)
-        evaluations = found.cost.counts["evaluations of the law"]
-        return Answer(evaluations / PERIODS, {quantity: Value(found.state, None, over_largest=True)})
+    def of_state(evaluations: float, state: Any) -> Answer:
+        return Answer(evaluations / PERIODS, {"state": value(state, None, over_largest=True)})
 
-    def exact(_: object) -> Answer:
-        state = period_map(oscillator(), START, PERIODS).state
-        return Answer(0.0, {quantity: Value(state, None, over_largest=True)})
+    def stepped(flow: StepwiseFlow) -> Answer:
+        found = flow.follow(start, PERIODS, derivatives=False)
+        return of_state(found.cost.counts["evaluations of the law"], found.state)
+
+    def by_exact_flow(_: object) -> Answer:
+        return of_state(0.0, period_map(exact, START, PERIODS).state)
+
+    def series(words: str, derivatives: bool) -> Series:
+        flows = {t: StepwiseFlow(osc, t, ("frequency",)) for t in TOLERANCES}
+        levels = (level(f"{t:g}", run, stepped, flow, derivatives) for t, flow in flows.items())
+        return Series(words, tuple(levels))
 
     finest = (
-        level("exact flow", lambda: None, exact)
+        level("exact flow", lambda: None, by_exact_flow)
         if name == "exponent 1"
-        else level("tolerance 3e-15", StepwiseFlow, answer, osc, 3e-15)
+        else level("tolerance 3e-15", StepwiseFlow, stepped, osc, 3e-15)
     )
-    return Case(
-        f"motion_stepwise_{name.split()[-1].replace('/', '_')}",
-        f"Stepwise flow, {name}",
-        f"Time of {MANY} excitation periods by steps of order 8 with all switchings; error of the state after "
-        f"{PERIODS} periods, over its largest component. The oscillator of the exact flow, its contact with {name}.",
-        "evaluations of the force a period",
-        tuple(
-            Series(
-                words,
-                tuple(
-                    level(f"{t:g}", run, answer, StepwiseFlow(osc, t, ("frequency",)), derivatives)
-                    for t in TOLERANCES
-                ),
-            )
-            for words, derivatives in (("states alone", False), ("with derivatives", True))
-        ),
-        finest,
-    )
+    return Levels((series("states alone", False), series("with derivatives", True)), finest)

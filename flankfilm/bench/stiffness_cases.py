@@ -2,129 +2,133 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level
+from flankfilm.bench.case import (
+    Answer,
+    Case,
+    Levels,
+    PeerWork,
+    Series,
+    answer,
+    case,
+    level,
+    over,
+    percent,
+    value,
+)
 from flankfilm.bench.examples import TORQUE, example_pair
 from flankfilm.bench.gear_cases import FORMS, independent_pairs
-from flankfilm.bench.work_cases import contact_work
+from flankfilm.bench.work_cases import work_contact
 
 if TYPE_CHECKING:
     from base import Array
     from fem import Compliance, Fillets, MeshCycle, RootStress
     from gears import GearPair
 
-__all__ = ["compliance", "contact", "root_stress"]
+__all__ = ["compliances", "contacts", "root_stress"]
 
 POSITIONS = 40
+MEAN, SPREAD, SINGLE = "mean mesh stiffness", "transmission error, peak to peak", "one pair, 39 places"
 
 
-def compliance(quick: bool) -> tuple[Case, ...]:
-    """Both gears' compliance and the mesh cycle held to the path, by edge length and by tolerance."""
+def compliances(quick: bool) -> tuple[Case, ...]:
+    """Compliance of the usual pair, and where the geometry is harder: at the limit of undercut, and a large wheel."""
+    others = () if quick else (compliance_of("17_43", 17, 43), compliance_of("20_1000", 20, 1000))
+    return compliance(quick), *others
+
+
+def _single(pair: GearPair, bodies: Compliance) -> Array:
+    """Stiffness of one pair at 39 places inside the path of contact."""
+    import fem
+
+    rho1 = np.linspace(pair.points.A, pair.points.E, 41)[1:-1]
+    return fem.single_pair_stiffness(pair, pair.normal_force(0.5 * TORQUE), rho1, bodies)
+
+
+@case("Compliance of both gears", "unknowns of both sectors")
+def compliance(quick: bool) -> Levels:
+    """Both gears' compliance and the mesh cycle held to the path, by edge length and by tolerance.
+
+    Pair 36/40 at {TORQUE:g} N m, from nothing: two nested meshes of both gears, all flank loads, and the mesh cycle at
+    {POSITIONS} positions with contact held to the path of contact. The estimate is the largest along the path, cross
+    terms of neighbouring teeth included. The closed forms leave out the bodies that pairs share.
+    """
     import fem
     from meshes import Sizes
 
     pair = example_pair()
-    rho1 = np.linspace(pair.points.A, pair.points.E, 41)[1:-1]
-    mesh, single = "mean mesh stiffness", "one pair, 39 places"
 
     def cycle(**how: Any) -> tuple[Compliance, MeshCycle]:
         bodies = fem.compliance(pair, **how)
         return bodies, fem.mesh_cycle(pair, TORQUE, POSITIONS, bodies, beyond_path=False)
 
-    def answer(found: tuple[Compliance, MeshCycle]) -> Answer:
+    def both(found: tuple[Compliance, MeshCycle]) -> Answer:
         bodies, held = found
-        one = fem.single_pair_stiffness(pair, pair.normal_force(0.5 * TORQUE), rho1, bodies)
         values = {
-            mesh: Value(np.array([held.secant_stiffness.mean()]), held.error),
-            single: Value(one, bodies.error),
+            MEAN: value(held.secant_stiffness.mean(), held.error),
+            SINGLE: value(_single(pair, bodies), bodies.error),
         }
-        return Answer(bodies.cost.unknowns, values, "" if bodies.converged else bodies.message)
+        return answer(bodies.cost.unknowns, values, bodies)
 
     def edges(factor: float) -> tuple[Compliance, MeshCycle]:
         return cycle(sizes=Sizes().scaled(factor), refinements=1)
 
-    def tolerance(value: float) -> tuple[Compliance, MeshCycle]:
-        return cycle(tolerance=value)
+    def tolerance(asked: float) -> tuple[Compliance, MeshCycle]:
+        return cycle(tolerance=asked)
 
     def refined(times: int, factor: float) -> tuple[Compliance, MeshCycle]:
         return cycle(tolerance=1e-5, refinements=times, sizes=Sizes().scaled(factor))
 
     factors = (2.0, 1.4, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
     tolerances = (1e-3,) if quick else (1e-3, 1e-4, 2e-5)
-    finest = (1, 0.6) if quick else (3, 1.0)
-    label = "edges x 0.6" if quick else "refined 3 times"
-    return (
-        Case(
-            "compliance",
-            "Compliance of both gears",
-            f"Pair 36/40 at {TORQUE:g} N m, from nothing: two nested meshes of both gears, all flank loads, and "
-            f"the mesh cycle at {POSITIONS} positions with contact held to the path of contact. The estimate is "
-            "the largest along the path, cross terms of neighbouring teeth included. The closed forms leave "
-            "out the bodies that pairs share.",
-            "unknowns of both sectors",
-            (
-                Series("edge lengths", tuple(level(f"edges x {f:g}", edges, answer, f) for f in factors)),
-                Series(
-                    "tolerances", tuple(level(f"{100 * t:g} %", tolerance, answer, t) for t in tolerances)
-                ),
-                *_forms(pair, mesh),
-            ),
-            level(label, refined, answer, *finest),
-            {mesh: 2.0, single: 2.0},
-            (PeerWork("ross_stiffness", _given(pair), mesh),),
-        ),
-        *(() if quick else _other_pairs()),
+    finest = ("edges x 0.6", 1, 0.6) if quick else ("refined 3 times", 3, 1.0)
+    series = (
+        over(factors, "edges x {:g}".format, edges, both, name="edge lengths"),
+        over(tolerances, percent, tolerance, both, name="tolerances"),
+        *_forms(pair),
+    )
+    peers = (PeerWork("ross_stiffness", _given(pair), MEAN),)
+    return Levels(
+        series, level(finest[0], refined, both, *finest[1:]), dict.fromkeys((MEAN, SINGLE), 2.0), peers
     )
 
 
-def _other_pairs() -> Iterator[Case]:
-    """Compliance by tolerance where the geometry is harder: at the limit of undercut, and a large wheel."""
+@case("Compliance of both gears, {z1}/{z2}", "unknowns of both sectors")
+def compliance_of(key: str, z1: int, z2: int) -> Levels:
+    """Compliance of a pair by tolerance.
+
+    Pair {z1}/{z2}, module 2 mm, face 40 mm, bores of half the root radii: from nothing, to a tolerance.
+    """
     import fem
     from gears import Gear, GearPair
 
-    single, spread = "one pair, 39 places", "transmission error, peak to peak"
-    for z1, z2 in ((17, 43), (20, 1000)):
-        pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
-        rho1 = np.linspace(pair.points.A, pair.points.E, 41)[1:-1]
+    pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
 
-        def answer(bodies: Compliance, pair: GearPair = pair, rho1: Array = rho1) -> Answer:
-            k = fem.single_pair_stiffness(pair, pair.normal_force(0.5 * TORQUE), rho1, bodies)
-            held = fem.mesh_cycle(pair, 0.5 * TORQUE, POSITIONS, bodies, beyond_path=False)
-            values = {
-                single: Value(k, bodies.error),
-                spread: Value(np.array([np.ptp(held.transmission_error)]), bodies.error),
-            }
-            return Answer(bodies.cost.unknowns, values, "" if bodies.converged else bodies.message)
+    def both(bodies: Compliance) -> Answer:
+        held = fem.mesh_cycle(pair, 0.5 * TORQUE, POSITIONS, bodies, beyond_path=False)
+        values = {
+            SINGLE: value(_single(pair, bodies), bodies.error),
+            SPREAD: value(np.ptp(held.transmission_error), bodies.error),
+        }
+        return answer(bodies.cost.unknowns, values, bodies)
 
-        yield Case(
-            f"compliance_{z1}_{z2}",
-            f"Compliance of both gears, {z1}/{z2}",
-            f"Pair {z1}/{z2}, module 2 mm, face 40 mm, bores of half the root radii: from nothing, to a tolerance.",
-            "unknowns of both sectors",
-            (
-                Series(
-                    "tolerances",
-                    tuple(
-                        level(f"{100 * t:g} %", fem.compliance, answer, pair, t) for t in (1e-3, 1e-4, 2e-5)
-                    ),
-                ),
-            ),
-            level("refined 3 times", lambda p=pair: fem.compliance(p, 1e-5, refinements=3), answer),
-        )
+    series = over((1e-3, 1e-4, 2e-5), percent, fem.compliance, both, pair, name="tolerances")
+    return Levels(
+        (series,), level("refined 3 times", lambda: fem.compliance(pair, 1e-5, refinements=3), both)
+    )
 
 
-def _forms(pair: GearPair, quantity: str) -> tuple[Series, ...]:
+def _forms(pair: GearPair) -> tuple[Series, ...]:
     """Closed forms on the same positions: their distance from the finite elements has no estimate."""
 
-    def answer(curve: Any) -> Answer:
-        return Answer(float("nan"), {quantity: Value(np.array([curve.mean()]))})
+    def mean(curve: Any) -> Answer:
+        return Answer(float("nan"), {MEAN: value(curve.mean())})
 
     return tuple(
-        Series(title, (level("pairs added", independent_pairs, answer, pair, form, POSITIONS),))
+        Series(title, (level("pairs added", independent_pairs, mean, pair, form, POSITIONS),))
         for form, title in FORMS.items()
     )
 
@@ -143,50 +147,52 @@ def _given(pair: GearPair) -> dict[str, Any]:
     }
 
 
-def contact(quick: bool) -> tuple[Case, ...]:
-    """Loaded contact with a compliance at hand, by the number of positions."""
+def contacts(quick: bool) -> tuple[Case, ...]:
+    """Loaded contact held to the path and beyond it, and work with a compliance at hand."""
+    held = contact("held", "held to the path", False, quick)
+    free = contact("free", "tip edges free to touch", True, quick)
+    return (held, free) if quick else (held, free, work_contact())
+
+
+@case("Loaded contact, {words}", "positions")
+def contact(key: str, words: str, beyond: bool, quick: bool) -> Levels:
+    """Loaded contact with a compliance at hand, by the number of positions.
+
+    Pair 36/40 at {TORQUE:g} N m, compliance at hand: forces, approach and stiffness at midpoints of equal intervals of
+    one base pitch. Errors from sampling alone: where a pair comes in and leaves, the stiffness jumps or has a corner.
+    """
     import fem
     from flankfilm.coupling.cycle import peak_to_peak_error, sampling_error
 
     pair = example_pair()
     bodies = fem.compliance(pair)
-    mean, spread = "mean mesh stiffness", "transmission error, peak to peak"
 
-    def cycle(beyond: bool, positions: int) -> MeshCycle:
+    def cycle(positions: int) -> MeshCycle:
         return fem.mesh_cycle(pair, TORQUE, positions, bodies, beyond_path=beyond)
 
-    def answer(found: MeshCycle) -> Answer:
+    def sampled(found: MeshCycle) -> Answer:
         curve, moved = found.secant_stiffness, found.transmission_error
         values = {
-            mean: Value(np.array([curve.mean()]), sampling_error(curve)),
-            spread: Value(np.array([np.ptp(moved)]), peak_to_peak_error(moved)),
+            MEAN: value(curve.mean(), sampling_error(curve)),
+            SPREAD: value(np.ptp(moved), peak_to_peak_error(moved)),
         }
-        return Answer(curve.size, values, "" if found.converged else found.message)
+        return answer(curve.size, values, found)
 
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384)
-    many = 768 if quick else 3072
-    cases = tuple(
-        Case(
-            f"contact_{key}",
-            f"Loaded contact, {words}",
-            f"Pair 36/40 at {TORQUE:g} N m, compliance at hand: forces, approach and stiffness at midpoints of equal "
-            "intervals of one base pitch. Errors from sampling alone: where a pair comes in and leaves, the stiffness "
-            "jumps or has a corner.",
-            "positions",
-            (Series(words, tuple(level(f"{n} positions", cycle, answer, beyond, n) for n in counts)),),
-            level(f"{many} positions", cycle, answer, beyond, many),
-            {mean: 1.0 if not beyond else 2.0, spread: 1.0},
-        )
-        for key, words, beyond in (
-            ("held", "held to the path", False),
-            ("free", "tip edges free to touch", True),
-        )
+    label, many = "{} positions".format, 768 if quick else 3072
+    series = over(counts, label, cycle, sampled, name=words)
+    return Levels(
+        (series,), level(label(many), cycle, sampled, many), {MEAN: 2.0 if beyond else 1.0, SPREAD: 1.0}
     )
-    return cases if quick else (*cases, contact_work())
 
 
-def root_stress(quick: bool) -> tuple[Case, ...]:
-    """Greatest root stress by the edge length on the fillets and by tolerance."""
+@case("Root stress", "edges per module on the fillets")
+def root_stress(quick: bool) -> Levels:
+    """Greatest root stress by the edge length on the fillets and by tolerance.
+
+    Pair 36/40 at {TORQUE:g} N m, mesh cycle at hand: influence of flank loads on all fillets, from nothing, and the
+    greatest tension over {POSITIONS} positions.
+    """
     import fem
 
     pair = example_pair()
@@ -197,35 +203,25 @@ def root_stress(quick: bool) -> tuple[Case, ...]:
         found = fem.fillets(pair, **how)
         return found, fem.root_stress(pair, cycle, found)
 
-    def answer(found: tuple[Fillets, RootStress]) -> Answer:
+    def greatest(found: tuple[Fillets, RootStress]) -> Answer:
         roots, both = found
-        greatest = [gear.greatest_tension.stress_Pa for gear in (both.pinion, both.wheel)]
-        failure = "" if roots.converged else roots.message
-        return Answer(1.0 / roots.fillet_edge, {quantity: Value(np.array(greatest), roots.error)}, failure)
+        tension = [gear.greatest_tension.stress_Pa for gear in (both.pinion, both.wheel)]
+        return answer(1.0 / roots.fillet_edge, {quantity: value(tension, roots.error)}, roots)
 
     def edges(length: float) -> tuple[Fillets, RootStress]:
         return stress(fillet_edge=length)
 
-    def tolerance(value: float) -> tuple[Fillets, RootStress]:
-        return stress(tolerance=value)
+    def tolerance(asked: float) -> tuple[Fillets, RootStress]:
+        return stress(tolerance=asked)
+
+    def modules(length: float) -> str:
+        return f"{length / 2:g} modules"
 
     lengths = (0.32, 0.16) if quick else (0.32, 0.16, 0.08, 0.04)
     tolerances = (0.02,) if quick else (0.02, 0.005, 0.001)
     least = 0.08 if quick else 0.02
-    return (
-        Case(
-            "root_stress",
-            "Root stress",
-            f"Pair 36/40 at {TORQUE:g} N m, mesh cycle at hand: influence of flank loads on all fillets, from nothing, "
-            f"and the greatest tension over {POSITIONS} positions.",
-            "edges per module on the fillets",
-            (
-                Series("edge lengths", tuple(level(f"{f / 2:g} modules", edges, answer, f) for f in lengths)),
-                Series(
-                    "tolerances", tuple(level(f"{100 * t:g} %", tolerance, answer, t) for t in tolerances)
-                ),
-            ),
-            level(f"{least / 2:g} modules", edges, answer, least),
-            {quantity: 2.0},
-        ),
+    series = (
+        over(lengths, modules, edges, greatest, name="edge lengths"),
+        over(tolerances, percent, tolerance, greatest, name="tolerances"),
     )
+    return Levels(series, level(modules(least), edges, greatest, least), {quantity: 2.0})

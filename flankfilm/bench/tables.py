@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
-from flankfilm.bench.first_call import FirstCall
-from flankfilm.bench.machine import Machine
+from pydantic import TypeAdapter
+
 from flankfilm.bench.measuring import CaseResult, Row, gain
-from flankfilm.bench.peers import PeerRow
 from flankfilm.bench.run import Bench
 from flankfilm.output.files import write_csv, write_text
 
@@ -30,8 +29,6 @@ __all__ = [
     "terminal",
     "write_tables",
 ]
-
-T = TypeVar("T")
 
 ROUNDING = 1e-14
 """True errors below this are rounding, which no estimate is about."""
@@ -106,17 +103,19 @@ HEADS = ("work", "by", "error of", "true error", "time", "a tenth costs", "estim
 
 def summary_cells(one: Summary) -> tuple[str, ...]:
     """Text of a summary under `HEADS`."""
+
+    def span(text: Callable[[float], str], ends: tuple[float, float]) -> str:
+        return " to ".join(dict.fromkeys(map(text, ends[:1] if alone else ends)))
+
     alone = one.errors[0] == one.errors[1] and one.seconds[0] == one.seconds[1]
-    low, high = one.ratios
-    ratios = "" if math.isnan(low) else _ratio(low) if low == high else f"{_ratio(low)} to {_ratio(high)}"
     return (
         one.title,
         one.series,
         one.quantity,
-        number(one.errors[0]) if alone else f"{number(one.errors[0])} to {number(one.errors[1])}",
-        clock(one.seconds[0]) if alone else f"{clock(one.seconds[0])} to {clock(one.seconds[1])}",
+        span(number, one.errors),
+        span(clock, one.seconds),
         "" if math.isnan(one.gain) else f"x {one.gain:.2g}",
-        ratios,
+        "" if math.isnan(one.ratios[0]) else span(_ratio, one.ratios),
     )
 
 
@@ -166,19 +165,19 @@ def remarks(found: Bench) -> list[str]:
 
 def write_tables(found: Bench, folder: Path) -> list[Path]:
     """Write ``bench.json`` with everything, and CSV files of rows, first calls and peers."""
-    rows = [row for case in found.cases for row in case.rows]
-    tables: dict[str, tuple[type, Sequence[Any]]] = {
-        "error_against_cost": (Row, rows),
-        "first_calls": (FirstCall, found.first_calls),
+    tables: dict[str, Sequence[Any]] = {
+        "error_against_cost": [row for case in found.cases for row in case.rows],
+        "first_calls": found.first_calls,
+        "peers": found.peers,
     }
-    if found.peers:
-        tables["peers"] = (PeerRow, found.peers)
     paths = [folder / "bench.json"]
-    write_text(paths[0], json.dumps(_without_nan(asdict(found)), indent=1, allow_nan=False) + "\n")
-    for name, (kind, records) in tables.items():
-        paths.append(folder / f"{name}.csv")
-        columns = {_with_unit(f.name): [getattr(r, f.name) for r in records] for f in fields(kind)}
-        write_csv(paths[-1], columns)
+    # JSON has no NaN: null stands for it
+    write_text(paths[0], TypeAdapter(Bench).dump_json(found, indent=1).decode() + "\n")
+    for name, records in tables.items():
+        if records:
+            paths.append(folder / f"{name}.csv")
+            columns = {_with_unit(f): [getattr(r, f) for r in records] for f in vars(records[0])}
+            write_csv(paths[-1], columns)
     return paths
 
 
@@ -189,34 +188,9 @@ def _with_unit(name: str) -> str:
 
 def read_bench(path: Path) -> Bench:
     """Read a ``bench.json`` back."""
-    stored = json.loads(path.read_text(encoding="utf-8"))
-    cases = [
-        {**case, "rows": tuple(_record(Row, row) for row in case["rows"])} for case in stored.pop("cases")
-    ]
-    for case in cases:
-        case["finest_estimates"] = {q: _float(e) for q, e in case["finest_estimates"].items()}
-    return Bench(
-        machine=_record(Machine, stored.pop("machine")),
-        cases=tuple(CaseResult(**case) for case in cases),
-        first_calls=tuple(_record(FirstCall, call) for call in stored.pop("first_calls")),
-        peers=tuple(_record(PeerRow, peer) for peer in stored.pop("peers")),
-        load_after=_float(stored.pop("load_after")),
-        **stored,
-    )
 
+    def with_nan(held: dict[str, Any]) -> dict[str, Any]:
+        return {name: math.nan if value is None else value for name, value in held.items()}
 
-def _record(kind: type[T], stored: dict[str, Any]) -> T:
-    return kind(**{name: _float(value) if value is None else value for name, value in stored.items()})
-
-
-def _float(value: float | None) -> float:
-    return math.nan if value is None else value
-
-
-def _without_nan(value: Any) -> Any:
-    """The same with None for NaN, which JSON does not have."""
-    if isinstance(value, dict):
-        return {key: _without_nan(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(inner) for inner in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    text = path.read_text(encoding="utf-8")
+    return TypeAdapter(Bench).validate_python(json.loads(text, object_hook=with_nan))

@@ -9,21 +9,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.bench.case import Case, Series, work
+from flankfilm.bench.case import Levels, case, work
 from flankfilm.bench.examples import TORQUE, contacts_along_path, example_pair, oscillator, pitch_point
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["contact_work", "film_work", "geometry_work", "motion_work"]
+__all__ = ["work_contact", "work_film", "work_geometry", "work_motion"]
 
 
-def _timed(key: str, title: str, text: str, size: str, *series: Series) -> Case:
-    return Case(key, title, text, size, series, None)
+@case("Pair and load sharing", "positions")
+def work_geometry() -> Levels:
+    """Pair made, rolled, and its load shared.
 
-
-def geometry_work() -> Case:
-    """Pair made, rolled, and its load shared."""
+    Pair 36/40 made with all its guards and rolled through a mesh cycle; load shared by three pairs whose local
+    deflection is logarithmic.
+    """
     from gears import check_meshing, share_load
 
     pair = example_pair()
@@ -33,16 +34,12 @@ def geometry_work() -> Case:
         stacked = np.broadcast_to(bulk, (positions, 3, 3)), np.broadcast_to(gap, (positions, 3))
         return lambda: share_load(17736.3, stacked[0], _LogarithmicContact(), stacked[1])
 
-    return _timed(
-        "work_geometry",
-        "Pair and load sharing",
-        "Pair 36/40 made with all its guards and rolled through a mesh cycle; load shared by three pairs whose "
-        "local deflection is logarithmic.",
-        "positions",
+    series = (
         work("pair made", example_pair),
         work("pair rolled", lambda: check_meshing(pair)),
         *(work(f"load shared at {n}", shared(n), n) for n in (1, 40, 400)),
     )
+    return Levels(series)
 
 
 class _LogarithmicContact:
@@ -59,8 +56,12 @@ class _LogarithmicContact:
         return np.where(force > 0, 2.8e-11 * np.log(1e9 / safe), np.inf)
 
 
-def contact_work() -> Case:
-    """Mesh cycles from nothing and with a compliance at hand, root stress, files for ParaView."""
+@case("Mesh cycles and fields", "positions")
+def work_contact() -> Levels:
+    """Mesh cycles from nothing and with a compliance at hand, root stress, files for ParaView.
+
+    Pair 36/40 at 600 N m: a whole mesh cycle from nothing at 0.1 %; the others with the compliance at hand.
+    """
     import fem
     from fem.vtk import write_vtk_series
 
@@ -74,11 +75,7 @@ def contact_work() -> Case:
         with tempfile.TemporaryDirectory() as folder:
             write_vtk_series(Path(folder), pair, few, bodies)
 
-    return _timed(
-        "work_contact",
-        "Mesh cycles and fields",
-        "Pair 36/40 at 600 N m: a whole mesh cycle from nothing at 0.1 %; the others with the compliance at hand.",
-        "positions",
+    series = (
         work("from nothing", lambda: fem.mesh_cycle(pair, TORQUE), 40),
         work("held to the path", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies, False), 40),
         work("with tip edges", lambda: fem.mesh_cycle(pair, TORQUE, 40, bodies), 40),
@@ -88,10 +85,16 @@ def contact_work() -> Case:
         work("root stress", lambda: fem.root_stress(pair, cycle, fillets), 40),
         work("files for ParaView", write, 20),
     )
+    return Levels(series)
 
 
-def film_work() -> Case:
-    """A film by the film that it starts from, and films along a path."""
+@case("Films by their start", "contacts")
+def work_film() -> Levels:
+    """A film by the film that it starts from, and films along a path.
+
+    Pitch point of the pair 36/40 at 0.5 %: from nothing, from its own film, and from that of another load; 101
+    contacts along the path with two jumps of the load, each from its neighbour.
+    """
     from ehl import solve, solve_path
 
     contact = pitch_point()
@@ -102,12 +105,7 @@ def film_work() -> Case:
         other = replace(contact, load=factor * contact.load)
         return lambda: solve(other, start=film)
 
-    return _timed(
-        "work_film",
-        "Films by their start",
-        "Pitch point of the pair 36/40 at 0.5 %: from nothing, from its own film, and from that of another load; "
-        "101 contacts along the path with two jumps of the load, each from its neighbour.",
-        "contacts",
+    series = (
         work("from nothing", lambda: solve(contact), 1),
         work("same contact", at(1.0), 1),
         work("load +0.01 %", at(1.0001), 1),
@@ -115,10 +113,15 @@ def film_work() -> Case:
         work("load halved", at(0.5), 1),
         work("along the path", lambda: solve_path(contacts), 101),
     )
+    return Levels(series)
 
 
-def motion_work() -> Case:
-    """Sweeps, branches, loci, diagrams and basins."""
+@case("Sweeps, branches, diagrams, basins", "values, points or starts")
+def work_motion() -> Levels:
+    """Sweeps, branches, loci, diagrams and basins.
+
+    The oscillator of the exact flow, kernels compiled: what is built on its period map.
+    """
     import dynamics
     from dynamics.flow import tables
 
@@ -133,11 +136,7 @@ def motion_work() -> Case:
         for direction in ("up", "down"):
             dynamics.sweep(osc, values=values, direction=direction)
 
-    return _timed(
-        "work_motion",
-        "Sweeps, branches, diagrams, basins",
-        "The oscillator of the exact flow, kernels compiled: what is built on its period map.",
-        "values, points or starts",
+    series = (
         work("tables of the flow", lambda: tables(osc)),
         work("sweep up and down", swept, 4000),
         work("branch", lambda: dynamics.continue_branch(start, "frequency", (0.5, 1.2)), len(branch.values)),
@@ -150,3 +149,4 @@ def motion_work() -> Case:
         work("diagram", lambda: dynamics.diagram(osc, "frequency", (0.3, 2.1))),
         work("basins", lambda: dynamics.basins(osc, x=(-1, 1, 200), v=(-1, 1, 200)), 40_000),
     )
+    return Levels(series)

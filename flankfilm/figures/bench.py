@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,7 @@ LEAST = 1e-16
 
 MARKS = "osD^vP*"
 PEER_MARKS = "xX1+"
+GREY: dict[str, Any] = {"color": "#888888", "linewidth": 1.0}
 
 
 def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figure:
@@ -48,13 +49,12 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
             known = [e for q, e in case.finest_estimates.items() if q in quantities and e > 0]
             for axes in (over_time, over_size):
                 if known:
-                    axes.axhline(max(known), color="#888888", linewidth=1.0, linestyle=":")
+                    axes.axhline(max(known), **GREY, linestyle=":")
                 axes.set(xscale="log", yscale="log")
+                _ticks(axes)
             what = quantities[0] if len(quantities) == 1 else "each mean"
             over_time.set(xlabel="processor time [s]", ylabel=f"relative error\n{what}")
             over_size.set(xlabel=case.size_name)
-            _ticks(over_time)
-            _ticks(over_size)
         _legend(drawn, panels[:, 0], [case.orders[q] for group in groups for q in group if q in case.orders])
     return drawn
 
@@ -71,21 +71,30 @@ def _groups(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 
 
 def _series(axes: Axes, at: Sequence[float], rows: Sequence[Row], place: int, label: str = "") -> None:
-    colour, mark = COLOURS[place % len(COLOURS)], MARKS[place % len(MARKS)]
-    error = [max(r.error, LEAST) for r in rows]
-    axes.plot(at, error, "-", marker=mark, color=colour, markersize=5, label=label or None)
+    look = _look(place)
+    axes.plot(at, _drawn(rows, "error"), "-", **look, label=label or None)
     guess = [max(r.estimate, LEAST) if r.estimate > 0 else math.nan for r in rows]
     if np.isfinite(guess).any():
-        axes.plot(at, guess, "--", marker=mark, color=colour, markersize=5, markerfacecolor="white")
+        axes.plot(at, guess, "--", **look, markerfacecolor="white")
+
+
+def _look(place: int) -> dict[str, Any]:
+    """Mark and colour of one of several curves."""
+    mark, colour = MARKS[place % len(MARKS)], COLOURS[place % len(COLOURS)]
+    return {"marker": mark, "color": colour, "markersize": 5}
+
+
+def _drawn(rows: Sequence[Row | PeerRow], name: str) -> list[float]:
+    """Errors of one name as they are drawn."""
+    return [max(getattr(row, name), LEAST) for row in rows]
 
 
 def _peers(axes: Axes, peers: Sequence[PeerRow]) -> None:
     for place, name in enumerate(dict.fromkeys(p.peer for p in peers)):
         one = [p for p in peers if p.peer == name]
-        at, error = [p.cpu for p in one], [max(p.error, LEAST) for p in one]
-        mark = PEER_MARKS[place % len(PEER_MARKS)]
-        label = f"{name} {one[0].version}"
-        axes.plot(at, error, "-.", marker=mark, color="black", linewidth=1.0, markersize=6, label=label)
+        mark, label = PEER_MARKS[place % len(PEER_MARKS)], f"{name} {one[0].version}"
+        look: dict[str, Any] = {"marker": mark, "color": "black", "linewidth": 1.0, "markersize": 6}
+        axes.plot([p.cpu for p in one], _drawn(one, "error"), "-.", **look, label=label)
 
 
 def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
@@ -98,7 +107,7 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
     size = np.array([min(r.size for r in one), max(r.size for r in one)])
     coarsest = min(one, key=lambda r: r.size)
     line = 0.4 * coarsest.error * (size / coarsest.size) ** -order
-    axes.plot(size, line, color="#888888", linewidth=1.0)
+    axes.plot(size, line, **GREY)
 
 
 def _ticks(axes: Axes) -> None:
@@ -126,14 +135,13 @@ def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> N
         entries |= {
             label: handle for handle, label in zip(*over_time.get_legend_handles_labels(), strict=True)
         }
-    entries["true error"] = Line2D([], [], color="#444444", marker="o", markersize=5)
-    entries["own estimate"] = Line2D(
-        [], [], color="#444444", linestyle="--", marker="o", markersize=5, markerfacecolor="white"
-    )
-    entries["estimate of the finest"] = Line2D([], [], color="#888888", linestyle=":", linewidth=1.0)
+    error: dict[str, Any] = {"color": "#444444", "marker": "o", "markersize": 5}
+    entries["true error"] = Line2D([], [], **error)
+    entries["own estimate"] = Line2D([], [], **error, linestyle="--", markerfacecolor="white")
+    entries["estimate of the finest"] = Line2D([], [], **GREY, linestyle=":")
     if orders:
         listed = " and ".join(f"{order:g}" for order in dict.fromkeys(orders))
-        entries[f"theory, order {listed}"] = Line2D([], [], color="#888888", linewidth=1.0)
+        entries[f"theory, order {listed}"] = Line2D([], [], **GREY)
     columns = 2 if max(map(len, entries)) > 28 else 3
     drawn.legend(
         list(entries.values()), list(entries), loc="outside upper left", ncols=columns, handlelength=2.6
@@ -146,25 +154,22 @@ def estimates(cases: Sequence[CaseResult]) -> Figure:
         drawn = figure(6.2, 5.0)
         axes = drawn.subplots()
         values = []
-        for place, solver in enumerate(dict.fromkeys(c.solver for c in cases)):
-            rows = [r for c in cases if c.solver == solver for r in c.rows if r.estimate > 0]
-            error, guess = ([max(getattr(r, name), LEAST) for r in rows] for name in ("error", "estimate"))
+        for place, (solver, own) in enumerate(_by_solver(cases)):
+            rows = [r for c in own for r in c.rows if r.estimate > 0]
+            error, guess = _drawn(rows, "error"), _drawn(rows, "estimate")
             values += error + guess
-            axes.plot(
-                error,
-                guess,
-                MARKS[place % len(MARKS)],
-                color=COLOURS[place % len(COLOURS)],
-                markersize=5,
-                label=solver if rows else None,
-            )
+            axes.plot(error, guess, linestyle="", **_look(place), label=solver if rows else None)
         span = [0.5 * min(values, default=1e-6), 2.0 * max(values, default=1.0)]
         for factor, line, name in ((1.0, "-", "estimate = error"), (10.0, ":", "ten times the error")):
-            axes.plot(span, [factor * v for v in span], line, color="#888888", linewidth=1.0, label=name)
+            axes.plot(span, [factor * v for v in span], line, **GREY, label=name)
         axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
         axes.set(xlabel="true relative error", ylabel="estimated relative error")
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
     return drawn
+
+
+def _by_solver(cases: Sequence[CaseResult]) -> list[tuple[str, list[CaseResult]]]:
+    return [(s, [c for c in cases if c.solver == s]) for s in dict.fromkeys(c.solver for c in cases)]
 
 
 def overview(cases: Sequence[CaseResult]) -> Figure:
@@ -172,19 +177,11 @@ def overview(cases: Sequence[CaseResult]) -> Figure:
     with styled():
         drawn = figure(7.4, 5.2)
         axes = drawn.subplots()
-        for place, solver in enumerate(dict.fromkeys(c.solver for c in cases)):
-            case = next(c for c in cases if c.solver == solver)
-            rows = [r for r in case.rows if not r.failure]
+        for place, (solver, own) in enumerate(_by_solver(cases)):
+            rows = [r for r in own[0].rows if not r.failure]
             rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
-            axes.plot(
-                [r.cpu for r in rows],
-                [max(r.error, LEAST) for r in rows],
-                "-",
-                marker=MARKS[place % len(MARKS)],
-                color=COLOURS[place % len(COLOURS)],
-                markersize=5,
-                label=f"{solver}: {rows[0].quantity}" if rows else None,
-            )
+            label = f"{solver}: {rows[0].quantity}" if rows else None
+            axes.plot([r.cpu for r in rows], _drawn(rows, "error"), "-", **_look(place), label=label)
         axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error")
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
     return drawn

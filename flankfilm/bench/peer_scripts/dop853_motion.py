@@ -1,4 +1,4 @@
-"""Motion with backlash by DOP853 compiled with events; runs in the peer's environment, with nothing of ours.
+"""Motion with backlash by DOP853 compiled with events.
 
 The scheme of Dormand and Prince with Hairer's error estimate and step control, for the one oscillator of the
 benchmark, without overhead: no allocation in its loop, first-same-as-last, and an impact met by Newton's method on
@@ -8,20 +8,17 @@ the length of the step, from the state at its start.
 # mypy: disable-error-code="no-untyped-def, no-untyped-call"
 from __future__ import annotations
 
-import json
 import math
-import sys
-import time
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
 
-try:
-    import numba
-    import numpy as np
-    from numba import njit
-    from scipy.integrate import DOP853
-except ImportError as error:
-    print(json.dumps({"missing": str(error)}))
-    sys.exit()
+import numba
+import numpy as np
+from numba import njit
+from scipy.integrate import DOP853
 
+PEER, VERSION, NOTE = "compiled DOP853", f"numba {numba.__version__}", ""
 STAGES = 12
 A, B, C, E3, E5 = (part.copy() for part in (DOP853.A, DOP853.B, DOP853.C, DOP853.E3, DOP853.E5))
 
@@ -120,25 +117,13 @@ def compiled_dop853(x, v, periods, rtol, par):
     return x, v
 
 
-def main() -> None:
-    """Read the work as JSON, print what was found as JSON."""
-    given = json.load(sys.stdin)
-    osc, (x, v) = given["oscillator"], given["start"]
-    par = np.array([osc[n] for n in ("kappa", "zeta", "force", "error", "frequency", "half_backlash")])
-    runs = []
+def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """Tolerances."""
+    x, v = given["start"]
+    par = np.array(given["oscillator"])
     for digits in range(4, 14):
         rtol = 10.0**-digits
-        began = time.process_time()
-        values = compiled_dop853(x, v, given["periods"], rtol, par)
-        first = time.process_time() - began
-        seconds = []
-        for _ in range(given["repeat"]):
-            began = time.process_time()
-            compiled_dop853(x, v, given["timed_periods"], rtol, par)
-            seconds.append(time.process_time() - began)
-        runs.append({"level": f"rtol {rtol:.0e}", "seconds": min(seconds), "first": first, "values": values})
-    print(json.dumps({"peer": "compiled DOP853", "version": f"numba {numba.__version__}", "runs": runs}))
-
-
-if __name__ == "__main__":
-    main()
+        first, many = (
+            partial(compiled_dop853, x, v, given[name], rtol, par) for name in ("periods", "timed_periods")
+        )
+        yield f"rtol {rtol:.0e}", first, many, 1

@@ -1,18 +1,20 @@
-"""Motion with backlash by heyoka's Taylor integrator; runs in the peer's environment, with nothing of ours."""
+"""Motion with backlash by heyoka's Taylor integrator."""
 
-import json
 import math
-import sys
-import time
+from collections.abc import Iterator
+from functools import partial
 from importlib import import_module
 from typing import Any
 
+hy: Any = import_module("heyoka")
 
-def integrator(hy: Any, osc: dict[str, float], start: list[float], tol: float) -> Any:
+PEER, VERSION = "heyoka", hy.__version__
+NOTE = "events call Python; first call: the integrator is compiled"
+
+
+def integrator(osc: list[float], start: list[float], tol: float) -> Any:
     """Integrator whose terminal events switch the spring on and off."""
-    kappa, zeta, force, eps, w, d = (
-        osc[name] for name in ("kappa", "zeta", "force", "error", "frequency", "half_backlash")
-    )
+    kappa, zeta, force, eps, w, d = osc
     x, v = hy.make_vars("x", "v")
     c = hy.cos(w * hy.time)
     touching, side = hy.par[0], hy.par[1]
@@ -34,41 +36,24 @@ def integrator(hy: Any, osc: dict[str, float], start: list[float], tol: float) -
     )
 
 
-def main() -> None:
-    """Read the work as JSON, print what was found as JSON."""
-    given = json.load(sys.stdin)
-    try:
-        hy = import_module("heyoka")
-    except ImportError as error:
-        print(json.dumps({"missing": str(error)}))
-        return
+def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """Tolerances."""
     osc, start = given["oscillator"], given["start"]
-    period, d = 2.0 * math.pi / osc["frequency"], osc["half_backlash"]
+    period, d = 2.0 * math.pi / osc[4], osc[5]
     side = 1.0 if start[0] > d else -1.0 if start[0] < -d else 0.0
-    runs = []
+    built: dict[float, Any] = {}
+
+    def follow(tol: float, periods: int) -> list[float]:
+        if tol not in built:
+            built[tol] = integrator(osc, start, tol)
+        ta = built[tol]
+        ta.time = 0.0
+        ta.state[:] = start
+        ta.pars[:] = [abs(side), side]
+        ta.reset_cooldowns()
+        ta.propagate_until(periods * period)
+        return [float(ta.state[0]), float(ta.state[1])]
+
     for tol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15):
-        began = time.process_time()
-        ta = integrator(hy, osc, start, tol)
-        built = time.process_time() - began
-
-        def follow(periods: int, ta: Any = ta) -> list[float]:
-            ta.time = 0.0
-            ta.state[:] = start
-            ta.pars[:] = [abs(side), side]
-            ta.reset_cooldowns()
-            ta.propagate_until(periods * period)
-            return [float(ta.state[0]), float(ta.state[1])]
-
-        values = follow(given["periods"])
-        seconds = []
-        for _ in range(given["repeat"]):
-            began = time.process_time()
-            follow(given["timed_periods"])
-            seconds.append(time.process_time() - began)
-        runs.append({"level": f"tol {tol:g}", "seconds": min(seconds), "first": built, "values": values})
-    note = "events call Python; first call: the integrator is compiled"
-    print(json.dumps({"peer": "heyoka", "version": hy.__version__, "runs": runs, "note": note}))
-
-
-if __name__ == "__main__":
-    main()
+        first, many = (partial(follow, tol, given[name]) for name in ("periods", "timed_periods"))
+        yield f"tol {tol:g}", first, many, 1

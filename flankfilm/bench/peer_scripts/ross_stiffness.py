@@ -1,21 +1,19 @@
-"""Mesh stiffness by ross-rotordynamics; runs in the peer's environment, with nothing of ours."""
+"""Mesh stiffness by ross-rotordynamics."""
 
-import json
-import sys
-import time
+from collections.abc import Iterator
 from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+ross: Any = import_module("ross")
+elements: Any = import_module("ross.gear_element")
+
+PEER, VERSION, NOTE = "ross-rotordynamics", ross.__version__, ""
 
 
-def main() -> None:
-    """Read the work as JSON, print what was found as JSON."""
-    given = json.load(sys.stdin)
-    try:
-        np = import_module("numpy")
-        ross = import_module("ross")
-        elements = import_module("ross.gear_element")
-    except ImportError as error:
-        print(json.dumps({"missing": str(error)}))
-        return
+def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """The one way of the program."""
     steel = ross.Material(
         name="steel", rho=given["density"], E=given["youngs_modulus"], Poisson=given["poisson_ratio"]
     )
@@ -34,19 +32,8 @@ def main() -> None:
     mesh = elements.Mesh(*gears)
     steps = (np.arange(given["positions"]) + 0.5) / given["positions"]
     angles = 2 * np.pi / given["teeth"][0] * steps
-    seconds = []
-    for _ in range(given["repeat"] + 1):
-        began = time.process_time()
-        stiffness = [float(mesh.get_variable_stiffness(angle)) for angle in angles]
-        seconds.append(time.process_time() - began)
-    run = {
-        "level": "GearElementTVMS",
-        "seconds": min(seconds[1:]),
-        "first": seconds[0],
-        "values": [sum(stiffness) / len(stiffness)],
-    }
-    print(json.dumps({"peer": "ross-rotordynamics", "version": ross.__version__, "runs": [run]}))
 
+    def mean() -> list[float]:
+        return [float(np.mean([mesh.get_variable_stiffness(angle) for angle in angles]))]
 
-if __name__ == "__main__":
-    main()
+    yield "GearElementTVMS", mean, mean, 1

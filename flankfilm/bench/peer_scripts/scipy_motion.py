@@ -1,14 +1,18 @@
-"""Motion with backlash by scipy's solve_ivp with events; runs in the peer's environment, with nothing of ours."""
+"""Motion with backlash by scipy's solve_ivp with events."""
 
-import json
 import math
-import sys
-import time
+from collections.abc import Iterator
+from functools import partial
 from importlib import import_module
 from typing import Any
 
+scipy: Any = import_module("scipy")
+solve_ivp: Any = import_module("scipy.integrate").solve_ivp
+
 FEW = 10
 """Periods that are timed: the many of the others would take a minute."""
+
+PEER, VERSION, NOTE = "scipy solve_ivp", scipy.__version__, f"time of {FEW} periods, multiplied"
 
 
 class Limit:
@@ -25,13 +29,9 @@ class Limit:
         return float(y[0] - self.place)
 
 
-def follow(
-    solve_ivp: Any, osc: dict[str, float], start: list[float], periods: int, rtol: float
-) -> list[float]:
+def follow(osc: list[float], start: list[float], rtol: float, periods: int) -> list[float]:
     """State after whole periods, the integration stopped at every impact."""
-    kappa, zeta, force, eps, w, d = (
-        osc[name] for name in ("kappa", "zeta", "force", "error", "frequency", "half_backlash")
-    )
+    kappa, zeta, force, eps, w, d = osc
     now, end, y = 0.0, periods * 2.0 * math.pi / w, list(start)
     region = 1 if y[0] > d else -1 if y[0] < -d else 0
 
@@ -57,41 +57,9 @@ def follow(
     return [float(y[0]), float(y[1])]
 
 
-def main() -> None:
-    """Read the work as JSON, print what was found as JSON."""
-    given = json.load(sys.stdin)
-    try:
-        scipy = import_module("scipy")
-        solve_ivp = import_module("scipy.integrate").solve_ivp
-    except ImportError as error:
-        print(json.dumps({"missing": str(error)}))
-        return
-    osc, start = given["oscillator"], given["start"]
-    runs = []
+def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """Tolerances."""
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
-        began = time.process_time()
-        values = follow(solve_ivp, osc, start, given["periods"], rtol)
-        first = time.process_time() - began
-        seconds = []
-        for _ in range(given["repeat"]):
-            began = time.process_time()
-            follow(solve_ivp, osc, start, FEW, rtol)
-            seconds.append((time.process_time() - began) * given["timed_periods"] / FEW)
-        runs.append(
-            {"level": f"DOP853, rtol {rtol:g}", "seconds": min(seconds), "first": first, "values": values}
-        )
-    note = f"time of {FEW} periods, multiplied"
-    print(
-        json.dumps(
-            {
-                "peer": "scipy solve_ivp",
-                "version": scipy.__version__,
-                "runs": runs,
-                "note": note,
-            }
-        )
-    )
-
-
-if __name__ == "__main__":
-    main()
+        after = partial(follow, given["oscillator"], given["start"], rtol)
+        first, few = partial(after, given["periods"]), partial(after, FEW)
+        yield f"DOP853, rtol {rtol:g}", first, few, given["timed_periods"] / FEW
