@@ -83,7 +83,7 @@ def test_plenty_of_oil_is_the_flooded_film(flooded: LubricatedCycle, supply: str
 
 
 def test_the_layer_passes_every_contact(starved: LubricatedCycle):
-    assert starved.film.flow == pytest.approx(0.11e-6, rel=1e-6)
+    assert starved.film.oil_layer == pytest.approx(0.11e-6, rel=1e-6)
     density = 1 + 0.6e-9 * starved.film.hertz_pressure / (1 + 1.7e-9 * starved.film.hertz_pressure)
     assert starved.film.central_thickness == pytest.approx(0.11e-6 / density, rel=0.01)
     assert starved.film.minimum_thickness.min() < 0.1e-6
