@@ -147,7 +147,7 @@ class LineLoads:
         nodes, local = np.unique(where.nodes, return_inverse=True)
         # no point of a flank is on a cut or on the hub
         asked = np.searchsorted(self.ring.inner, (2 * nodes[:, None] + np.arange(2)).ravel())
-        moved = self._inner(tooth, asked).reshape(len(nodes), 2, -1)
+        moved = self.inner(tooth, asked).reshape(len(nodes), 2, -1)
         return replace(where, nodes=local.reshape(where.nodes.shape)).component(moved)
 
     def singular(self, where: FlankPoints) -> Array:
@@ -159,7 +159,7 @@ class LineLoads:
             part[apart, i] = np.einsum("na,na->n", u, where.direction[apart])
         return part
 
-    def _inner(self, tooth: int, some: Integers | slice = slice(None)) -> Array:
+    def inner(self, tooth: int, some: Integers | slice = slice(None)) -> Array:
         """Inner unknowns of a tooth's sector, all or some: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
         inner = -self.ring.inner_by_cut[some] @ cuts

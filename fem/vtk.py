@@ -118,7 +118,7 @@ def write_vtk_series(
         files = {}
         for name, grid in zip(blocks.keys(), blocks, strict=True):
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
-            _write_grid(files[name], grid)
+            write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
@@ -128,12 +128,14 @@ def write_vtk_series(
 def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
     import pyvista
 
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.QUADRATIC_TRIANGLE: field.cells}, _stored(field.points))
+    grid = pyvista.UnstructuredGrid(
+        {pyvista.CellType.QUADRATIC_TRIANGLE: field.cells}, single_precision(field.points)
+    )
     for name, values in field.point_data.items():
         if name == "principal_direction":  # it follows from the stress, and would add an eighth to the file
             continue
-        stored = _stored(values, flat=name in COMPONENTS)
-        grid.point_data[name] = stored if name == "displacement_m" else _rounded(stored)
+        stored = single_precision(values, flat=name in COMPONENTS)
+        grid.point_data[name] = stored if name == "displacement_m" else rounded(stored)
         for i, label in enumerate(COMPONENTS.get(name, ())):
             grid.GetPointData().GetArray(name).SetComponentName(i, label)
     for name, numbers in field.cell_data.items():
@@ -146,10 +148,10 @@ def _contact_grid(contacts: ContactForces) -> pyvista.UnstructuredGrid:
     import pyvista
 
     vertices = np.arange(len(contacts.points))[:, None]
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: vertices}, _stored(contacts.points))
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: vertices}, single_precision(contacts.points))
     for name, values in contacts.point_data.items():
         whole = np.issubdtype(values.dtype, np.integer)
-        grid.point_data[name] = values.astype(np.int32) if whole else _stored(values)
+        grid.point_data[name] = values.astype(np.int32) if whole else single_precision(values)
     return _active(grid, "pressure_Pa", "force_N")
 
 
@@ -161,21 +163,21 @@ def _active(grid: pyvista.UnstructuredGrid, scalars: str, vectors: str) -> pyvis
     return grid
 
 
-def _stored(values: NDArray[Any], flat: bool = False) -> NDArray[np.float32]:
+def single_precision(values: NDArray[Any], flat: bool = False) -> NDArray[np.float32]:
     """Single precision; vectors of the plane get a third component unless ``flat``."""
     if values.ndim == 2 and values.shape[1] == 2 and not flat:
         values = np.column_stack([values, np.zeros(len(values))])
     return np.ascontiguousarray(values, dtype=np.float32)
 
 
-def _rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Mantissas rounded, in the array itself."""
     bits, finite = values.view(np.uint32), np.isfinite(values)
     bits[finite] = (bits[finite] + (1 << (DROPPED - 1))) & ~np.uint32((1 << DROPPED) - 1)
     return values
 
 
-def _write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
+def write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
     """Write a ``.vtu`` with its arrays packed behind the text; ``grid.save`` spells them in a third more bytes."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 

@@ -14,7 +14,7 @@ from gears.pair import GearPair
 from gears.path import PathOfContact
 
 
-def _tooth(tooth: LoadedTooth, face_width: float) -> Array:
+def tooth_compliance(tooth: LoadedTooth, face_width: float) -> Array:
     """Compliance of the tooth from its root section to where the load crosses the centre line [m/N]."""
     nu = tooth.material.poisson_ratio
     top = tooth.crossing
@@ -30,7 +30,7 @@ def _tooth(tooth: LoadedTooth, face_width: float) -> Array:
     )
 
 
-def _body(tooth: LoadedTooth, face_width: float) -> Array:
+def body_compliance(tooth: LoadedTooth, face_width: float) -> Array:
     """Compliance of the half-plane under the root section [m/N]."""
     nu = tooth.material.poisson_ratio
     foot, width = tooth.root_section
@@ -89,7 +89,7 @@ def weber_banaschek(pair: GearPair, path: PathOfContact, force: float) -> Closed
     """
     teeth, b = loaded_teeth(pair, path), pair.face_width
     parts = (
-        {"tooth": _tooth(tooth, b), "body": _body(tooth, b), "contact": flank}
+        {"tooth": tooth_compliance(tooth, b), "body": body_compliance(tooth, b), "contact": flank}
         for tooth, flank in zip(teeth, contact_compliances(pair, path, force, teeth), strict=True)
     )
     return ClosedForm.of_both("Weber-Banaschek", *parts)

@@ -7,9 +7,7 @@ from hypothesis import strategies as st
 
 from base import InputError
 from ehl import LineContact, Lubricant
-
-OIL = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
-SECTION_2 = LineContact(load=1e5, entrainment=1.0, radius=0.015, reduced_modulus=2.2e11, lubricant=OIL)
+from tests.validation.article import SECTION_2
 
 
 def test_hertz_figures():

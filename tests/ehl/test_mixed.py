@@ -7,12 +7,11 @@ import pytest
 from scipy.integrate import quad
 
 from base import InputError, RangeWarning
-from ehl import LineContact, Lubricant, OilLayer, Roughness, solve, solve_mixed
+from ehl import OilLayer, Roughness, solve, solve_mixed
 from ehl.asperities import height_integral, zhao_fit
 from ehl.mixed import central_asperity_pressure
+from tests.validation.article import PITCH
 
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
 STIFF = Roughness(2e-7, 2.5e10, 1e-5, "greenwood-williamson")
 SOFT = Roughness(1e-7, 4e10, 1e-5)
 

@@ -1,22 +1,16 @@
 import math
-import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from base import InputError, RangeWarning
-from ehl import LineContact, Lubricant, solve
+from base import InputError
+from ehl import LineContact, solve
 from ehl.grid import graded_nodes
+from tests.ehl.films import quiet
+from tests.validation.article import PITCH
 
-PITCH = LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, Lubricant(0.075, 19.6e-9))
 M20 = LineContact.from_moes(20.0, 10.0)
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
 
 
 def test_nodes_around_a_spike_are_nested_and_as_fine_as_it():

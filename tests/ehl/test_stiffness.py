@@ -1,6 +1,5 @@
 import math
 import pickle
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,22 +9,11 @@ from base import InputError, RangeWarning
 from ehl import (
     DEFINITIONS,
     LineContact,
-    Lubricant,
     dowson,
     hertz_approach,
-    solve,
 )
-
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
-FACE = 0.04
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
-
+from tests.ehl.films import quiet
+from tests.validation.article import FACE, PITCH
 
 CONTACTS = [
     PITCH,

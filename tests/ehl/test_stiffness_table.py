@@ -6,14 +6,12 @@ import pytest
 from base import InputError, RangeWarning
 from ehl import (
     DEFINITIONS,
-    LineContact,
-    Lubricant,
     OilLayer,
     solve,
     stiffness_table,
 )
+from tests.validation.article import PITCH
 
-PITCH = LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, Lubricant(0.075, 19.6e-9))
 TOOTH = 5.6e8
 
 

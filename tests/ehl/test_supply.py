@@ -5,27 +5,11 @@ import numpy as np
 import pytest
 
 from base import InputError, RangeWarning
-from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
+from ehl import Meniscus, OilLayer, solve, solve_path
+from tests.ehl.films import quiet, sound
+from tests.validation.article import OIL, PITCH
 
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
-FACE = 0.04
 B = PITCH.half_width
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
-
-
-def sound(film):
-    assert film.converged, film.message
-    assert film.load_error < 1e-12
-    assert film.flux_error < 1e-8
-    assert (film.pressure >= 0).all()
-    assert (film.thickness > 0).all()
-    return film
 
 
 FLOODED = quiet(PITCH)

@@ -5,14 +5,6 @@ import pytest
 
 import fem
 from fem.flamant import hertz_indentation
-from gears import Gear, GearPair
-
-
-@pytest.fixture(scope="session")
-def article_pair():
-    return GearPair(
-        Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), module=2e-3, face_width=40e-3
-    )
 
 
 @pytest.fixture(scope="session")

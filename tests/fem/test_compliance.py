@@ -10,9 +10,10 @@ from base import InputError
 from gears import BasicRack, Gear, GearPair, Material
 from meshes import Sizes
 from tests.fem.conftest import true_error
+from tests.validation.article import PAIR
 
 PAIRS = {
-    "article": GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04),
+    "article": PAIR,
     "form circle": GearPair(Gear(17), Gear(43), 2e-3, 0.04),
     "high contact ratio": GearPair(Gear(60), Gear(80), 2e-3, 0.04, BasicRack(1.3, 1.55, 0.3, np.radians(18))),
     "chamfer": GearPair(Gear(30, tip_chamfer=2e-4), Gear(40, tip_chamfer=2e-4), 2e-3, 0.04),

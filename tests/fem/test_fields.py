@@ -16,7 +16,7 @@ from fem.flamant import hertz_half_width
 from fem.picture import picture_of
 from fem.ring import mesh_and_factor
 from fem.tooth_root import root_stress
-from fem.vtk import _rounded, _stored, _write_grid, write_vtk_series
+from fem.vtk import rounded, single_precision, write_grid, write_vtk_series
 from meshes import Sizes
 
 
@@ -336,14 +336,14 @@ def test_stored_numbers_are_as_exact_as_promised(tmp_path):
     values[:3] = 0.0, np.nan, -1.5
     places = rng.normal(size=(500, 3)).astype(np.float32)
     grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: np.arange(500)[:, None]}, places)
-    grid["exact_m"], grid["rough_Pa"] = _stored(values), _rounded(_stored(values))
-    _write_grid(tmp_path / "a.vtu", grid)
+    grid["exact_m"], grid["rough_Pa"] = single_precision(values), rounded(single_precision(values))
+    write_grid(tmp_path / "a.vtu", grid)
     back = pyvista.read(tmp_path / "a.vtu")
     np.testing.assert_allclose(back["exact_m"], values, rtol=1e-7)
     np.testing.assert_allclose(back["rough_Pa"], values, rtol=2.5e-4)
     np.testing.assert_array_equal(back.points, places)
     assert meshio.read(tmp_path / "a.vtu").points.shape == (500, 3)
-    _write_grid(tmp_path / "b.vtu", pyvista.UnstructuredGrid())
+    write_grid(tmp_path / "b.vtu", pyvista.UnstructuredGrid())
     assert pyvista.read(tmp_path / "b.vtu").n_points == 0
 
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
+from tests.flankfilm.program import EXAMPLES, flankfilm
 
 pytestmark = pytest.mark.xdist_group("article")
 
@@ -21,13 +18,8 @@ pytestmark = pytest.mark.xdist_group("article")
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("article")
-    subprocess.run(
-        [str(SCRIPT), "run", str(EXAMPLES / "article.toml"), "--out", str(out / "first")],
-        check=True,
-        timeout=280,
-        env={**os.environ, "FLANKFILM_CACHE": str(out / "cache")},
-        capture_output=True,
-    )
+    cache = str(out / "cache")
+    flankfilm("run", EXAMPLES / "article.toml", "--out", out / "first", FLANKFILM_CACHE=cache)
     return out
 
 
@@ -99,14 +91,8 @@ def test_fields_open_in_vtk_with_sensible_names(folder):
 
 
 def test_a_second_run_takes_the_stages_from_the_cache_and_gives_the_same_numbers(folder, results):
-    done = subprocess.run(
-        [str(SCRIPT), "run", str(EXAMPLES / "article.toml"), "--out", str(folder / "second")],
-        check=True,
-        timeout=280,
-        env={**os.environ, "FLANKFILM_CACHE": str(folder / "cache")},
-        capture_output=True,
-        text=True,
-    )
+    cache = str(folder / "cache")
+    done = flankfilm("run", EXAMPLES / "article.toml", "--out", folder / "second", FLANKFILM_CACHE=cache)
     assert done.stderr == ""
     assert "kept from an earlier run" in (folder / "second" / "report.html").read_text(encoding="utf-8")
     with xr.open_dataset(folder / "second" / "results.nc", engine="h5netcdf") as again:

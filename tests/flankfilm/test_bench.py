@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -25,8 +24,7 @@ from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
 from flankfilm.bench.tables import read_bench, remarks, summaries, write_tables
 from flankfilm.figures.bench import error_against_cost
-
-SCRIPT = Path(sys.executable).with_name("flankfilm")
+from tests.flankfilm.program import flankfilm
 
 
 def trapezoids(count: int) -> tuple[int, float]:
@@ -238,14 +236,11 @@ def test_solvers_whose_work_no_other_program_knows_are_told(tmp_path):
         bench(tmp_path / "new", ["gears"], against=sys.executable)
 
 
-def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [str(SCRIPT), "bench", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=folder, check=False)
-
-
 def test_the_command_measures_and_writes(tmp_path):
-    done = run(tmp_path, "--quick", "--only", "gears", "mesh", "--repeat", "1", "--out", "out")
-    assert (done.returncode, done.stderr) == (0, "")
+    done = flankfilm(
+        "bench", "--quick", "--only", "gears", "mesh", "--repeat", "1", "--out", "out", cwd=tmp_path
+    )
+    assert done.stderr == ""
     assert "Closed forms" in done.stdout
     found = json.loads((tmp_path / "out" / "bench.json").read_text())
     assert [case["solver"] for case in found["cases"]] == ["gears", "mesh"]
@@ -261,8 +256,8 @@ def test_the_command_measures_and_writes(tmp_path):
 
 
 def test_faults_of_the_command_give_status_2_and_no_traceback(tmp_path):
-    done = run(tmp_path, "--only", "wings", "motion", "--against", "no-such-python")
-    assert done.returncode == 2
+    done = flankfilm(
+        "bench", "--only", "wings", "motion", "--against", "no-such-python", cwd=tmp_path, status=2
+    )
     assert "2 faults" in done.stderr
-    assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []

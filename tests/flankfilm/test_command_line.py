@@ -12,26 +12,7 @@ from pathlib import Path
 import pytest
 
 from flankfilm.scene import template
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
-
-
-def flankfilm(
-    *arguments: object, cwd: Path, status: int = 0, **environment: str
-) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run(
-        [str(SCRIPT), *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        env={**os.environ, **environment},
-        timeout=280,
-        check=False,
-    )
-    assert done.returncode == status, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
+from tests.flankfilm.program import EXAMPLES, flankfilm
 
 
 def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:

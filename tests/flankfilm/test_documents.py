@@ -23,10 +23,11 @@ from rich.console import Console
 
 from base import Fault
 from flankfilm.cli import app
+from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
+from tests.validation.article import ISHIKAWA_MEAN, PER_MM_UM
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 PACKAGES = (
     "gears",
@@ -217,20 +218,13 @@ def test_the_version_to_cite_is_this_one():
 
 
 def test_all_examples_are_valid_scenes_and_studies_stand_apart():
-    for scene in sorted((ROOT / "examples").glob("*.toml")):
-        subprocess.run([str(SCRIPT), "check", str(scene)], check=True, timeout=60, capture_output=True)
+    for scene in sorted(EXAMPLES.glob("*.toml")):
+        flankfilm("check", scene)
 
 
 def test_the_way_of_many_papers_runs(tmp_path):
-    done = subprocess.run(
-        [str(SCRIPT), "run", str(ROOT / "examples" / "independent_pairs.toml"), "--out", "out"],
-        check=True,
-        timeout=120,
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "FLANKFILM_CACHE": str(tmp_path / "cache")},
-    )
+    scene, cache = EXAMPLES / "independent_pairs.toml", str(tmp_path / "cache")
+    done = flankfilm("run", scene, "--out", "out", cwd=tmp_path, FLANKFILM_CACHE=cache)
     assert "error unknown" in done.stdout
     with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as found:
-        assert float(found.dry_secant_stiffness.mean()) / 40e6 == pytest.approx(23.44, rel=0.005)
+        assert float(found.dry_secant_stiffness.mean()) / PER_MM_UM == pytest.approx(ISHIKAWA_MEAN, rel=0.005)

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import meshio
 import numpy as np
 import pytest
@@ -15,21 +11,13 @@ from flankfilm.cache import Cache
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE
 from flankfilm.stages.engine import Engine
+from tests.flankfilm.program import EXAMPLES, flankfilm
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "article.toml"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
+EXAMPLE = EXAMPLES / "article.toml"
 
 
 def export(*arguments, status=0):
-    done = subprocess.run(
-        [str(SCRIPT), "export", str(EXAMPLE), *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == status, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
+    return flankfilm("export", EXAMPLE, *arguments, status=status)
 
 
 def test_both_gears_are_written_with_forces_that_balance_the_torque(tmp_path):

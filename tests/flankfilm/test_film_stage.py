@@ -11,24 +11,12 @@ from flankfilm.coupling import LubricatedCycle
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
+from tests.flankfilm.scenes import ARTICLE
 
-SCENE = """
+SCENE = f"""
 wants = ["film"]
 tolerance = 0.005
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36, bore_mm = 33.5 }
-wheel = { teeth = 40, bore_mm = 37.5 }
-[material]
-youngs_modulus_GPa = 200.2
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 600
-pinion_speed_rpm = 2000
-[lubricant]
-viscosity_Pa_s = 0.075
-pressure_viscosity_per_GPa = 19.6
+{ARTICLE}
 [stiffness]
 model = "ishikawa"
 [film]

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,17 +9,15 @@ import xarray as xr
 
 from base import InputError
 from flankfilm.scene import parse_scene
+from tests.flankfilm.program import EXAMPLES, flankfilm
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "real_flanks.toml"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
+EXAMPLE = EXAMPLES / "real_flanks.toml"
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("real") / "out"
-    done = subprocess.run(
-        [str(SCRIPT), "run", str(EXAMPLE), "--out", str(folder)], capture_output=True, text=True, check=True
-    )
+    done = flankfilm("run", EXAMPLE, "--out", folder)
     assert "greatest root stress" in done.stdout
     return folder
 

@@ -15,24 +15,9 @@ from flankfilm.scene import parse_scene
 from flankfilm.studies.plan import StudyFile, plan_of
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
+from tests.flankfilm.scenes import ishikawa
 
-SCENE = """
-title = "<script>alert(1)</script>"
-wants = ["closed-forms", "stiffness"]
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 600
-[stiffness]
-model = "ishikawa"
-pairs = "independent"
-"""
+SCENE = ishikawa("<script>alert(1)</script>", "closed-forms", "stiffness")
 
 
 def text_of(html):

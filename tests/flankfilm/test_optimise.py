@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -22,9 +20,9 @@ from flankfilm.scene import read_scene
 from flankfilm.scene.reader import validated
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.row import RowResult
+from tests.flankfilm.program import flankfilm
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
 
 SHIFT = """
 [vary]
@@ -157,12 +155,7 @@ def test_a_wide_tolerance_is_not_narrowed_far_away(tmp_path):
 
 def test_the_command_writes_a_scene_that_runs(tmp_path):
     path = task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 24')
-    done = subprocess.run(
-        [str(SCRIPT), "optimise", str(path), "--out", str(tmp_path / "out"), "--workers", "1"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    done = flankfilm("optimise", path, "--out", tmp_path / "out", "--workers", 1)
     assert "specific_sliding" in done.stdout
     raw = tomllib.loads((tmp_path / "out" / "optimum.toml").read_text(encoding="utf-8"))
     best = pd.read_csv(tmp_path / "out" / "optimum.csv")

@@ -16,28 +16,13 @@ from base import InputError
 from flankfilm.reproduce import scene_in
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
+from tests.flankfilm.scenes import ishikawa
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("flankfilm", "base", "gears", "meshes", "fem", "ehl", "dynamics")
 
-# nothing that numba compiles, which would take most of the time
-SMALL = """
-title = '../../x<script>alert(1)</script>"; import os'
-wants = ["closed-forms", "stiffness", "fourier"]
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 600
-[stiffness]
-model = "ishikawa"
-pairs = "independent"
-"""
+SMALL = ishikawa("X", "closed-forms", "stiffness", "fourier")
+SMALL = SMALL.replace('"X"', "'../../x<script>alert(1)</script>\"; import os'")
 
 MOTION = """
 wants = ["sweep"]

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -21,9 +20,7 @@ from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.run import run_study
 from flankfilm.studies.table import Columns, append, locked, read_lines
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-SCRIPT = Path(sys.executable).with_name("flankfilm")
+from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
 
 GEOMETRY = """
 scene = "{scene}"
@@ -45,13 +42,8 @@ def study_file(folder, vary, design="grid", more=""):
 SHIFTS = '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4, steps = 4 }'
 
 
-def run(*arguments, status=0, **more):
-    done = subprocess.run(
-        [str(SCRIPT), "study", *map(str, arguments)], capture_output=True, text=True, check=False, **more
-    )
-    assert done.returncode == status, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
+def run(*arguments, **more):
+    return flankfilm("study", *arguments, **more)
 
 
 class TestDesign:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from gears import Gear, GearPair, GeometryError, TipRelief, check_meshing, outline
+from gears.profile import ToothProfile
 
 PAIRS = {
     "article": (Gear(36), Gear(40), None),
@@ -40,34 +42,33 @@ def test_without_backlash_both_flanks_touch():
     assert abs(found.back_clearance) < 1e-15
 
 
+class Bent(ToothProfile):
+    """A tooth whose flank is off by a nanometre at one end."""
+
+    def half_angle(self, radius):
+        return super().half_angle(radius) + 1e-9 / 0.04 * (radius / 0.04 - 1)
+
+
 def test_the_check_sees_a_wrong_flank(monkeypatch, article_pair):
-    """A flank that is off by a nanometre at one end shows in the transmitted angle."""
-    import gears.meshing as meshing
-
-    true = meshing._wheel_angles
-
-    def bent(pair, points, side):
-        radius = np.hypot(points[..., 0], pair.working_centre_distance - points[..., 1])
-        return true(pair, points, side) + 1e-9 / 0.04 * (radius / 0.04 - 1)
-
-    monkeypatch.setattr(meshing, "_wheel_angles", bent)
+    """A nanometre shows in the transmitted angle."""
+    first, second = article_pair.teeth_profiles
+    bent = Bent(**{field.name: getattr(second, field.name) for field in fields(second) if field.init})
+    monkeypatch.setattr(GearPair, "teeth_profiles", property(lambda pair: (first, bent)))
     assert check_meshing(article_pair, positions=5).angle_deviation > 1e-10
 
 
-def test_the_check_sees_a_tip_in_the_fillet(article_pair):
+def test_the_check_sees_a_tip_in_the_fillet(monkeypatch, article_pair):
     """Teeth moved together by more than the clearance overlap."""
-    import gears.meshing as meshing
+    distance = article_pair.working_centre_distance
 
-    first = article_pair.teeth_profiles[0]
-    close = article_pair.placement(article_pair.points.C)
-    seen = meshing._seen_by_mate(article_pair, 1, close.pinion_angle, close.wheel_angle - math.pi)
-    assert meshing._tip_clearance(seen, first) > 0
-    assert meshing._tip_clearance(seen - np.array([0.0, 0.6e-3]), first) < 0
-    whole = meshing._seen_by_mate(
-        article_pair, 1, close.pinion_angle, close.wheel_angle - math.pi, whole=True
-    )
-    assert meshing._overlap(whole, first) < 1e-12
-    assert meshing._overlap(whole - np.array([0.0, 0.1e-3]), first) > 1e-5
+    def nearer(by):
+        monkeypatch.setattr(GearPair, "working_centre_distance", property(lambda pair: distance - by))
+        return check_meshing(article_pair, positions=5)
+
+    assert min(nearer(0.0).tip_clearances) > 0
+    assert max(nearer(0.6e-3).tip_clearances) < 0
+    assert nearer(0.0).overlap < 1e-12
+    assert nearer(0.1e-3).overlap > 1e-5
 
 
 def area(polygon):

@@ -9,10 +9,8 @@ import pytest
 
 from base import RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
-
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
-PITCH = LineContact(load=4.434e5, entrainment=2.579, radius=6.48e-3, reduced_modulus=2.2e11, lubricant=OIL)
-SECTION_2 = LineContact(1e5, 1.0, 0.015, 2.2e11, Lubricant(0.06, 22.6e-9, 910.0))
+from tests.ehl.films import sound
+from tests.validation.article import PITCH, SECTION_2
 
 
 @pytest.fixture(autouse=True)
@@ -20,16 +18,6 @@ def _known_warnings():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
         yield
-
-
-def sound(film):
-    assert film.converged, film.message
-    assert film.load_error < 1e-12
-    assert film.flux_error < 1e-8
-    assert (film.pressure >= 0).all()
-    assert (film.thickness > 0).all()
-    assert film.minimum_thickness > 0
-    return film
 
 
 def refused(film):

@@ -23,8 +23,8 @@ from gears import (
 
 
 @pytest.fixture(scope="module")
-def pair():
-    return GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
+def pair(article_pair):
+    return article_pair
 
 
 @pytest.fixture(scope="module")

@@ -6,15 +6,12 @@ import pytest
 
 from base import RangeWarning
 from ehl import (
-    LineContact,
-    Lubricant,
     dowson,
     dowson_higginson_minimum,
     dowson_toyoda_central,
     solve,
 )
-
-PITCH = LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, Lubricant(0.075, 19.6e-9))
+from tests.validation.article import PITCH
 
 
 def test_formulas_by_hand():

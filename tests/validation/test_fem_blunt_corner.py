@@ -16,31 +16,32 @@ import pytest
 
 import fem
 from fem.ring import mesh_and_factor
-from gears import Gear, GearPair
 from meshes import Sizes
+from tests.validation.article import PER_MM_UM
 
 
 def at_pitch_point(pair, cycle):
     C = (pair.points.C - pair.points.A) / pair.base_pitch
     edge = np.where(cycle.edge, cycle.forces, 0.0).max(axis=1) / 40.0
     return (
-        float(np.interp(C, cycle.position, cycle.secant_stiffness) / 4e7),
+        float(np.interp(C, cycle.position, cycle.secant_stiffness) / PER_MM_UM),
         float(np.interp(C, cycle.position, edge)),
     )
 
 
-def test_strips_as_wide_as_elements_press_as_elements_do(monkeypatch):
-    pair = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
-    bodies = fem.compliance(pair)
-    rings = mesh_and_factor(pair, "strain", Sizes(), 1)
+def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypatch):
+    bodies = fem.compliance(article_pair)
+    rings = mesh_and_factor(article_pair, "strain", Sizes(), 1)
     tip = sys.modules["fem.tip_strips"]
     stiffness, force = [], []
     for width in (0.2e-6, 10e-6, 30e-6, 60e-6):
-        monkeypatch.setattr(tip, "FIRST_EDGE", width / pair.module)
-        monkeypatch.setattr(tip, "RESOLVED", min(0.01, 0.2 * width / pair.module) if width > 1e-6 else 0.01)
-        tips = [tip.tip_strips(*both) for both in zip(rings, pair.teeth_profiles, strict=True)]
-        cycle = fem.mesh_cycle(pair, 600.0, 200, replace(bodies, tips=tuple(tips)))
-        k, edge = at_pitch_point(pair, cycle)
+        monkeypatch.setattr(tip, "FIRST_EDGE", width / article_pair.module)
+        monkeypatch.setattr(
+            tip, "RESOLVED", min(0.01, 0.2 * width / article_pair.module) if width > 1e-6 else 0.01
+        )
+        tips = [tip.tip_strips(*both) for both in zip(rings, article_pair.teeth_profiles, strict=True)]
+        cycle = fem.mesh_cycle(article_pair, 600.0, 200, replace(bodies, tips=tuple(tips)))
+        k, edge = at_pitch_point(article_pair, cycle)
         stiffness.append(k)
         force.append(edge)
     assert np.all(np.diff(stiffness) > 0)
@@ -49,11 +50,10 @@ def test_strips_as_wide_as_elements_press_as_elements_do(monkeypatch):
     assert abs(33.0 - force[2]) < 1 / 3 * (33.0 - force[0])  # at least two thirds of the way
 
 
-def test_a_round_edge_presses_less():
-    pair = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
-    bodies = fem.compliance(pair)
+def test_a_round_edge_presses_less(article_pair):
+    bodies = fem.compliance(article_pair)
     found = [
-        at_pitch_point(pair, fem.mesh_cycle(pair, 600.0, 200, bodies, tip_rounding=r))
+        at_pitch_point(article_pair, fem.mesh_cycle(article_pair, 600.0, 200, bodies, tip_rounding=r))
         for r in (0.0, 20e-6, 50e-6)
     ]
     assert found[0][0] > found[1][0] > found[2][0]

@@ -22,7 +22,6 @@ import fem
 import fem.elasticity
 from fem.export import write_abaqus
 from fem.loaded_gears import loaded_gears
-from gears import Gear, GearPair
 
 CCX = shutil.which("ccx")
 REQUIRED = os.environ.get("FLANKFILM_REQUIRE_CCX") == "1"
@@ -69,11 +68,6 @@ def apart(a, b):
     largest, mean = np.abs(a - b).max() / np.abs(b).max(), float(np.linalg.norm(a - b) / np.linalg.norm(b))
     print(f"{len(a)} nodes: largest difference {largest:.1e}, root mean square {mean:.1e}")
     return largest, mean
-
-
-@pytest.fixture(scope="module")
-def article_pair():
-    return GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
 
 
 @pytest.fixture(scope="module")

@@ -13,29 +13,27 @@ import numpy as np
 import pytest
 
 import fem
-from gears import Gear, GearPair
+from tests.validation.article import PER_MM_UM, TORQUE
 
 
 @pytest.fixture(scope="module")
-def pair():
-    return GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
-
-
-@pytest.fixture(scope="module")
-def cycles(pair):
-    bodies = fem.compliance(pair)
+def cycles(article_pair):
+    bodies = fem.compliance(article_pair)
     # 200 positions: 0.1, 0.25 and so on of the base pitch lie within half an interval of a row
-    return {beyond: fem.mesh_cycle(pair, 600.0, 200, bodies, beyond_path=beyond) for beyond in (False, True)}
+    return {
+        beyond: fem.mesh_cycle(article_pair, TORQUE, 200, bodies, beyond_path=beyond)
+        for beyond in (False, True)
+    }
 
 
 def at(cycle, place, values):
     return np.interp(place, cycle.position, values)
 
 
-def test_held_to_the_path(pair, cycles):
+def test_held_to_the_path(article_pair, cycles):
     held = cycles[False]
-    C = (pair.points.C - pair.points.A) / pair.base_pitch
-    k = held.secant_stiffness / 4e7
+    C = (article_pair.points.C - article_pair.points.A) / article_pair.base_pitch
+    k = held.secant_stiffness / PER_MM_UM
     assert at(held, C, k) == pytest.approx(14.832, rel=0.0015)
     assert at(held, 0.25, k) == pytest.approx(21.167, rel=0.0015)
     assert at(held, 0.10, k) == pytest.approx(20.886, rel=0.0015)
@@ -43,10 +41,10 @@ def test_held_to_the_path(pair, cycles):
     assert at(held, 0.10, held.load_share[:, 0]) == pytest.approx(0.4268, rel=0.003)
 
 
-def test_neighbours_free_to_touch(pair, cycles):
+def test_neighbours_free_to_touch(article_pair, cycles):
     free = cycles[True]
-    C = (pair.points.C - pair.points.A) / pair.base_pitch
-    k = free.secant_stiffness / 4e7
+    C = (article_pair.points.C - article_pair.points.A) / article_pair.base_pitch
+    k = free.secant_stiffness / PER_MM_UM
     assert at(free, C, k) == pytest.approx(15.67, rel=0.004)
     assert at(free, 0.25, k) == pytest.approx(21.167, rel=0.0015)
     assert at(free, 0.75, k) == pytest.approx(19.3, rel=0.004)
@@ -54,9 +52,9 @@ def test_neighbours_free_to_touch(pair, cycles):
     assert k.mean() == pytest.approx(20.2, rel=0.005)
 
 
-def test_forces_on_the_tip_edges(pair, cycles):
+def test_forces_on_the_tip_edges(article_pair, cycles):
     free = cycles[True]
-    C = (pair.points.C - pair.points.A) / pair.base_pitch
+    C = (article_pair.points.C - article_pair.points.A) / article_pair.base_pitch
     per_mm = np.where(free.edge, free.forces, 0.0) / 40.0
     # 33 of 443 N/mm on the neighbour behind: a small force, and the most sensitive to the corner's sharpness
     assert at(free, C, per_mm.max(axis=1)) == pytest.approx(33.0, rel=0.12)

@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 import fem
-from gears import Gear, GearPair
+from tests.validation.article import PAIR
 
-PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
 C = (PAIR.points.C - PAIR.points.A) / PAIR.base_pitch
 
 FREE = {C: (15.613, -1, 30.0), 0.75: (19.340, 1, 148.8), 0.95: (19.414, -1, 147.2)}

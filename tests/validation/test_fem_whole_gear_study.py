@@ -50,7 +50,7 @@ def test_displacement_on_the_centre_line(teeth, radius, reference):
     crossing = load - load[0] / inward[0] * inward
     nodes, weights = inside(mesh, crossing)
     full = np.zeros(mesh.unknowns)
-    full[ring.inner] = loads._inner(0)[:, 0]
+    full[ring.inner] = loads.inner(0)[:, 0]
     moved = weights @ full.reshape(-1, 2)[nodes]
     moved = moved + flamant.displacement(crossing[None], load, inward, LAW, mesh.module)[0]
     # um per N/mm: 1 N/mm is 1000 N/m, and 1e6 um to the metre

@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 from base import RangeWarning
-from ehl import LineContact, Lubricant, solve
-
-OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9)
-PITCH = LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, OIL)
+from ehl import solve
+from tests.validation.article import OIL, PITCH
 
 
 def films(contacts, **options):

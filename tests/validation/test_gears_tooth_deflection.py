@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from gears import STEEL, BasicRack, Gear, closed_form
-from gears.closed_form.half_plane import _body, _tooth
+from gears.closed_form.half_plane import body_compliance, tooth_compliance
 from gears.closed_form.loaded_tooth import LoadedTooth
 from gears.profile import generate
 
@@ -37,5 +37,5 @@ def test_weber_banaschek_with_the_twist_of_the_ring(z, radius, known, low, high)
     tooth = LoadedTooth(profile, STEEL, np.array([rho]))
     bore = profile.root_radius / 1.4
     twist = closed_form.ring_wind_up(profile.root_radius, bore, profile.base_radius, STEEL.shear_modulus)
-    found = 1e9 * (float((_tooth(tooth, 1.0) + _body(tooth, 1.0))[0]) + twist)
+    found = 1e9 * (float((tooth_compliance(tooth, 1.0) + body_compliance(tooth, 1.0))[0]) + twist)
     assert low <= found / known - 1 <= high

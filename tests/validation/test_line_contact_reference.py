@@ -7,12 +7,11 @@ contacts was found. Roelands (p0 = 1.96e8 Pa) with Dowson-Higginson density; fil
 is the domain [-15, 2.5] half-widths, 'near' is [-4, 1.5].
 """
 
-import warnings
-
 import pytest
 
-from base import RangeWarning
-from ehl import LineContact, Lubricant, solve
+from ehl import LineContact
+from tests.ehl.films import quiet
+from tests.validation.article import PITCH, SECTION_2
 
 DOMAINS = {"far": (-15.0, 2.5), "near": (-4.0, 1.5)}
 Z68 = {"roelands_z": 0.68, "pressure_viscosity": 22e-9}
@@ -24,8 +23,8 @@ CONTACTS = {
     "M20 L10 incompressible": LineContact.from_moes(20.0, 10.0, compressible=False, **Z68),
     "M100 L10": LineContact.from_moes(100.0, 10.0, **Z68),
     "2 GPa": LineContact.from_moes(60.89, 12.849, roelands_z=0.608, pressure_viscosity=20e-9),
-    "w 1e5 N/m": LineContact(1e5, 1.0, 0.015, 2.2e11, Lubricant(0.06, 22.6e-9)),
-    "gear pitch point": LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, Lubricant(0.075, 19.6e-9)),
+    "w 1e5 N/m": SECTION_2,
+    "gear pitch point": PITCH,
 }
 # name: p_H [GPa], far (h_cen, h_min), near (h_cen, h_min), far x_min, far x_exit
 TABLE = {
@@ -39,12 +38,6 @@ TABLE = {
     "gear pitch point": (1.548, (5.8877, 5.2742), (5.8562, 5.2504), 0.952, 1.105),
 }
 SPIKES = {"M20 L10": (0.9447, 0.9025), "w 1e5 N/m": (1.4321, 0.6897)}  # p/p_H and x/b
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
 
 
 @pytest.mark.parametrize("name", TABLE)

@@ -1,10 +1,7 @@
 """Other film formulas of line contacts: Pan and Hamrock (1989), Nijenbanning, Venner and Moes (1994)."""
 
-import warnings
-
 import pytest
 
-from base import RangeWarning
 from ehl import (
     LineContact,
     Lubricant,
@@ -12,14 +9,8 @@ from ehl import (
     nijenbanning_line_central,
     pan_hamrock_central,
     pan_hamrock_minimum,
-    solve,
 )
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
+from tests.ehl.films import quiet
 
 
 def steel(W, U, G):

@@ -5,20 +5,13 @@ here the constant is derived anew by quadrature.
 """
 
 import math
-import warnings
 
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from base import RangeWarning
-from ehl import LineContact, Lubricant, solve
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
+from ehl import LineContact, Lubricant
+from tests.ehl.films import quiet
 
 
 def half_sommerfeld_with_reynolds_exit():

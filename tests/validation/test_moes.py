@@ -4,18 +4,10 @@ The formula is a fit for incompressible oil with Barus' viscosity; its own accur
 regimes.
 """
 
-import warnings
-
 import pytest
 
-from base import RangeWarning
-from ehl import LineContact, moes_central, solve
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
+from ehl import LineContact, moes_central
+from tests.ehl.films import quiet
 
 
 def test_formula_by_hand():

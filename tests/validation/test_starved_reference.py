@@ -6,22 +6,12 @@ film below 0.1 um, the published criterion of starvation, needs the meniscus at 
 0.11 um. Its films are given to two digits only, which is what the tolerance allows for.
 """
 
-import warnings
-
 import numpy as np
 import pytest
 
-from base import RangeWarning
-from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve
-
-PITCH = LineContact(4.434e5, 2.579, 6.48e-3, 2.2e11, Lubricant(0.075, 19.6e-9))
-FACE = 0.04
-
-
-def quiet(contact, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        return solve(contact, **options)
+from ehl import Meniscus, OilLayer
+from tests.ehl.films import quiet
+from tests.validation.article import FACE, PITCH
 
 
 def test_stiffness_of_the_starved_film_with_the_meniscus_held():

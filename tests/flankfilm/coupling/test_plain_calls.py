@@ -20,25 +20,11 @@ from flankfilm.coupling import LubricatedCycle, MeshCycle
 from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
 from flankfilm.stages.engine import Engine
 
-SCENE = """
+HEAD = """
 wants = [WANTS]
 tolerance = 0.01
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36, bore_mm = 33.5 }
-wheel = { teeth = 40, bore_mm = 37.5 }
-backlash_um = 50
-[material]
-youngs_modulus_GPa = 200.2
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 600
-pinion_speed_rpm = 2000
-[lubricant]
-viscosity_Pa_s = 0.075
-pressure_viscosity_per_GPa = 19.6
-density_kg_per_m3 = 910
+"""
+MODELS = """
 [stiffness]
 model = "MODEL"
 [film]
