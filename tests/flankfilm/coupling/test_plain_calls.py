@@ -19,6 +19,7 @@ from flankfilm.cache import Cache
 from flankfilm.coupling import LubricatedCycle, MeshCycle
 from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
 from flankfilm.stages.engine import Engine
+from tests.flankfilm.scenes import ARTICLE
 
 HEAD = """
 wants = [WANTS]
@@ -34,6 +35,7 @@ error_amplitude_um = 10
 sweep = { speed_rpm = [15000, 16000], points = 3 }
 diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
 """
+SCENE = HEAD + ARTICLE.replace("[material]", "backlash_um = 50\n[material]") + MODELS
 
 
 def scene_of(model: str, film: str) -> ff.Scene:
