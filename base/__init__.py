@@ -14,7 +14,18 @@ from base.faults import (
 )
 from base.files import replacing, sweep_temporaries
 from base.limits import Faults, Limit
-from base.results import Figure, Quantity, Result, described, quantities, quantity, record, show_with, view
+from base.results import (
+    Figure,
+    Quantity,
+    Result,
+    described,
+    part,
+    quantities,
+    quantity,
+    record,
+    show_with,
+    view,
+)
 
 __all__ = [
     "Array",
@@ -35,6 +46,7 @@ __all__ = [
     "Stopwatch",
     "described",
     "hide_compilation",
+    "part",
     "quantities",
     "quantity",
     "record",

@@ -23,6 +23,7 @@ __all__ = [
     "Result",
     "described",
     "headline",
+    "part",
     "quantities",
     "quantity",
     "record",
@@ -91,7 +92,17 @@ class Figure:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A figure with its name and value."""
+    """A figure with its name and value.
+
+    Attributes
+    ----------
+    name : str
+        Of the record's field or property.
+    figure : Figure
+        What it is.
+    value : Any
+        SI.
+    """
 
     name: str
     figure: Figure
@@ -133,6 +144,34 @@ def quantity(
     return field(default=default, metadata=about)
 
 
+def part(
+    meaning: str, *, default: Any = dataclasses.MISSING, default_factory: Any = dataclasses.MISSING
+) -> Any:
+    """Field of a `record` that is no figure: another record, several of them, a choice.
+
+    Parameters
+    ----------
+    meaning : str
+        In words; the class's documentation shows it.
+    default, default_factory
+        As of `dataclasses.field`.
+
+    Examples
+    --------
+    >>> @record
+    ... class Gear:
+    ...     '''A gear.'''
+    ...
+    ...     tool: str = part("the tool that cuts it")
+    >>> "the tool that cuts it." in Gear.__doc__
+    True
+    """
+    about = {"meaning": meaning}
+    if default_factory is not dataclasses.MISSING:
+        return field(default_factory=default_factory, metadata=about)
+    return field(default=default, metadata=about)
+
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -163,7 +202,7 @@ def described(unit: str, dims: str = "", *, shown: str = "", error: str = "") ->
     return mark
 
 
-@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(quantity, field))
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(quantity, part, field))
 def record(cls: type[T]) -> type[T]:
     """Make a class a frozen record: a dataclass compared by identity, shown in one line, documented by its fields.
 
@@ -247,18 +286,31 @@ def _unit(figure: Figure | None) -> str:
 
 
 def _documented(cls: type) -> str:
-    """Docstring with a section of attributes for what `quantity` describes, where there is none written."""
+    """Docstring with a section of attributes for what is described where it stands, unless there is one written."""
     text = (cls.__doc__ or "").rstrip()
-    described_fields = [f for f in dataclasses.fields(cls) if "figure" in f.metadata]
-    if not described_fields or "Attributes\n" in text:
+    about = [(f, meaning) for f in dataclasses.fields(cls) if (meaning := meaning_of(f))]
+    if not any({"figure", "meaning"} & set(f.metadata) for f, _ in about) or "Attributes\n" in text:
         return text
     lines = ["", "", "    Attributes", "    ----------"]
-    for one in described_fields:
-        figure: Figure = one.metadata["figure"]
-        shape = f", ({', '.join(figure.dims)})" if figure.dims else ""
-        unit = f" [{figure.unit}]" if figure.unit not in ("", "1") else ""
-        lines += [f"    {one.name} : {one.type}{shape}", f"        {figure.meaning}{unit}."]
+    for one, meaning in about:
+        figure: Figure | None = one.metadata.get("figure")
+        shape = f", ({', '.join(figure.dims)})" if figure is not None and figure.dims else ""
+        lines += [f"    {one.name} : {one.type}{shape}", f"        {meaning}{_in_brackets(figure)}."]
     return text + "\n".join(lines) + "\n    "
+
+
+def meaning_of(one: dataclasses.Field[Any]) -> str:
+    """What a record's field is, in words; of `error`, `cost` and so on that of every `Result`; else empty."""
+    if (figure := one.metadata.get("figure")) is not None:
+        return str(figure.meaning)
+    if "meaning" in one.metadata:
+        return str(one.metadata["meaning"])
+    common = getattr(Result, one.name, None)
+    return (common.__doc__ or "").rstrip(".") if isinstance(common, property) else ""
+
+
+def _in_brackets(figure: Figure | None) -> str:
+    return f" [{figure.unit}]" if figure is not None and figure.unit not in ("", "1") else ""
 
 
 _VIEWS: dict[str, str] = {}

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
+from base import Array, Cost, Faults, Integers, Stopwatch, part, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.exponents import stretch_rate
 from dynamics.homes import Homes
@@ -50,8 +50,9 @@ class BasinResult(AsArray):
     x: Array = quantity("1", "starting values of X", "x")
     v: Array = quantity("1", "starting values of V", "v")
     labels: Integers = quantity("1", "index into the attractors; -1 unsettled, -2 unbounded", "x v")
-    attractors: tuple[Attractor, ...]
-    """In the order in which they were found; all aperiodic motion counts as one."""
+    attractors: tuple[Attractor, ...] = part(
+        "in the order in which they were found; all aperiodic motion counts as one"
+    )
     error: float = quantity("1", "part of the starts unsettled plus the largest standard error of a share")
     cost: Cost
     converged: bool = quantity("1", "whether every start has settled")
@@ -132,17 +133,17 @@ def basins(
         labels[i] = found.follow(starts[i], wait)
         if progress is not None:
             progress(int(np.sum(labels != UNDECIDED)), len(labels))
-    for part in np.array_split(np.arange(len(starts)), min(len(starts), 50)):
-        mine, there = labels[part], starts[part]
+    for some in np.array_split(np.arange(len(starts)), min(len(starts), 50)):
+        mine, there = labels[some], starts[some]
         found.settle(there, wait, mine)
         if any(orbit is not None for orbit in found.orbits):
             found.settle(there, 2 * wait, mine)  # transient chaos outlives damping
         for i in np.flatnonzero(mine == UNDECIDED):
             mine[i] = found.follow(there[i], 0)
         found.settle(there, PATIENCE * wait, mine, UNSETTLED)
-        labels[part] = mine
+        labels[some] = mine
         if progress is not None:
-            progress(int(part[-1]) + 1, len(labels))
+            progress(int(some[-1]) + 1, len(labels))
     last = labels == UNSETTLED  # of the first starts: there were fewer attractors to come to
     if np.any(last):
         mine, there = labels[last], starts[last]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Booleans, Cost, quantity, record
+from base import Array, Booleans, Cost, part, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.special import SpecialPoint, of_kind
 
@@ -30,8 +30,7 @@ class Branch(AsArray):
     multipliers: npt.NDArray[np.complex128] = quantity("1", "Floquet multipliers", "point multiplier")
     stable: Booleans = quantity("1", "stability", "point")
     labels: tuple[str, ...] = quantity("", "n-p-q or Un-p-q", "point")
-    points: tuple[SpecialPoint, ...]
-    """Special points in their order along the branch."""
+    points: tuple[SpecialPoint, ...] = part("special points in their order along the branch")
     ended: tuple[str, str] = quantity("", "why the branch ended at its first and at its last point", "end")
     error: float = quantity("1", "largest estimated relative error of a special point's parameter")
     cost: Cost

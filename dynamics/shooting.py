@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Array, Cost, Faults, Stopwatch, part, quantity, record
 from dynamics.flow import checked_state
 from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
 from dynamics.protocol import EPS, Flow, MapResult, Oscillator
@@ -25,8 +25,7 @@ class Orbit:
 
     headline = ("label", "periods", "stable", "residual")
 
-    oscillator: Any
-    """What moves: a `GearOscillator` or a `SmoothOscillator`."""
+    oscillator: Any = part("what moves: a `GearOscillator` or a `SmoothOscillator`")
     state: Array = quantity("1", "X and V at tau = 0; nan if not converged", "coordinate")
     periods: int = quantity(
         "1", "least period n, in excitation periods; it may be a divisor of the number asked for"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, described, quantity, record
+from base import Array, Cost, Faults, described, part, quantity, record
 from ehl.contact import LineContact
 from ehl.regressions import formula_stiffness
 
@@ -58,19 +58,18 @@ class Spike:
 class Film:
     """A steady line-contact film; everything is per metre of face width.
 
-    Figures are NaN when ``converged`` is False; ``message`` then says what to do. ``supply`` is what was held at the
-    inlet, None where it is flooded; ``spike`` is None where the pressure has no narrow second maximum; ``state`` is
-    what a next solution starts from. ``cost.counts["restarts"]`` counts the starts that did not converge.
+    Figures are NaN when ``converged`` is False; ``message`` then says what to do.
+    ``cost.counts["restarts"]`` counts the starts that did not converge.
     """
 
     headline = ("central_thickness", "minimum_thickness", "separation")
 
-    contact: LineContact
+    contact: LineContact = part("the contact that was solved")
     x: Array = quantity("m", "place, 0 on the line of centres, oil enters at the left", "node", shown="um")
     pressure: Array = quantity("Pa", "pressure", "node", shown="GPa")
     thickness: Array = quantity("m", "film thickness", "node", shown="um")
     inlet: float = quantity("m", "place where the domain begins", shown="um")
-    errors: FilmErrors
+    errors: FilmErrors = part("estimated errors of its figures")
     cost: Cost
     converged: bool
     message: str
@@ -104,9 +103,11 @@ class Film:
         "1", "largest deviation of the mass flow inside the film, relative", default=math.nan
     )
     load_error: float = quantity("1", "error of the integral of the pressure, relative", default=math.nan)
-    supply: Supply | None = None
-    spike: Spike | None = None
-    state: State | None = None
+    supply: Supply | None = part("what is held at the inlet; None where it is flooded", default=None)
+    spike: Spike | None = part(
+        "second maximum of the pressure; None where there is no narrow one", default=None
+    )
+    state: State | None = part("what a next solution starts from", default=None)
 
     @property
     @described("1")

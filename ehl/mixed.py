@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from base import Cost, Fault, InputError, described, quantity, record, shorten
+from base import Cost, Fault, InputError, described, part, quantity, record, shorten
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film
@@ -37,9 +37,9 @@ class MixedFilm:
 
     headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")
 
-    contact: LineContact
-    roughness: Roughness
-    film: Film
+    contact: LineContact = part("the contact, with its whole load")
+    roughness: Roughness = part("of both surfaces together")
+    film: Film = part("film that carries the rest of the load")
     cost: Cost
     converged: bool
     message: str

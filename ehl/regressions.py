@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 
-from base import Cost, Fault, Faults, InputError, RangeWarning, described, quantity, record
+from base import Cost, Fault, Faults, InputError, RangeWarning, described, part, quantity, record
 from ehl.contact import LineContact
 
 _DEFINITIONS = ("dowson-central", "dowson-minimum")
@@ -175,7 +175,7 @@ class FormulaFilm:
     Its model error is unknown until it is compared with the solver; ``error`` says so with NaN.
     """
 
-    contact: LineContact
+    contact: LineContact = part("the contact that it is of")
     central_thickness: float = quantity("m", "central film by Dowson and Toyoda", shown="um")
     minimum_thickness: float = quantity("m", "minimum film by Dowson and Higginson", shown="um")
     error: float = math.nan

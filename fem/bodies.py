@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Cost, Faults, described, quantity, record
+from base import Array, Cost, Faults, described, part, quantity, record
 from fem.flamant import hertz_half_width, hertz_indentation
 from fem.gear_compliance import GearCompliance
 from fem.local_law import HertzApproach
@@ -29,30 +29,27 @@ PARTS = ("hub_windup", "coupling", "support")
 
 @record
 class Compliance:
-    """Compliance of both gears of a pair as functions of the contact's place.
-
-    ``pinion`` and ``wheel`` are held at the bore or hub, with all that is in ``left_out``; ``tips`` are those of
-    pinion and wheel, for contact of their edges outside the path. ``rings`` are kept in the process that computed
-    them only.
-    """
+    """Compliance of both gears of a pair as functions of the contact's place."""
 
     headline = ("plane", "refinements")
 
-    pair: GearPair
-    plane: str
-    pinion: GearCompliance
-    wheel: GearCompliance
-    tips: tuple[TipStrips, TipStrips]
+    pair: GearPair = part("the gears")
+    plane: str = part('"strain" or "stress"')
+    pinion: GearCompliance = part("of the pinion, held at the bore or hub")
+    wheel: GearCompliance = part("of the wheel, likewise")
+    tips: tuple[TipStrips, TipStrips] = part("tip edges of both gears, for contact outside the path")
     refinements: int = quantity("1", "refinements of the mesh in use")
-    sizes: Sizes  # of the mesh before it was refined
+    sizes: Sizes = part("of the mesh before it was refined")
     reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
     error: float = quantity("1", "estimated relative error of a pair's deflection, greatest along the path")
     cost: Cost
     converged: bool
     message: str
-    supports: tuple[Support, Support] = (FIXED, FIXED)
-    left_out: frozenset[str] = frozenset()
-    kept_rings: tuple[Ring, Ring] | None = None
+    supports: tuple[Support, Support] = part("how the bores of both are held", default=(FIXED, FIXED))
+    left_out: frozenset[str] = part("names of what was left out", default=frozenset())
+    kept_rings: tuple[Ring, Ring] | None = part(
+        "meshes and factors; kept in the process that computed them alone", default=None
+    )
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from base import Array, Booleans, Cost, Faults, Integers, Limit, described, quantity, record
+from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from gears import GearPair, half_width, peak_pressure
@@ -16,9 +16,7 @@ __all__ = ["MeshCycle", "check_row", "require_row"]
 class MeshCycle:
     """Some base pitches of a loaded pair; rows are positions, columns pairs in order of growing rho1.
 
-    ``pair`` and ``plane`` are as given; ``candidates`` holds the places, teeth, levers and unloaded gaps of all
-    contacts that were looked for, ``beyond_path`` says whether tip edges were among them. ``cost`` includes the
-    compliance if it was computed here; of several torques it is that of all together.
+    ``cost`` includes the compliance if it was computed here; of several torques it is that of all together.
     """
 
     headline = ("torque", "mean_stiffness", "mean_secant_stiffness")
@@ -69,14 +67,16 @@ class MeshCycle:
     secant_stiffness: Array = quantity(
         "N/m", "F/(D - D_0), D_0 the unloaded transmission error", "position", error="error"
     )
-    plane: str
-    beyond_path: bool
+    plane: str = part('"strain" or "stress", as of the compliance')
+    beyond_path: bool = part("whether tip edges were among the candidates")
     error: float = quantity("1", "estimated relative numerical error of stiffness and transmission error")
     cost: Cost
     converged: bool
     message: str
-    pair: GearPair
-    candidates: ContactCandidates
+    pair: GearPair = part("the gears, with their deviations")
+    candidates: ContactCandidates = part(
+        "places, teeth, levers and unloaded gaps of all contacts that were looked for"
+    )
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
 
     @property

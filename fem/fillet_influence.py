@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from base import Array, Cost, Faults, Integers, Limit, Stopwatch, quantity, record
+from base import Array, Cost, Faults, Integers, Limit, Stopwatch, part, quantity, record
 from fem import flamant
 from fem.elasticity import MIRROR, PlaneElasticity, check_plane
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
@@ -169,10 +169,10 @@ class Fillets:
 
     headline = ("plane", "fillet_edge")
 
-    pair: GearPair
-    plane: str
-    pinion: FilletInfluence
-    wheel: FilletInfluence
+    pair: GearPair = part("the gears")
+    plane: str = part('"strain" or "stress"')
+    pinion: FilletInfluence = part("influence on the fillets of the pinion")
+    wheel: FilletInfluence = part("influence on the fillets of the wheel")
     fillet_edge: float = quantity("1", "edge length on the fillets of the mesh in use, in modules")
     error: float = quantity(
         "1", "estimated relative error of the greatest stress on a fillet, from two nested meshes"

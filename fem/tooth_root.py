@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, Integers, Stopwatch, described, quantity, record
+from base import Array, Cost, Faults, Integers, Stopwatch, described, part, quantity, record
 from fem.contact import MeshCycle
 from fem.elasticity import MIRROR, PlaneElasticity
 from fem.fillet import FilletLine
@@ -174,8 +174,8 @@ class RootStress:
 
     headline = ("pinion_tension_Pa", "wheel_tension_Pa")
 
-    pinion: GearRootStress
-    wheel: GearRootStress
+    pinion: GearRootStress = part("of the pinion")
+    wheel: GearRootStress = part("of the wheel")
     error: float = quantity(
         "1",
         "estimated relative numerical error of the greatest stresses: of the fillets' mesh and of the forces",

@@ -96,7 +96,17 @@ class SqueezeFilm:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLaw(ABC):
-    """What laws with contacts on one or two sides have in common."""
+    """What laws with contacts on one or two sides have in common.
+
+    Attributes
+    ----------
+    half_backlash : float
+        Half the play between the contacts, at least 0.
+    film : SqueezeFilm
+        Damping by the oil in the gap; none unless given.
+    one_sided : bool
+        Whether the contact at negative X is left out.
+    """
 
     half_backlash: float
     film: SqueezeFilm = field(default_factory=SqueezeFilm)

@@ -52,7 +52,7 @@ class CompiledLaw:
         of the type `dynamics.kernels.stepwise.compiling.LAW`, which gives its own derivatives and is faster.
     parameters : tuple of (str, float)
         Names and values of q.
-    surfaces : tuple of Surface
+    surfaces_at : tuple of Surface
         Where the force is switched; bit i of `region` is 1 where n . (X, V) is above surface i. The first counts p
         (falls), the second q of the label.
     damped : bool

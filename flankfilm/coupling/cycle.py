@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from base import Array, Cost, described, quantity, record
+from base import Array, Cost, described, part, quantity, record
 
 if TYPE_CHECKING:
     import fem
@@ -17,7 +17,6 @@ class MeshCycle:
     """Stiffness, load share and deflection at the midpoints of equal intervals of one base pitch, by any model.
 
     ``error`` is the estimated relative numerical error at each position; None where the model's error is unknown.
-    ``contact`` is the loaded contact by finite elements that it was taken from, for fields and root stress.
     """
 
     headline: ClassVar[tuple[str, ...]] = (
@@ -52,7 +51,9 @@ class MeshCycle:
     )
     error: float | None
     cost: Cost
-    contact: fem.MeshCycle | None = None
+    contact: fem.MeshCycle | None = part(
+        "loaded contact by finite elements that it was taken from; None by other models", default=None
+    )
     converged: bool = True
     message: str = ""
 

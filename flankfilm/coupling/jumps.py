@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Stopwatch, described, quantity, record, unclocked
+from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
 from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.oscillator import PairOscillator
@@ -56,22 +56,23 @@ class Jump:
 
 @record
 class SpeedDiagram:
-    """Branches of periodic motions over the mesh frequency, and what follows from them.
-
-    ``stable`` are stable motions with their ranges; ``separated`` and ``back_contact`` the ranges of frequency in which
-    some stable motion loses contact, and touches the back flank. ``variants`` holds the jump frequencies with another
-    law of stiffness or a longer series, by name.
-    """
+    """Branches of periodic motions over the mesh frequency, and what follows from them."""
 
     headline = ("branches", "jump_count")
 
-    diagram: Diagram
+    diagram: Diagram = part("branches over the frequency")
     speed_of_one: float | None = quantity("rad/s", "pinion speed of frequency 1", shown="rpm")
-    stable: tuple[Stretch, ...]
-    separated: tuple[tuple[float, float], ...]
-    back_contact: tuple[tuple[float, float], ...]
-    jumps: tuple[Jump, ...]
-    variants: Mapping[str, tuple[float, ...]]
+    stable: tuple[Stretch, ...] = part("stable motions with their ranges")
+    separated: tuple[tuple[float, float], ...] = part(
+        "ranges of frequency in which some stable motion loses contact"
+    )
+    back_contact: tuple[tuple[float, float], ...] = part(
+        "ranges of frequency in which some stable motion touches the back flank"
+    )
+    jumps: tuple[Jump, ...] = part("where a stable motion ends")
+    variants: Mapping[str, tuple[float, ...]] = part(
+        "jump frequencies with another law of stiffness or a longer series, by name"
+    )
     force_frequency: Array = quantity("1", "mesh over natural frequency", "force")
     force_factor: Array = quantity("1", "greatest force of a stable motion over the mean force", "force")
     force_factor_iso6336: Array = quantity("1", "K_v after ISO 6336-1, method B; nan without a pair", "force")

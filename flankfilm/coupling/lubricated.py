@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Cost, SolverError, Stopwatch, described, quantity, record, unclocked
+from base import Array, Cost, SolverError, Stopwatch, described, part, quantity, record, unclocked
 from flankfilm.coupling import film_points
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
@@ -44,9 +44,8 @@ SOLVED = FilmModel()
 class FilmAlongPath:
     """Film at the loaded contacts of a mesh cycle, in the order of the path, at the loads that they carry with it.
 
-    ``at_pitch`` holds every definition of the film stiffness at the contact nearest to C, in series with the tangent
-    stiffness of its teeth; ``profiles`` whole films at points of the path by label, for pictures. What only solved,
-    starved or mixed films have is None for others. ``error`` is the largest of the films' thicknesses, None by formula.
+    What only solved, starved or mixed films have is None for others. ``error`` is the largest of the films'
+    thicknesses, None by formula.
     """
 
     headline = ("model", "supply", "least_film", "greatest_pressure")
@@ -74,8 +73,10 @@ class FilmAlongPath:
         "1", "film ratio Lambda, least distance of the mean planes over sigma", "point"
     )
     asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
-    at_pitch: tuple[StiffnessRow, ...]
-    profiles: Mapping[str, Film]
+    at_pitch: tuple[StiffnessRow, ...] = part(
+        "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"
+    )
+    profiles: Mapping[str, Film] = part("whole films at points of the path by label, for pictures")
     error: float | None
     cost: Cost
     converged: bool = True
@@ -98,9 +99,8 @@ class FilmAlongPath:
 class LubricatedCycle(MeshCycle):
     """Mesh cycle with the film in series in each pair, in agreement with the load share.
 
-    ``dry`` is the cycle without film, ``film`` the film along the path with the error of its own. ``otherwise``
-    holds, for starved films, the mesh with the flooded film, and with the same starved films where what is held at
-    the inlet is the other of meniscus and layer, each at the forces of the films found.
+    For starved films ``otherwise`` holds the mesh with the flooded film, and with the same starved films where what is
+    held at the inlet is the other of meniscus and layer, each at the forces of the films found.
     """
 
     headline = ("mean_secant_stiffness", "mean_stiffness", "thinnest_film")
@@ -111,9 +111,11 @@ class LubricatedCycle(MeshCycle):
     )
     rounds: int = quantity("1", "times that films and load share were brought into agreement")
     mismatch: float = quantity("1", "last change of a pair's force over the whole force")
-    dry: MeshCycle
-    film: FilmAlongPath
-    otherwise: Mapping[str, MeshCycle]
+    dry: MeshCycle = part("the cycle without film")
+    film: FilmAlongPath = part("film along the path, with the error of its own")
+    otherwise: Mapping[str, MeshCycle] = part(
+        "the mesh with other films, by name; empty unless films are starved"
+    )
 
     @property
     @described("m", shown="um")

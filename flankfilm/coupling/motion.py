@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Cost, Fault, InputError, Stopwatch, quantity, record, unclocked
+from base import Array, Cost, Fault, InputError, Stopwatch, part, quantity, record, unclocked
 from flankfilm.coupling.oscillator import PairOscillator
 
 if TYPE_CHECKING:
@@ -49,8 +49,7 @@ class Portrait:
 class SpeedSweep:
     """Motion swept up and down in speed.
 
-    ``states`` and ``labels`` go by direction, ``"up"`` and ``"down"``; ``portraits`` are settled motions at chosen
-    values, ``messages`` what the solvers have to report.
+    ``states`` and ``labels`` go by direction, ``"up"`` and ``"down"``.
     """
 
     headline = ("least_grazing", "half_backlash")
@@ -65,10 +64,10 @@ class SpeedSweep:
         "1", "where the orbit that never leaves contact touches the backlash", "grazing"
     )
     half_backlash: float = quantity("1", "half the backlash D")
-    portraits: tuple[Portrait, ...]
+    portraits: tuple[Portrait, ...] = part("settled motions at chosen values")
     error: float
     cost: Cost
-    messages: tuple[str, ...]
+    messages: tuple[str, ...] = part("what the solvers have to report")
 
     @property
     def least_grazing(self) -> float | None:

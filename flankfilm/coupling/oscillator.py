@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from base import Cost, described, quantity, record
+from base import Cost, described, part, quantity, record
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.series import MeshSeries, mesh_series
 
@@ -21,16 +21,15 @@ MEAN_FORCE = 0.1
 class PairOscillator:
     """Oscillator of a pair, and its scales where there are physical ones.
 
-    ``scales``, ``pair`` and all physical figures are None or zero for an oscillator in its own units; ``oscillator``
-    is at the pair's speed.
+    All physical figures are None or zero for an oscillator in its own units.
     """
 
     headline = ("natural_frequency", "mean_force", "half_backlash", "frequency")
 
-    oscillator: GearOscillator
-    scales: Scaling | None
-    series: MeshSeries
-    pair: GearPair | None = None
+    oscillator: GearOscillator = part("at the pair's speed")
+    scales: Scaling | None = part("of mass, stiffness and length; None for an oscillator in its own units")
+    series: MeshSeries = part("of the mesh stiffness")
+    pair: GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
     force: float = quantity("N", "normal force", default=0.0)
     error_amplitude: float = quantity(
         "m", "amplitude of the unloaded transmission error", shown="um", default=0.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Cost, SolverError, Stopwatch, quantity, record, unclocked
+from base import Cost, SolverError, Stopwatch, part, quantity, record, unclocked
 
 if TYPE_CHECKING:
     import fem
@@ -22,8 +22,8 @@ class RootStresses:
 
     headline = ("iso_fault",)
 
-    stress: fem.RootStress
-    iso: Iso6336RootStress | None
+    stress: fem.RootStress = part("along the mesh cycle, by finite elements")
+    iso: Iso6336RootStress | None = part("nominal stress by ISO 6336-3; None where it has no answer")
     iso_fault: str = quantity("", "why ISO 6336-3 has no answer")
     error: float | None
     cost: Cost
@@ -36,8 +36,8 @@ class LoadedFields:
     """Stress and displacement of both gears, in the common frame, with a pair at the pitch point."""
 
     position: int = quantity("1", "row of the mesh cycle")
-    pinion: GearField
-    wheel: GearField
+    pinion: GearField = part("of the pinion")
+    wheel: GearField = part("of the wheel")
     error: float | None
     cost: Cost
     converged: bool = True

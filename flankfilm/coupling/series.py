@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Stopwatch, described, quantity, record
+from base import Array, Cost, Stopwatch, described, part, quantity, record
 from flankfilm.coupling.cycle import MeshCycle
 
 if TYPE_CHECKING:
@@ -32,22 +32,18 @@ _FREQUENCIES = 2000
 
 @record
 class MeshSeries:
-    """Fourier series of a mesh stiffness, in N/m, or over the mean where none is given; tau = 0 with a pair at A.
-
-    ``fit`` holds the series with its remainder and ``other`` that of the kind which was not chosen; both are None for
-    a series that was given. ``share`` is what an order that was found could leave out, None for one that was named.
-    """
+    """Fourier series of a mesh stiffness, in N/m, or over the mean where none is given; tau = 0 with a pair at A."""
 
     headline = ("kind", "order", "mean", "remainder")
 
     kind: str = quantity("", "stiffness that the series is of: secant, tangent or given")
     source: str = quantity("", "mesh cycle that the series is of")
-    stiffness: FourierStiffness
-    fit: FourierFit | None
-    other: FourierFit | None
-    cycle: MeshCycle | None
-    left_out: LeftOut | None
-    share: float | None
+    stiffness: FourierStiffness = part("the series")
+    fit: FourierFit | None = part("the series with its remainder; None if it was given")
+    other: FourierFit | None = part("that of the kind which was not chosen; None if the series was given")
+    cycle: MeshCycle | None = part("mesh cycle that was fitted; None if the series was given")
+    left_out: LeftOut | None = part("what the order leaves out; None where it was not looked at")
+    share: float | None = part("what an order that was found may leave out; None for one that was named")
     cost: Cost
     converged: bool = True
     message: str = ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Cost, Faults, Stopwatch, quantity, record, unclocked
+from base import Array, Cost, Faults, Stopwatch, part, quantity, record, unclocked
 
 if TYPE_CHECKING:
     import fem
@@ -39,7 +39,7 @@ class SinglePairs:
     travel: Array = quantity("m", "travel from A along the path of contact", "path", shown="mm")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
     stiffness: Mapping[str, Array] = quantity("N/m", "stiffness of one pair", "path")
-    iso: Iso6336Stiffness
+    iso: Iso6336Stiffness = part("stiffness by ISO 6336-1")
     error: float | None
     cost: Cost
     converged: bool = True

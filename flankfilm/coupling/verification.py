@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Integers, Stopwatch, quantity, record
+from base import Array, Cost, Integers, Stopwatch, part, quantity, record
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, contact_places
 from flankfilm.coupling.mesh_cycles import checked, loaded_teeth
 from flankfilm.coupling.resolution import resolution_of
@@ -104,19 +104,18 @@ class Difference:
 class Verification:
     """Closed forms against finite elements.
 
-    ``references`` are finite elements with all and with fewer parts, ``models`` closed forms, ``differences`` every
-    figure of every model against every reference. ``error`` and ``cost`` are of the compliance that references share.
+    ``error`` and ``cost`` are of the compliance that the references share.
     """
 
     headline = ("torque",)
 
-    pair: GearPair
+    pair: GearPair = part("the gears")
     torque: float = quantity("N m", "torque of the pinion")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
     position: Array = quantity("1", "position, base pitches from A", "position")
-    references: tuple[Curves, ...]
-    models: tuple[Curves, ...]
-    differences: tuple[Difference, ...]
+    references: tuple[Curves, ...] = part("finite elements with all and with fewer parts")
+    models: tuple[Curves, ...] = part("closed forms")
+    differences: tuple[Difference, ...] = part("every figure of every model against every reference")
     error: float
     cost: Cost
     converged: bool = True

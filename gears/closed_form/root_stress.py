@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 
-from base import Fault, Faults, RangeWarning, described, quantity, record
+from base import Fault, Faults, RangeWarning, described, part, quantity, record
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.involute import involute_function
@@ -44,7 +44,7 @@ class RootSection:
 class Iso6336RootStress:
     """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3."""
 
-    sections: tuple[RootSection, RootSection]
+    sections: tuple[RootSection, RootSection] = part("tooth form of pinion and wheel, with Y_F and Y_S")
     Y_B: tuple[float, float] = quantity("1", "rim-thickness factors", "gear")
     stresses: tuple[float, float] = quantity("Pa", "tooth-root stress sigma_F0", "gear", shown="MPa")
     load_at: str = quantity("", "where the load was taken to act, D or tip")
