@@ -41,6 +41,11 @@ def user_cache() -> Path:
     return user_cache_path("flankfilm", appauthor=False)
 
 
+def results_cache(use: bool = True) -> Cache:
+    """Cache of results in the user's folder; one that holds nothing where it is not to be used."""
+    return Cache(user_cache() / "results" if use else None)
+
+
 @cache
 def code_digest(packages: tuple[str, ...]) -> str:
     """Digest of the source files of `packages`, and of Python and the libraries' versions."""

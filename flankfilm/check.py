@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
+from typing import TypeVar
 
 from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
@@ -10,6 +12,8 @@ from flankfilm.cache import Cache
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN, goals
 from flankfilm.stages.engine import Engine
+
+T = TypeVar("T")
 
 
 def check_scene(scene: Scene) -> list[str]:
@@ -27,25 +31,29 @@ def check_scene(scene: Scene) -> list[str]:
     """
     lines = [f"{scene.title or 'The scene'} is valid."]
     if scene.pair is not None:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            pair = gear_pair(scene)
+        pair, warned = _built(gear_pair, scene)
         lines.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
         )
-        lines += [f"Warning: {warning.message}" for warning in caught]
+        lines += warned
     if scene.lubricant is not None:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            oil = lubricant(scene)
+        oil, warned = _built(lubricant, scene)
         lines.append(
             f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
-        lines += [f"Warning: {warning.message}" for warning in caught]
+        lines += warned
     if DRY_CYCLE in (wanted := goals(scene)) or (scene.stiffness.model != "given" and FOURIER in wanted):
         plan = Engine(scene, Cache(None))[PLAN]  # models and shares, from cheap estimates
         lines += [decision.line for decision in plan.decisions]
         lines.append(plan.line)
     lines.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
     return lines
+
+
+def _built(build: Callable[[Scene], T], scene: Scene) -> tuple[T, list[str]]:
+    """What is built from a scene, and a line for each warning."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        built = build(scene)
+    return built, [f"Warning: {warning.message}" for warning in caught]

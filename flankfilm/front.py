@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from flankfilm.cache import Cache, keep_compiled_code, user_cache
+from flankfilm.cache import keep_compiled_code, results_cache
 from flankfilm.folder import claim
 from flankfilm.reproduce import scene_in
 from flankfilm.scene import Scene
@@ -119,7 +119,7 @@ def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> lis
     keep_compiled_code()
     folder, read = Path(out), _scene(scene)
     claim(folder)
-    return write_fields(folder, Engine(read, Cache(user_cache() / "results" if cache else None)))
+    return write_fields(folder, Engine(read, results_cache(cache)))
 
 
 def study(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import count
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, steps done, and steps in all."""
@@ -12,6 +13,27 @@ Progress = Callable[[str, int, int], None]
 
 def silent(what: str, done: int, total: int) -> None:
     """Show nothing."""
+
+
+def in_steps(progress: Progress, total: int) -> Callable[[str], None]:
+    """Function that announces one step after the other; their number is raised where there are more than `total`.
+
+    Examples
+    --------
+    >>> announce = in_steps(print, 2)
+    >>> for what in ("mesh", "cycle", "film"):
+    ...     announce(what)
+    mesh 0 2
+    cycle 1 2
+    film 2 3
+    """
+    done = count()
+
+    def announce(what: str) -> None:
+        place = next(done)
+        progress(what, place, max(place + 1, total))
+
+    return announce
 
 
 @contextmanager

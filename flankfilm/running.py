@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from flankfilm.cache import Cache, user_cache
+from flankfilm.cache import results_cache
 from flankfilm.folder import claim
 from flankfilm.output.run import results_dataset, write_data
-from flankfilm.progress import Progress, silent
+from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import goals
-from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.engine import Engine
 from flankfilm.stages.vtk import write_fields
 
 
@@ -50,13 +49,8 @@ def run_scene(
     if folder is not None:
         claim(folder)
     wanted = goals(scene)
-    done: list[str] = []
-
-    def announce(stage: Stage[Any]) -> None:
-        done.append(stage.name)
-        progress(stage.title, len(done) - 1, max(len(done), len(wanted) + 2))
-
-    engine = Engine(scene, Cache(user_cache() / "results" if use_cache else None), announce)
+    announce = in_steps(progress, len(wanted) + 2)
+    engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))
     for stage in wanted:
         engine[stage]
     values = engine.results()

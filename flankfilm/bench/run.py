@@ -16,7 +16,7 @@ from flankfilm.bench.machine import Machine, load, this_machine
 from flankfilm.bench.measuring import CaseResult, measure, quiet, steps
 from flankfilm.bench.peers import PeerRow, ask
 from flankfilm.folder import claim
-from flankfilm.progress import Progress, silent
+from flankfilm.progress import Progress, in_steps, silent
 
 __all__ = ["COMPILED", "REPEAT", "Bench", "bench"]
 
@@ -108,13 +108,8 @@ def bench(
         with quiet():
             cases += [(name, case) for case in SOLVERS[name](quick)]
     asked = [case for _, case in cases if case.peers] if python is not None else []
-    total, done = sum(steps(case) for _, case in cases) + len(asked) + len(names), 0
-
-    def announce(what: str) -> None:
-        nonlocal done
-        progress(what, done, total)
-        done += 1
-
+    total = sum(steps(case) for _, case in cases) + len(asked) + len(names)
+    announce = in_steps(progress, total)
     results = tuple(measure(name, case, times, announce) for name, case in cases)
     peers: list[PeerRow] = []
     for case in asked:

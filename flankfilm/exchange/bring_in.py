@@ -68,12 +68,13 @@ def imported(file: Path, *, stage: str | None = None, rack: str | None = None) -
 def _name_rack(draft: Draft, name: str) -> None:
     """Fill in a rack of ISO 53 where the file has none."""
     _, h_fP, rho_fP = ISO_53[name]
-    own = draft.rack
-    if not math.isnan(own.h_fP) or not math.isnan(own.rho_fP):
-        allowed = f"the file has its own: h_fP = {own.h_fP:g}, rho_fP = {own.rho_fP:g}"
+    own = draft.pair["rack"]
+    h, rho, alpha = (own[key] for key in ("h_fP", "rho_fP", "alpha_deg"))
+    if not math.isnan(h) or not math.isnan(rho):
+        allowed = f"the file has its own: h_fP = {h:g}, rho_fP = {rho:g}"
         raise InputError([Fault("--rack", name, allowed, "Leave it out, and change the scene")])
-    if not math.isnan(own.alpha_deg) and abs(own.alpha_deg - 20.0) > 1e-9:
-        allowed = f"has 20 deg, but the file {own.alpha_deg:g} deg"
+    if not math.isnan(alpha) and abs(alpha - 20.0) > 1e-9:
+        allowed = f"has 20 deg, but the file {alpha:g} deg"
         raise InputError([Fault("--rack", name, allowed, "Give h_fP and rho_fP in the scene")])
-    own.h_fP, own.rho_fP = h_fP, rho_fP
+    own |= {"h_fP": h_fP, "rho_fP": rho_fP}
     draft.notes.append(f"Basic rack: ISO 53 {name}, named by --rack.")

@@ -141,7 +141,7 @@ def export_mesh(
     """
     from fem.export import export_position
     from flankfilm.build import pinion_torque
-    from flankfilm.cache import Cache, user_cache
+    from flankfilm.cache import results_cache
     from flankfilm.folder import claim
     from flankfilm.reproduce import scene_in
     from flankfilm.stages.catalogue import COMPLIANCE, PAIR
@@ -151,7 +151,7 @@ def export_mesh(
     claim(out)
     if not 0 <= refinements <= 4:
         raise InputError([Fault("--refinements", str(refinements), "must be 0 to 4", "1 suits most checks")])
-    engine = Engine(wanted, Cache(user_cache() / "results"))
+    engine = Engine(wanted, results_cache())
     files = export_position(
         out,
         engine[PAIR],

@@ -3,94 +3,71 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel
 
 from base import Fault
-from flankfilm.scene.gears import GearSection, PairSection
-from flankfilm.scene.section import Section
-from flankfilm.scene.template import toml
+from flankfilm.scene.explain import model_in
+from flankfilm.scene.gears import MaterialSection, PairSection
+from flankfilm.scene.toml import remarked, toml
 
 OPEN = math.nan
 """Stands for a value that the file lacks: no scene takes it, so that it cannot be overlooked."""
 
-Number = float | int
+GEARS = ("pinion", "wheel")
 
 
-@dataclass
-class GearDraft:
-    """One gear, in the scene's units; None leaves the key to the scene's default."""
-
-    name: str
-    teeth: Number = OPEN
-    profile_shift: float = OPEN
-    tip_alteration: float | None = None
-    bore_mm: float | None = None
-    tip_chamfer_mm: float | None = None
-
-
-@dataclass
-class RackDraft:
-    """The basic rack, in modules."""
-
-    h_aP: float = 1.0
-    h_fP: float = OPEN
-    rho_fP: float = OPEN
-    alpha_deg: float = OPEN
+def _no_pair() -> dict[str, Any]:
+    return {name: {} for name in GEARS}
 
 
 @dataclass(frozen=True)
-class MaterialDraft:
-    """Elastic constants of one gear, in the scene's units."""
-
-    youngs_modulus_GPa: float
-    poisson_ratio: float
-    density_kg_per_m3: float | None
-
-
-@dataclass
 class Draft:
-    """What a file says of a pair.
+    """What a file says of a pair, by the keys of a scene and in its units.
 
     Attributes
     ----------
     title, source : str
         Title of the scene; what it was read from.
-    pinion, wheel : GearDraft
-    rack : RackDraft
-    module_mm, face_width_mm : float
-    centre_distance_mm : float or None
-    materials : tuple of MaterialDraft, or None
-        Of pinion and wheel.
+    names : (str, str)
+        What the file calls pinion and wheel.
+    pair, material : dict
+        Keys of the two sections; `OPEN` where the file lacks what a scene needs, None where the scene's default stands
+        for it. The material is empty where it is not given for both gears.
     notes : list of str
         What was left out, and what the scene's defaults stand for.
     """
 
     title: str
     source: str
-    pinion: GearDraft
-    wheel: GearDraft
-    rack: RackDraft
-    module_mm: float = OPEN
-    face_width_mm: float = OPEN
-    centre_distance_mm: float | None = None
-    materials: tuple[MaterialDraft, MaterialDraft] | None = None
+    names: tuple[str, str]
+    pair: dict[str, Any] = field(default_factory=_no_pair)
+    material: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def lacking(self) -> tuple[Fault, ...]:
         """Faults for the keys that a scene needs and the file does not give."""
-        own = {"pair.module_mm": self.module_mm, "pair.face_width_mm": self.face_width_mm}
-        for role, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
-            own |= {f"pair.{role}.teeth": gear.teeth, f"pair.{role}.profile_shift": gear.profile_shift}
-        own |= {f"pair.rack.{key}": value for key, value in vars(self.rack).items()}
-        remedies = {
-            "pair.rack.h_fP": "Give it, or name the rack: --rack A",
-            "pair.rack.rho_fP": "Give it, or name the rack: --rack A",
-        }
+        named = "Give it, or name the rack: --rack A"
+        remedies = {"pair.rack.h_fP": named, "pair.rack.rho_fP": named}
         return tuple(
             Fault(key, "", f"is not in {self.source}", remedies.get(key, "Give it in the scene"))
-            for key, value in own.items()
-            if math.isnan(value)
+            for key in _open_keys(self.pair, "pair")
         )
+
+
+def _open_keys(value: Any, path: str) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _open_keys(inner, f"{path}.{key}")
+    elif _is_open(value):
+        yield path
+
+
+def _is_open(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)
 
 
 def scene_text(draft: Draft) -> str:
@@ -99,59 +76,43 @@ def scene_text(draft: Draft) -> str:
         f"# From {_comment(draft.source)}",
         *(f"# {_comment(note)}" for note in draft.notes),
         f"title = {toml(draft.title[:200])}",
-        'wants = ["geometry"]                # more need [operating]: see "flankfilm new"',
-        "",
-        "[pair]",
-        _line("module_mm", draft.module_mm),
-        _line("face_width_mm", draft.face_width_mm),
-        f"rack = {toml(vars(draft.rack))}",
+        *remarked('wants = ["geometry"]', 'more need [operating]: see "flankfilm new"'),
+        *_section("pair", draft.pair, PairSection, draft.names),
     ]
-    if draft.centre_distance_mm is not None:
-        lines.append(_line("centre_distance_mm", draft.centre_distance_mm, "the backlash follows"))
+    if draft.material:
+        lines += _section("material", draft.material, MaterialSection, draft.names)
     else:
-        lines.append(_absent("centre_distance_mm", PairSection))
-    for role, gear in (("pinion", draft.pinion), ("wheel", draft.wheel)):
-        lines += ["", f"{f'[pair.{role}]':<35}# {_comment(gear.name)}", *_gear_lines(gear)]
-    lines += _material_lines(draft)
+        lines += ["", *remarked("# [material]", "not in the file, or only for one gear")]
     lines += ["", "# [operating]", "# pinion_torque_Nm =", "# pinion_speed_rpm =", ""]
     return "\n".join(lines)
 
 
-def _gear_lines(gear: GearDraft) -> list[str]:
-    lines = [_line("teeth", gear.teeth), _line("profile_shift", gear.profile_shift)]
-    for key in ("tip_alteration", "bore_mm", "tip_chamfer_mm"):
-        value = getattr(gear, key)
-        lines.append(_absent(key, GearSection) if value is None else _line(key, value))
-    return lines
+def _section(
+    name: str, values: Mapping[str, Any], model: type[BaseModel], names: tuple[str, str]
+) -> Iterator[str]:
+    """A section with its own keys, then those of each gear."""
+    own = {key: value for key, value in values.items() if key not in GEARS}
+    if own:
+        yield from ("", f"[{name}]", *_keys(own, model))
+    for gear, called in zip(GEARS, names, strict=True):
+        inner = model_in(model.model_fields[gear].annotation)
+        if gear in values and inner is not None:
+            head = f"{f'[{name}.{gear}]':<33}  # {_comment(called)}"
+            yield from ("", head, *_keys(values[gear], inner))
 
 
-def _material_lines(draft: Draft) -> list[str]:
-    if draft.materials is None:
-        return ["", "# [material]                       # not in the file, or only for one gear"]
-    first, second = draft.materials
-    if first == second:
-        return ["", "[material]", *_elastic_lines(first)]
-    lines = []
-    for role, material in (("pinion", first), ("wheel", second)):
-        lines += ["", f"[material.{role}]", *_elastic_lines(material)]
-    return lines
-
-
-def _elastic_lines(material: MaterialDraft) -> list[str]:
-    return [_line(key, value) for key, value in vars(material).items() if value is not None]
-
-
-def _line(key: str, value: Number, remark: str = "") -> str:
-    remark = "NOT IN THE FILE: give it" if math.isnan(value) else remark
-    text = f"{key} = {toml(value)}"
-    return f"{text:<35}# {remark}" if remark else text
-
-
-def _absent(key: str, section: type[Section]) -> str:
-    """A key that the file lacks, with its default and its meaning."""
-    field = section.model_fields[key]
-    value = "" if field.default is None else toml(field.default)
-    return f"{f'# {key} = {value}':<35}# not in the file: {field.description}"
+def _keys(values: Mapping[str, Any], model: type[BaseModel]) -> Iterator[str]:
+    """Keys with their meanings; behind a comment sign, with its default, what the file lacks."""
+    for key, value in values.items():
+        about = model.model_fields[key]
+        meaning = about.description or ""
+        if value is None:
+            default = "" if about.default is None else toml(about.default)
+            yield from remarked(f"# {key} = {default}", f"not in the file: {meaning}")
+        else:
+            yield from remarked(
+                f"{key} = {toml(value)}", "NOT IN THE FILE: give it" if _is_open(value) else meaning
+            )
 
 
 def _comment(text: str) -> str:

@@ -94,6 +94,9 @@ PROTUBERANCE = (
     Attribute("relative_machining_allowance_din_3972_1952", PURE),
 )
 
-YOUNGS_MODULUS = Attribute("elastic_modulus", MODULUS)
-POISSON_RATIO = Attribute("poisson_ratio", PURE)
-MATERIAL_DENSITY = Attribute("density", DENSITY)
+MATERIAL = {
+    "youngs_modulus_GPa": Attribute("elastic_modulus", MODULUS),
+    "poisson_ratio": Attribute("poisson_ratio", PURE),
+    "density_kg_per_m3": Attribute("density", DENSITY),
+}
+"""By the scene's keys; the density may be missing."""

@@ -78,6 +78,12 @@ class Model:
         """Relations of a type in which the component has the role."""
         return tuple(r for r in self.relations if r.type == kind and r.roles.get(role) == component)
 
+    def others(self, kind: str, role: str, component: str, *roles: str) -> list[Component]:
+        """Components in other roles of the relations in which the component has one; each once, in their order."""
+        found = self.related(kind, role, component)
+        ids = dict.fromkeys(relation.roles.get(other, "") for relation in found for other in roles)
+        return [self.components[i] for i in ids if i in self.components]
+
 
 def read_model(path: Path) -> Model:
     """Read a REXS file.

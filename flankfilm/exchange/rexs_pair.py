@@ -10,10 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from base import Fault, InputError, shorten
 from flankfilm.exchange import rexs_attributes as rexs
-from flankfilm.exchange.draft import OPEN, Draft, GearDraft, MaterialDraft, RackDraft
+from flankfilm.exchange.draft import GEARS, OPEN, Draft
 from flankfilm.exchange.rexs_attributes import Attribute
 from flankfilm.exchange.rexs_file import Component, Model, Relation
 
@@ -101,25 +102,30 @@ class _StageReader:
         stage = self.model.components[self.relation.roles["stage"]]
         gears = self._gears(stage)
         if gears is None:
-            return Draft("", self.source, GearDraft(""), GearDraft(""), RackDraft())
+            return Draft("", self.source, ("", ""))
         for gear in gears:
             self._refuse_helical(gear)
         module = self._common(rexs.MODULE, gears)
-        flanks = [self._flanks(gear) for gear in gears]
+        flanks = [self.model.others("flank", "gear", gear.id, "left", "right") for gear in gears]
         alpha = self._common(rexs.PRESSURE_ANGLE, [f for pair in flanks for f in pair])
         rack = self._rack(gears, flanks, module, alpha)
-        first, second = (self._gear(g, f, module, rack) for g, f in zip(gears, flanks, strict=True))
+        pair = {
+            "module_mm": module,
+            "face_width_mm": self._face_width(stage, gears),
+            "rack": rack,
+            "centre_distance_mm": self._number(stage, rexs.CENTRE_DISTANCE),
+        }
+        for role, gear, own in zip(GEARS, gears, flanks, strict=True):
+            pair[role] = self._gear(gear, own, module, rack)
+        material = self._material(gears)
         self._modifications(gears, flanks)
+        first, second = gears
         return Draft(
             title=stage.name or "Imported pair",
             source=f"{self.source}: {stage}, REXS {self.model.version}, written by {self.model.application}",
-            pinion=first,
-            wheel=second,
-            rack=rack,
-            module_mm=module,
-            face_width_mm=self._face_width(stage, gears),
-            centre_distance_mm=self._number(stage, rexs.CENTRE_DISTANCE),
-            materials=self._materials(gears),
+            names=(str(first), str(second)),
+            pair=pair,
+            material=material,
             notes=self.notes,
         )
 
@@ -140,6 +146,10 @@ class _StageReader:
             self._refuse(component, attribute, text, "must be a finite number")
             return None
         return float(f"{value * scale:.12g}") if scale != 1.0 else value
+
+    def _numbers(self, components: Sequence[Component], attribute: Attribute) -> dict[str, float]:
+        """Numbers of an attribute by the id of the component, for those that have it."""
+        return {c.id: v for c in components if (v := self._number(c, attribute)) is not None}
 
     def _refuse(
         self, component: Component, attribute: Attribute, value: str, allowed: str, remedy: str = ""
@@ -180,10 +190,10 @@ class _StageReader:
 
     def _common(self, attribute: Attribute, components: Sequence[Component]) -> float:
         """The one number that all components have that say it."""
-        said = {c.id: v for c in components if (v := self._number(c, attribute)) is not None}
-        values = list(said.values())
-        if not values:
+        said = self._numbers(components, attribute)
+        if not said:
             return OPEN
+        values = list(said.values())
         for key, value in said.items():
             if abs(value - values[0]) > SAME * abs(values[0]):
                 allowed = f"must be {values[0]:g}, as in the rest of the pair"
@@ -191,44 +201,38 @@ class _StageReader:
                 self._refuse(self.model.components[key], attribute, f"{value:g}", allowed, remedy)
         return values[0]
 
-    def _flanks(self, gear: Component) -> list[Component]:
-        relations = self.model.related("flank", "gear", gear.id)
-        ids = [r.roles.get(side, "") for r in relations for side in ("left", "right")]
-        return [self.model.components[i] for i in ids if i in self.model.components]
-
-    def _gear(self, gear: Component, flanks: list[Component], module: float, rack: RackDraft) -> GearDraft:
+    def _gear(
+        self, gear: Component, flanks: list[Component], module: float, rack: dict[str, float]
+    ) -> dict[str, Any]:
         teeth = self._number(gear, rexs.TEETH)
         shift = self._common(rexs.PROFILE_SHIFT, flanks)
         if math.isnan(shift):
             shift = self._common(rexs.PROFILE_SHIFT_LENGTH, flanks) / module
         tip = self._number(gear, rexs.TIP_DIAMETER)
-        alteration = None
+        alteration = OPEN
         if tip is not None and teeth is not None:
-            exact = 0.5 * (tip / module - teeth) - rack.h_aP - shift
+            exact = 0.5 * (tip / module - teeth) - rack["h_aP"] - shift
             alteration = 0.0 if abs(exact) < 1e-9 else float(f"{exact:.12g}")
         root = self._number(gear, rexs.ROOT_DIAMETER)
         if root is not None and teeth is not None:
-            own = module * (teeth + 2.0 * (shift - rack.h_fP))
+            own = module * (teeth + 2.0 * (shift - rack["h_fP"]))
             if abs(own - root) > 0.01 * module:
                 self.notes.append(
                     f"{gear}: root_diameter {root:g} mm in the file, {own:g} mm by shift and tool: the file's "
                     "machining allowance or tooth thickness is not taken over."
                 )
         for allowance in rexs.ALLOWANCES:
-            left = [v for f in flanks if (v := self._number(f, allowance))]
-            if left:
-                remark = f"{left[0]:g} mm is not taken over: the tooth is as finished."
-                self.notes.append(f"{gear}: {allowance.name} {remark}")
-        bore = self._number(gear, rexs.BORE_DIAMETER)
-        chamfer = self._common(rexs.TIP_CHAMFER, flanks)
-        return GearDraft(
-            name=str(gear),
-            teeth=OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
-            profile_shift=shift,
-            tip_alteration=None if alteration is not None and math.isnan(alteration) else alteration,
-            bore_mm=bore or None,
-            tip_chamfer_mm=None if math.isnan(chamfer) else chamfer,
-        )
+            if left := [v for v in self._numbers(flanks, allowance).values() if v]:
+                self.notes.append(
+                    f"{gear}: {allowance.name} {left[0]:g} mm is not taken over: the tooth is as finished."
+                )
+        return {
+            "teeth": OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
+            "profile_shift": shift,
+            "tip_alteration": _or_default(alteration),
+            "bore_mm": self._number(gear, rexs.BORE_DIAMETER) or None,
+            "tip_chamfer_mm": _or_default(self._common(rexs.TIP_CHAMFER, flanks)),
+        }
 
     def _rack(
         self,
@@ -236,15 +240,20 @@ class _StageReader:
         flanks: list[list[Component]],
         module: float,
         alpha: float,
-    ) -> RackDraft:
+    ) -> dict[str, float]:
         every = [f for pair in flanks for f in pair]
-        addendum = self._common(rexs.RACK_ADDENDUM, every)
-        h_aP = 1.0 if math.isnan(addendum) else addendum  # with a tip diameter only h_aP + k counts
+        addendum = _or_default(self._common(rexs.RACK_ADDENDUM, every))
+        rack = {
+            "h_aP": 1.0 if addendum is None else addendum,  # with a tip diameter only h_aP + k counts
+            "h_fP": OPEN,
+            "rho_fP": OPEN,
+            "alpha_deg": alpha,
+        }
         tools = [self._tool(g, f) for g, f in zip(gears, flanks, strict=True)]
         racks = []
         for tool in tools:
             if tool is None:
-                return RackDraft(h_aP=h_aP, alpha_deg=alpha)
+                return rack
             for attribute in rexs.PROTUBERANCE:
                 if self._number(tool, attribute):
                     value = tool.attributes[attribute.name][0]
@@ -256,7 +265,7 @@ class _StageReader:
             if abs(a - b) > SAME * abs(a):
                 allowed = f"must be {a:g} modules, as that of {tools[0]}: a pair has one basic rack"
                 self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", allowed))
-        return RackDraft(h_aP=h_aP, h_fP=first[0], rho_fP=first[1], alpha_deg=alpha)
+        return rack | {"h_fP": first[0], "rho_fP": first[1]}
 
     def _in_modules(self, tool: Component, attributes: tuple[Attribute, ...], module: float) -> float:
         """First of several attributes with one meaning that the tool has, in modules."""
@@ -267,12 +276,12 @@ class _StageReader:
 
     def _tool(self, gear: Component, flanks: list[Component]) -> Component | None:
         """The rack-shaped tool that cut a gear, where it is the only tool."""
-        steps = [r for f in flanks for r in self.model.related("manufacturing_step", "workpiece", f.id)]
-        ids = [r.roles.get("tool", "") for r in steps]
+        found = [
+            t for f in flanks for t in self.model.others("manufacturing_step", "workpiece", f.id, "tool")
+        ]
         for kind in ("ordered_reference", "reference"):
-            ids += [r.roles.get("referenced", "") for r in self.model.related(kind, "origin", gear.id)]
-        named = (self.model.components.get(i) for i in dict.fromkeys(ids))
-        tools = [c for c in named if c is not None and c.type.endswith("_tool")]
+            found += self.model.others(kind, "origin", gear.id, "referenced")
+        tools = list({tool.id: tool for tool in found if tool.type.endswith("_tool")}.values())
         if len(tools) == 1 and tools[0].type == "rack_shaped_tool":
             return tools[0]
         if tools:
@@ -285,28 +294,26 @@ class _StageReader:
         common = self._number(stage, rexs.COMMON_FACE_WIDTH)
         if common:
             return common
-        widths = [v for g in gears if (v := self._number(g, rexs.FACE_WIDTH)) is not None]
+        widths = list(self._numbers(gears, rexs.FACE_WIDTH).values())
         if len(widths) == 2 and widths[0] != widths[1]:
             listed = " and ".join(f"{w:g}" for w in widths)
             self.notes.append(f"Face widths {listed} mm: the smaller one carries and is taken.")
         return min(widths, default=OPEN)
 
-    def _materials(self, gears: tuple[Component, Component]) -> tuple[MaterialDraft, MaterialDraft] | None:
+    def _material(self, gears: tuple[Component, Component]) -> dict[str, Any]:
+        """Keys of the scene's section: one material, or one each; none where the file does not give both."""
         found = []
         for gear in gears:
-            named = [
-                r.roles.get("referenced", "") for r in self.model.related("reference", "origin", gear.id)
-            ]
-            for material in (self.model.components.get(i) for i in named):
-                if material is None or material.type != "material":
-                    continue
-                modulus = self._number(material, rexs.YOUNGS_MODULUS)
-                ratio = self._number(material, rexs.POISSON_RATIO)
-                density = self._number(material, rexs.MATERIAL_DENSITY)
-                if modulus is not None and ratio is not None:
-                    found.append(MaterialDraft(modulus, ratio, density))
-                break
-        return (found[0], found[1]) if len(found) == 2 else None
+            named = self.model.others("reference", "origin", gear.id, "referenced")
+            material = next((c for c in named if c.type == "material"), None)
+            if material is None:
+                continue
+            own = {key: self._number(material, attribute) for key, attribute in rexs.MATERIAL.items()}
+            if own["youngs_modulus_GPa"] is not None and own["poisson_ratio"] is not None:
+                found.append(own)
+        if len(found) < 2:
+            return {}
+        return found[0] if found[0] == found[1] else dict(zip(GEARS, found, strict=True))
 
     def _modifications(self, gears: tuple[Component, Component], flanks: list[list[Component]]) -> None:
         own = {c.id for c in gears} | {f.id for pair in flanks for f in pair}
@@ -317,3 +324,8 @@ class _StageReader:
             for component in (self.model.components.get(i) for i in sorted(members - own)):
                 if component is not None and component.type in MODIFICATIONS:
                     self.notes.append(f"{component} is not taken over; tip_relief is a key of the scene.")
+
+
+def _or_default(value: float) -> float | None:
+    """None, which stands for the scene's default, where the file lacks a value that a scene can do without."""
+    return None if math.isnan(value) else value

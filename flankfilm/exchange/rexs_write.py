@@ -137,11 +137,8 @@ class _Writer:
                 "manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings
             )
         material = pair.materials[index]
-        elastic = {
-            rexs.YOUNGS_MODULUS: 1e-9 * material.youngs_modulus,
-            rexs.POISSON_RATIO: float(material.poisson_ratio),
-            rexs.MATERIAL_DENSITY: float(material.density),
-        }
+        constants = (1e-9 * material.youngs_modulus, material.poisson_ratio, material.density)
+        elastic = dict(zip(rexs.MATERIAL.values(), map(float, constants), strict=True))
         made_of = self.component("material", f"{name}, material", elastic)
         self.relation("reference", origin=key, referenced=made_of)
         return key

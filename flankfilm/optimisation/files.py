@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flankfilm.optimisation.run import Optimum
 from flankfilm.output.files import provenance, write_csv, write_netcdf, write_text
+from flankfilm.scene.toml import toml_lines
 from flankfilm.studies.files import of_rows
 
 if TYPE_CHECKING:
@@ -95,32 +95,8 @@ def write_optimum(found: Optimum, folder: Path) -> list[Path]:
         | {name: [point.result.values[i] for point in chosen] for i, name in enumerate(task.outputs)},
     )
     raw = task.raw_scene(chosen[0].values, task.tolerances[1])
-    write_text(scene, "\n".join(toml(raw)) + "\n")
+    write_text(scene, "\n".join(toml_lines(raw)) + "\n")
     held = dataset(found)
     write_netcdf(points, held)
     save(optimum(held), picture)
     return [table, scene, points, picture, write_optimum_page(found, held, folder)]
-
-
-def toml(raw: Mapping[str, Any], section: str = "") -> Iterator[str]:
-    """Lines of TOML for the keys of a scene: sections, with tables inside them inline."""
-    plain = {k: v for k, v in raw.items() if section or not isinstance(v, Mapping)}
-    for key, value in plain.items():
-        yield f"{key} = {_toml(value)}"
-    for key, value in raw.items():
-        if key not in plain:
-            yield ""
-            yield f"[{key}]"
-            yield from toml(value, key)
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=True)
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    return repr(value)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -12,16 +11,14 @@ from pydantic.fields import FieldInfo
 from flankfilm.scene.explain import model_in
 from flankfilm.scene.key import key_of
 from flankfilm.scene.schema import Scene
+from flankfilm.scene.toml import remarked, toml
 
-__all__ = ["template", "toml"]
+__all__ = ["template"]
 
 HEAD = """\
 # A flankfilm scene. Run it with:   flankfilm run SCENE.toml
 # Every key carries its unit. Sections that no wanted output needs may be left out, as may keys behind a comment sign.
 """
-WIDTH = 120
-COMMENTS = 35
-"""Column of the comments."""
 
 
 def template() -> str:
@@ -33,28 +30,6 @@ def template() -> str:
         if model is not None:
             lines += ["", *_section(name, field, model)]
     return "\n".join(lines) + "\n"
-
-
-def toml(value: Any) -> str:
-    """Write a value as TOML, tables in one line."""
-    if isinstance(value, str):
-        return _quoted(value)
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{name} = {toml(item)}" for name, item in value.items()) + " }"
-    if isinstance(value, tuple):
-        return f"[{', '.join(map(toml, value))}]"
-    short = f"{value:g}"
-    return short.replace("e+0", "e") if "e+" in short and float(short) == value else repr(value)
-
-
-def _quoted(text: str) -> str:
-    """A TOML basic string."""
-    escaped = "".join(
-        f"\\u{ord(c):04x}" if ord(c) < 32 or ord(c) == 127 else "\\" + c if c in '"\\' else c for c in text
-    )
-    return f'"{escaped}"'
 
 
 def _section(name: str, field: FieldInfo, model: type[BaseModel]) -> Iterator[str]:
@@ -87,19 +62,7 @@ def _key(name: str, field: FieldInfo, sign: str = "") -> Iterator[str]:
     start = f"{sign}{name} = {toml(example)}"
     words = _choices(field.annotation) if isinstance(example, str | tuple) else []
     meaning = ": ".join(filter(None, [" | ".join(words), field.description]))
-    line = f"{start:<{COMMENTS - 2}}  # {meaning}"
-    if len(line) <= WIDTH:
-        yield line
-    else:
-        indent = sign.removeprefix("#").removeprefix(" ")
-        yield from textwrap.wrap(
-            meaning,
-            WIDTH,
-            initial_indent=f"# {indent}",
-            subsequent_indent=f"# {indent}",
-            break_on_hyphens=False,
-        )
-        yield start
+    yield from remarked(start, meaning, sign.removeprefix("#").removeprefix(" "))
 
 
 def _example(field: FieldInfo) -> Any:

@@ -59,7 +59,7 @@ def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
 def compute_row(row: Row) -> RowResult:
     """Compute the outputs of a row; whatever goes wrong becomes its fault."""
     from base import InputError, SolverError
-    from flankfilm.cache import Cache, keep_compiled_code, user_cache
+    from flankfilm.cache import keep_compiled_code, results_cache
 
     keep_compiled_code()
     from flankfilm.scene.reader import validated
@@ -70,8 +70,7 @@ def compute_row(row: Row) -> RowResult:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a scene's own run shows them
-            cache = Cache(user_cache() / "results" if row.use_cache else None)
-            engine = Engine(validated(dict(row.scene)), cache)
+            engine = Engine(validated(dict(row.scene)), results_cache(row.use_cache))
             values = tuple(OUTPUTS[name].value(engine) for name in row.outputs)
     except (InputError, SolverError) as fault:
         return failed(row, str(fault), time.perf_counter() - start)

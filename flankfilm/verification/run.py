@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from base import Fault, InputError
-from flankfilm.cache import Cache, user_cache
+from flankfilm.cache import results_cache
 from flankfilm.coupling import Verification
 from flankfilm.folder import claim
-from flankfilm.progress import Progress, silent
+from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import VERIFICATION
 from flankfilm.stages.engine import Engine
@@ -48,11 +48,5 @@ def verify_scene(
         )
     if folder is not None:
         claim(folder)
-    cache = Cache(user_cache() / "results" if use_cache else None)
-    done: list[str] = []
-
-    def announce(title: str) -> None:
-        done.append(title)
-        progress(title, len(done) - 1, 3)
-
-    return Engine(scene, cache, lambda stage: announce(stage.title))[VERIFICATION]
+    announce = in_steps(progress, 3)
+    return Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))[VERIFICATION]

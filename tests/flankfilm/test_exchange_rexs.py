@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from base import InputError
 from flankfilm.build import gear_pair
 from flankfilm.exchange.bring_in import imported
-from flankfilm.exchange.draft import Draft, GearDraft, RackDraft, scene_text
+from flankfilm.exchange.draft import Draft, scene_text
 from flankfilm.exchange.rexs_file import parse_model
 from flankfilm.exchange.rexs_pair import draft_of, stages
 from flankfilm.exchange.rexs_write import rexs_text
@@ -354,7 +354,7 @@ class TestHostileFiles:
     @settings(max_examples=200, deadline=5000)
     @given(st.text(max_size=60))
     def test_names_cannot_leave_the_comment_or_the_title(self, name):
-        draft = Draft(name, name, GearDraft(name), GearDraft(name), RackDraft(), notes=[name])
+        draft = Draft(name, name, (name, name), notes=[name])
         scene = tomllib.loads(scene_text(draft))
         assert scene["title"] == name[:200]
         assert set(scene) == {"title", "wants", "pair"}
