@@ -25,6 +25,7 @@ extensions = [
     "numpydoc",
     "mathml",
     "own_names",
+    "signatures",
     "key_tables",
 ]
 exclude_patterns = ["_extension"]

@@ -154,7 +154,8 @@ class Trajectory(AsArray):
     )
     extrema: Array = quantity("1", "time, X and acceleration at every extremum of X", "extremum column")
     error: float = quantity(
-        "1", "difference to the motion on a finer flow, largest over the samples, over the largest |X|, |V|"
+        "1",
+        "difference to the motion on a finer flow, largest over the samples, over the largest size of X and of V",
     )
     cost: Cost
 

@@ -160,7 +160,7 @@ def test_ring_under_torque_is_the_hub_windup_exactly_in_the_limit():
         turn = np.einsum("na,na->n", u[rim], around(points[rim])).mean() / b
         torque = 1e6 * 2 * np.pi * b**2
         base = 0.0338
-        # a force F on the base circle: torque F r_b, way turn r_b
+        # a force F on the base circle: torque F r_b, travel turn r_b
         errors.append(abs(turn * base / (torque / base) / hub_windup(base, a, b, STRAIN) - 1))
     assert errors[1] < 1e-5
     assert np.log2(errors[0] / errors[1]) > 3.0

@@ -113,10 +113,10 @@ def test_length_of_the_logarithm_does_not_matter(ring):
 
 def test_displacement_scales_neither_with_size_nor_with_modulus(loads):
     """Per line load, displacement times modulus is a number of the shape alone."""
-    big = GearPair(Gear(24, profile_shift=0.3), Gear(31), 2e-1, 4.0).teeth_profiles[0]
+    big = GearPair(Gear(24, profile_shift=0.3), Gear(31), 1e-1, 2.0).teeth_profiles[0]
     law = PlaneElasticity("strain", 70e9, 0.3)
     mesh = mesh_sector(big, refinements=1)
-    other = line_loads(ring_of(mesh, law), flank_points(mesh, 100 * RHO))
+    other = line_loads(ring_of(mesh, law), flank_points(mesh, 50 * RHO))
     np.testing.assert_allclose(other.regular_at_load() * 70e9, loads.regular_at_load() * 206e9, rtol=1e-4)
 
 

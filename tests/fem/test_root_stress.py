@@ -211,11 +211,11 @@ def test_greatest_stress_is_at_the_outer_point_of_single_contact(article_pair, h
     """Contact held to the path: tension on one side, compression on the other, both greatest near D and B."""
     found = root_stress(article_pair, held, article_fillets)
     points, pitch = article_pair.points, article_pair.base_pitch
-    ways = (points.D - points.A) / pitch, (points.B - points.A) / pitch
-    for gear, way in zip((found.pinion, found.wheel), ways, strict=True):
+    positions = (points.D - points.A) / pitch, (points.B - points.A) / pitch
+    for gear, position in zip((found.pinion, found.wheel), positions, strict=True):
         peak = gear.greatest_tension
-        assert peak.position == pytest.approx(way, abs=1.01 / 40)
-        assert gear.greatest_compression.position == pytest.approx(way, abs=1.01 / 40)
+        assert peak.position == pytest.approx(position, abs=1.01 / 40)
+        assert gear.greatest_compression.position == pytest.approx(position, abs=1.01 / 40)
         assert gear.greatest_compression.stress_Pa < -peak.stress_Pa < 0
         assert peak.von_mises_Pa == pytest.approx(np.sqrt(0.79) * peak.stress_Pa)
         # on the fillet under the loaded flank, between the root circle and the place of the standard
@@ -241,9 +241,9 @@ def test_equal_gears_bear_alike():
     cycle = fem.mesh_cycle(pair, 100.0, 20, beyond_path=False)
     found = root_stress(pair, cycle)
     for rows in range(20):
-        way = found.pinion.tooth_position[rows]
-        for column in np.flatnonzero((way > 0) & (way < 1.5)):
-            other = np.argwhere(np.abs(found.wheel.tooth_position - (1.5 - way[column])) < 1e-6)[0]
+        position = found.pinion.tooth_position[rows]
+        for column in np.flatnonzero((position > 0) & (position < 1.5)):
+            other = np.argwhere(np.abs(found.wheel.tooth_position - (1.5 - position[column])) < 1e-6)[0]
             one = found.pinion.tangential_Pa[rows, column]
             np.testing.assert_allclose(
                 one, found.wheel.tangential_Pa[tuple(other)], atol=2e-5 * np.abs(one).max()

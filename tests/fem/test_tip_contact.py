@@ -25,16 +25,16 @@ def placed_flank(pair, gear, rho, rho1):
     """Left flank of a gear in the common frame, by the profile and the placement: no formula of ours."""
     place = pair.placement(float(pair.points.C))
     points = mirrored(pair.teeth_profiles[gear].involute(rho))
-    # both gears turned back or forth from the pitch point by the way along the line of action
+    # both gears turned back or forth from the pitch point by the travel along the line of action
     turn = (rho1 - pair.points.C) / pair.base_radii[gear]
     if gear == 0:
         return turned(points, place.pinion_angle + turn)
     return turned(points, place.wheel_angle - turn) + place.wheel_centre
 
 
-@pytest.mark.parametrize("way", [-0.3e-3, -1.1e-3])
-def test_gap_before_A_is_that_of_the_placed_teeth(article_pair, way):
-    rho1 = article_pair.points.A + way
+@pytest.mark.parametrize("travel", [-0.3e-3, -1.1e-3])
+def test_gap_before_A_is_that_of_the_placed_teeth(article_pair, travel):
+    rho1 = article_pair.points.A + travel
     end = article_pair.teeth_profiles[1].flank_rho[1]
     rho2 = np.array([end, end - 1e-4, end - 5e-4])
     gap, where = unloaded_gap(article_pair.base_radii, article_pair.line_of_action, np.array([rho1]), rho2)
@@ -307,11 +307,11 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         # the law of the edge has its own tooth in it, but not the turn on the hub
         lever = np.cos(angle) - np.sin(angle) * pinion.rho_range[1] / pinion.base_radius
         bulk[edge, edge] -= corner - pinion.hub_windup / article_pair.face_width * lever**2
-        way = bulk @ force
+        deflection = bulk @ force
         # the law is in the force that turns the pinion as much, and in the pinion's turn
         turned = kappa[edge] * force[edge]
-        way[edge] += kappa[edge] * Table.through(law.force, law.approach).value_and_slope(turned)[0]
-        way[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
-        np.testing.assert_allclose(way, kappa * cycle.transmission_error[row], rtol=1e-6)
+        deflection[edge] += kappa[edge] * Table.through(law.force, law.approach).value_and_slope(turned)[0]
+        deflection[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
+        np.testing.assert_allclose(deflection, kappa * cycle.transmission_error[row], rtol=1e-6)
         assert np.all(kappa[edge] < 0.999)
         assert kappa @ force == pytest.approx(cycle.force, rel=1e-10)

@@ -129,17 +129,17 @@ def test_held_to_the_path_the_path_is_shorter(article_pair, article_bodies):
 
 def test_chamfer_stands_farther_off_than_its_corner_near_the_path():
     pair = GearPair(Gear(36, tip_chamfer=2e-4), Gear(40, tip_chamfer=2e-4), 2e-3, 0.04)
-    way = np.array([1e-5, 5e-4, 1.5e-3])
+    travel = np.array([1e-5, 5e-4, 1.5e-3])
     for corner, place in (
-        (1, pair.points.A - way),
-        (0, pair.line_of_action - pair.points.E - way),
+        (1, pair.points.A - travel),
+        (0, pair.line_of_action - pair.points.E - travel),
     ):
         radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
         end = np.array([pair.teeth_profiles[corner].flank_rho[1]])
         gap, _ = unloaded_gap(radii, pair.line_of_action, place, end)
         assert np.all(chamfer_gap(pair, corner, place) > gap[:, 0])
     assert fem.mesh_cycle(pair, 600.0, 10).converged
-    assert np.all(np.isinf(chamfer_gap(GearPair(Gear(36), Gear(40), 2e-3, 0.04), 0, way)))
+    assert np.all(np.isinf(chamfer_gap(GearPair(Gear(36), Gear(40), 2e-3, 0.04), 0, travel)))
 
 
 def wedge_compliance(angle, rounded, place, half=0.05, far=300.0, fine=0.02, growth=0.12):

@@ -252,7 +252,7 @@ class Result:
 
 
 def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15, coarse=1.0, own=False):
-    """Both gears at a position (way from A in base pitches), one result."""
+    """Both gears at a position (travel from A in base pitches), one result."""
     start = pair.points.A + position * pair.base_pitch
     placed = pair.placement(float(start))
     stand = Stand((placed.pinion_angle, placed.wheel_angle), (np.zeros(2), placed.wheel_centre))
