@@ -162,16 +162,16 @@ class Levels(NamedTuple):
     peers: tuple[PeerWork, ...] = ()
 
 
-def case(title: str, size_name: str) -> Callable[[Callable[P, Levels]], Callable[P, Case]]:
+def case(title: str, size_name: str, key: str = "") -> Callable[[Callable[P, Levels]], Callable[P, Case]]:
     """Make a function that gives levels one that gives their case.
 
-    The key is the function's name, followed by its argument `key` where it has one. The work is what its docstring
-    says below the first line. Braces there and in the title hold the function's arguments and its module's constants.
+    The work is what the function's docstring says below the first line. Braces there, in the title and in the key hold
+    the function's arguments and its module's constants.
 
     Parameters
     ----------
-    title, size_name : str
-        As of `Case`.
+    title, size_name, key : str
+        As of `Case`; the key is the function's name unless given.
     """
 
     def decorate(function: Callable[P, Levels]) -> Callable[P, Case]:
@@ -179,11 +179,9 @@ def case(title: str, size_name: str) -> Callable[[Callable[P, Levels]], Callable
         def build(*args: P.args, **kwargs: P.kwargs) -> Case:
             given = signature(function).bind(*args, **kwargs).arguments
             known = {**function.__globals__, **given}
-            key = "_".join([function.__name__, *filter(None, [given.get("key")])])
             text = " ".join((function.__doc__ or "").partition("\n")[2].split())
-            return Case(
-                key, title.format(**known), text.format(**known), size_name, *function(*args, **kwargs)
-            )
+            names = (words.format(**known) for words in (key or function.__name__, title, text))
+            return Case(*names, size_name, *function(*args, **kwargs))
 
         return build
 

@@ -68,9 +68,9 @@ def films(quick: bool) -> tuple[Case, ...]:
     )
 
 
-@case("Film by nodes, {words}", "nodes")
+@case("Film by nodes, {words}", "nodes", "film_nodes_{short}")
 def film_nodes(
-    key: str, words: str, contact: LineContact, finest: tuple[float, float | None], quick: bool
+    short: str, words: str, contact: LineContact, finest: tuple[float, float | None], quick: bool
 ) -> Levels:
     """Flooded film by the number of nodes.
 
@@ -119,8 +119,8 @@ def finest_film(contact: LineContact, tolerance: float, spike: float | None) -> 
     return Level(label, lambda: solve(contact, tolerance=tolerance, spike=spike), thickness_and_stiffness)
 
 
-@case("Starved film, {words}", "nodes")
-def film_starved(key: str, words: str, supply: Meniscus | OilLayer) -> Levels:
+@case("Starved film, {words}", "nodes", "film_{short}")
+def film_starved(short: str, words: str, supply: Meniscus | OilLayer) -> Levels:
     """Starved film by the number of nodes.
 
     Line contact at the pitch point, {words}: the flooded film first, then the starved one, by nodes.
@@ -136,8 +136,8 @@ def film_starved(key: str, words: str, supply: Meniscus | OilLayer) -> Levels:
     return Levels((series,), level(NODES(1025), fed, thickness_and_stiffness, 1025), ORDERS)
 
 
-@case("Film by relaxation, {words}", "nodes, or sweeps")
-def film_relaxed(key: str, words: str, contact: LineContact) -> Levels:
+@case("Film by relaxation, {words}", "nodes, or sweeps", "film_relaxed_{short}")
+def film_relaxed(short: str, words: str, contact: LineContact) -> Levels:
     """Newton's method beside the relaxed iteration of many papers, both on the same uniform domain.
 
     Flooded line contact, {words}, on {DOMAIN[0]:g} to {DOMAIN[1]:g} half-widths: Newton's method with its estimate,

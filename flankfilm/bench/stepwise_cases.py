@@ -36,8 +36,8 @@ def stepwise() -> tuple[Case, ...]:
     )
 
 
-@case("Stepwise flow, {name}", "evaluations of the force a period")
-def motion_stepwise(key: str, name: str, law: Any) -> Levels:
+@case("Stepwise flow, {name}", "evaluations of the force a period", "motion_stepwise_{short}")
+def motion_stepwise(short: str, name: str, law: Any) -> Levels:
     """Stepwise flow by tolerance.
 
     Time of {MANY} excitation periods by steps of order 8 with all switchings; error of the state after {PERIODS}

@@ -36,7 +36,7 @@ MEAN, SPREAD, SINGLE = "mean mesh stiffness", "transmission error, peak to peak"
 
 def compliances(quick: bool) -> tuple[Case, ...]:
     """Compliance of the usual pair, and where the geometry is harder: at the limit of undercut, and a large wheel."""
-    others = () if quick else (compliance_of("17_43", 17, 43), compliance_of("20_1000", 20, 1000))
+    others = () if quick else (compliance_of(17, 43), compliance_of(20, 1000))
     return compliance(quick), *others
 
 
@@ -73,31 +73,24 @@ def compliance(quick: bool) -> Levels:
         }
         return answer(bodies.cost.unknowns, values, bodies)
 
-    def edges(factor: float) -> tuple[Compliance, MeshCycle]:
-        return cycle(sizes=Sizes().scaled(factor), refinements=1)
-
-    def tolerance(asked: float) -> tuple[Compliance, MeshCycle]:
-        return cycle(tolerance=asked)
-
-    def refined(times: int, factor: float) -> tuple[Compliance, MeshCycle]:
-        return cycle(tolerance=1e-5, refinements=times, sizes=Sizes().scaled(factor))
+    def edges(factor: float, refinements: int = 1, **how: Any) -> tuple[Compliance, MeshCycle]:
+        return cycle(sizes=Sizes().scaled(factor), refinements=refinements, **how)
 
     factors = (2.0, 1.4, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
     tolerances = (1e-3,) if quick else (1e-3, 1e-4, 2e-5)
-    finest = ("edges x 0.6", 1, 0.6) if quick else ("refined 3 times", 3, 1.0)
+    finest = ("edges x 0.6", 0.6, 1) if quick else ("refined 3 times", 1.0, 3)
     series = (
         over(factors, "edges x {:g}".format, edges, both, name="edge lengths"),
-        over(tolerances, percent, tolerance, both, name="tolerances"),
+        over(tolerances, percent, lambda t: cycle(tolerance=t), both, name="tolerances"),
         *_forms(pair),
     )
     peers = (PeerWork("ross_stiffness", _given(pair), MEAN),)
-    return Levels(
-        series, level(finest[0], refined, both, *finest[1:]), dict.fromkeys((MEAN, SINGLE), 2.0), peers
-    )
+    best = level(finest[0], lambda *size: edges(*size, tolerance=1e-5), both, *finest[1:])
+    return Levels(series, best, dict.fromkeys((MEAN, SINGLE), 2.0), peers)
 
 
-@case("Compliance of both gears, {z1}/{z2}", "unknowns of both sectors")
-def compliance_of(key: str, z1: int, z2: int) -> Levels:
+@case("Compliance of both gears, {z1}/{z2}", "unknowns of both sectors", "compliance_{z1}_{z2}")
+def compliance_of(z1: int, z2: int) -> Levels:
     """Compliance of a pair by tolerance.
 
     Pair {z1}/{z2}, module 2 mm, face 40 mm, bores of half the root radii: from nothing, to a tolerance.
@@ -154,8 +147,8 @@ def contacts(quick: bool) -> tuple[Case, ...]:
     return (held, free) if quick else (held, free, work_contact())
 
 
-@case("Loaded contact, {words}", "positions")
-def contact(key: str, words: str, beyond: bool, quick: bool) -> Levels:
+@case("Loaded contact, {words}", "positions", "contact_{short}")
+def contact(short: str, words: str, beyond: bool, quick: bool) -> Levels:
     """Loaded contact with a compliance at hand, by the number of positions.
 
     Pair 36/40 at {TORQUE:g} N m, compliance at hand: forces, approach and stiffness at midpoints of equal intervals of
@@ -211,9 +204,6 @@ def root_stress(quick: bool) -> Levels:
     def edges(length: float) -> tuple[Fillets, RootStress]:
         return stress(fillet_edge=length)
 
-    def tolerance(asked: float) -> tuple[Fillets, RootStress]:
-        return stress(tolerance=asked)
-
     def modules(length: float) -> str:
         return f"{length / 2:g} modules"
 
@@ -222,6 +212,6 @@ def root_stress(quick: bool) -> Levels:
     least = 0.08 if quick else 0.02
     series = (
         over(lengths, modules, edges, greatest, name="edge lengths"),
-        over(tolerances, percent, tolerance, greatest, name="tolerances"),
+        over(tolerances, percent, lambda t: stress(tolerance=t), greatest, name="tolerances"),
     )
     return Levels(series, level(modules(least), edges, greatest, least), {quantity: 2.0})
