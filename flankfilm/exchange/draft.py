@@ -62,12 +62,8 @@ def _open_keys(value: Any, path: str) -> Iterator[str]:
     if isinstance(value, Mapping):
         for key, inner in value.items():
             yield from _open_keys(inner, f"{path}.{key}")
-    elif _is_open(value):
+    elif isinstance(value, float) and math.isnan(value):
         yield path
-
-
-def _is_open(value: Any) -> bool:
-    return isinstance(value, float) and math.isnan(value)
 
 
 def scene_text(draft: Draft) -> str:
@@ -110,9 +106,8 @@ def _keys(values: Mapping[str, Any], model: type[BaseModel]) -> Iterator[str]:
             default = "" if about.default is None else toml(about.default)
             yield from remarked(f"# {key} = {default}", f"not in the file: {meaning}")
         else:
-            yield from remarked(
-                f"{key} = {toml(value)}", "NOT IN THE FILE: give it" if _is_open(value) else meaning
-            )
+            remark = "NOT IN THE FILE: give it" if any(_open_keys(value, key)) else meaning
+            yield from remarked(f"{key} = {toml(value)}", remark)
 
 
 def _comment(text: str) -> str:

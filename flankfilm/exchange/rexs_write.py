@@ -33,14 +33,11 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
         The file's text; what REXS has no place for or is left out here.
     """
     writer = _Writer(title)
-    stage = writer.component(
-        "cylindrical_stage",
-        title,
-        {
-            rexs.CENTRE_DISTANCE: 1e3 * pair.working_centre_distance,
-            rexs.COMMON_FACE_WIDTH: 1e3 * pair.face_width,
-        },
-    )
+    size = {
+        rexs.CENTRE_DISTANCE: 1e3 * pair.working_centre_distance,
+        rexs.COMMON_FACE_WIDTH: 1e3 * pair.face_width,
+    }
+    stage = writer.component("cylindrical_stage", title, size)
     gears = [writer.gear(pair, index, name) for index, name in enumerate(("Pinion", "Wheel"))]
     writer.relation("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
     for gear, drives in zip(gears, ("true", "false"), strict=True):
@@ -98,49 +95,45 @@ class _Writer:
 
     def gear(self, pair: GearPair, index: int, name: str) -> str:
         """Add one gear with its flanks, its tool and its material."""
-        gear = (pair.pinion, pair.wheel)[index]
-        profile = pair.teeth_profiles[index]
-        rack = {rexs.MODULE: 1e3 * pair.module, rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha)}
-        key = self.component(
-            "cylindrical_gear",
-            name,
-            {
-                rexs.TEETH: profile.teeth,
-                rexs.MODULE: 1e3 * pair.module,
-                rexs.HELIX_ANGLE: 0.0,
-                rexs.FACE_WIDTH: 1e3 * pair.face_width,
-                rexs.TIP_DIAMETER: 2e3 * profile.tip_radius,
-                rexs.ROOT_DIAMETER: 2e3 * profile.root_radius,
-                rexs.BORE_DIAMETER: 2e3 * profile.bore_radius,
-            },
-        )
+        gear, profile = (pair.pinion, pair.wheel)[index], pair.teeth_profiles[index]
+        module, angle = {rexs.MODULE: 1e3 * pair.module}, {rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha)}
+        shift = float(gear.profile_shift)
+        size = {
+            rexs.HELIX_ANGLE: 0.0,
+            rexs.FACE_WIDTH: 1e3 * pair.face_width,
+            rexs.TIP_DIAMETER: 2e3 * profile.tip_radius,
+            rexs.ROOT_DIAMETER: 2e3 * profile.root_radius,
+            rexs.BORE_DIAMETER: 2e3 * profile.bore_radius,
+        }
+        key = self.component("cylindrical_gear", name, {rexs.TEETH: profile.teeth} | module | size)
         shape = {
-            rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha),
-            rexs.PROFILE_SHIFT: float(gear.profile_shift),
+            rexs.PROFILE_SHIFT: shift,
             rexs.RACK_ADDENDUM: float(pair.rack.h_aP),
             rexs.TIP_CHAMFER: 1e3 * gear.tip_chamfer,
         }
-        left, right = (
-            self.component("cylindrical_gear_flank", f"{name}, {side} flank", shape)
-            for side in ("left", "right")
-        )
-        self.relation("flank", gear=key, left=left, right=right)
         depth = {
             rexs.TOOL_ADDENDUM[0]: float(pair.rack.h_fP),
             rexs.TOOL_TIP_RADIUS[0]: float(pair.rack.rho_fP),
         }
-        tool = self.component("rack_shaped_tool", f"{name}, basic rack", rack | depth)
-        for flank in (left, right):
-            generated = {rexs.GENERATED_SHIFT: float(gear.profile_shift)}
-            settings = self.component("cylindrical_gear_manufacturing_settings", "", generated)
+        flanks = {
+            side: self.component("cylindrical_gear_flank", f"{name}, {side} flank", angle | shape)
+            for side in ("left", "right")
+        }
+        self.relation("flank", gear=key, **flanks)
+        tool = self.component("rack_shaped_tool", f"{name}, basic rack", module | angle | depth)
+        for flank in flanks.values():
+            settings = self.component(
+                "cylindrical_gear_manufacturing_settings", "", {rexs.GENERATED_SHIFT: shift}
+            )
             self.relation(
                 "manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings
             )
         material = pair.materials[index]
         constants = (1e-9 * material.youngs_modulus, material.poisson_ratio, material.density)
         elastic = dict(zip(rexs.MATERIAL.values(), map(float, constants), strict=True))
-        made_of = self.component("material", f"{name}, material", elastic)
-        self.relation("reference", origin=key, referenced=made_of)
+        self.relation(
+            "reference", origin=key, referenced=self.component("material", f"{name}, material", elastic)
+        )
         return key
 
     def text(self) -> str:
