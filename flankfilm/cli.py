@@ -190,27 +190,27 @@ def _conclude(lines: Sequence[str], out: Path, files: Sequence[Path]) -> None:
 @app.command
 def bench(
     *,
-    out: Annotated[Path, Parameter(help="Folder for the figures, tables and the report.")] = Path(
-        "bench-results"
-    ),
-    only: Annotated[
-        list[str] | None,
-        Parameter(
-            consume_multiple=True,
-            negative="",
-            help="Solvers: gears, mesh, compliance, contact, root-stress, film, motion.",
-        ),
-    ] = None,
-    quick: Annotated[bool, Parameter(negative="", help="Few and coarse levels, in half a minute.")] = False,
-    repeat: Annotated[int | None, Parameter(help="Timed runs of each level.")] = None,
-    against: Annotated[
-        str | None,
-        Parameter(
-            help="Interpreter of an environment with other programs: ross-rotordynamics, scipy, heyoka."
-        ),
-    ] = None,
+    out: Path = Path("bench-results"),
+    only: Annotated[list[str] | None, Parameter(consume_multiple=True, negative="")] = None,
+    quick: Annotated[bool, Parameter(negative="")] = False,
+    repeat: int | None = None,
+    against: str | None = None,
 ) -> int:
-    """Measure error against cost of every solver on this machine."""
+    """Measure error against cost of every solver on this machine.
+
+    Parameters
+    ----------
+    out : Path
+        Folder for the figures, tables and the report.
+    only : list of str, optional
+        Solvers: gears, mesh, elements, compliance, contact, root-stress, film, motion, application.
+    quick : bool
+        Few and coarse levels, in half a minute.
+    repeat : int, optional
+        Timed runs of each level.
+    against : str, optional
+        Interpreter of an environment with other programs: ross-rotordynamics, scipy, heyoka.
+    """
     _prepare()
     from rich.console import Console
 

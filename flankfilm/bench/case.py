@@ -180,8 +180,8 @@ def case(title: str, size_name: str, key: str = "") -> Callable[[Callable[P, Lev
             given = signature(function).bind(*args, **kwargs).arguments
             known = {**function.__globals__, **given}
             text = " ".join((function.__doc__ or "").partition("\n")[2].split())
-            names = (words.format(**known) for words in (key or function.__name__, title, text))
-            return Case(*names, size_name, *function(*args, **kwargs))
+            own, named, said = (w.format(**known) for w in (key or function.__name__, title, text))
+            return Case(own, named, said, size_name, *function(*args, **kwargs))
 
         return build
 

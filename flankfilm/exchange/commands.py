@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
-
-from cyclopts import Parameter
+from typing import Literal
 
 from base import Fault, InputError
 
@@ -14,14 +12,9 @@ def import_gears(
     file: Path,
     /,
     *,
-    out: Annotated[
-        Path | None, Parameter(help="The scene to write; FILE.toml beside you if left out.")
-    ] = None,
-    stage: Annotated[str | None, Parameter(help="Id of the stage, where the file holds several.")] = None,
-    rack: Annotated[
-        Literal["A", "B", "C", "D"] | None,
-        Parameter(help="Basic rack of ISO 53, where the file names no tool."),
-    ] = None,
+    out: Path | None = None,
+    stage: str | None = None,
+    rack: Literal["A", "B", "C", "D"] | None = None,
 ) -> int:
     """Write a scene from the gear data in FILE (REXS, XML).
 
@@ -31,6 +24,12 @@ def import_gears(
     ----------
     file : Path
         A REXS file, versions 1.0 to 2.0.
+    out : Path, optional
+        The scene to write; FILE.toml beside you if left out.
+    stage : str, optional
+        Id of the stage, where the file holds several.
+    rack : {"A", "B", "C", "D"}, optional
+        Basic rack of ISO 53, where the file names no tool.
     """
     from flankfilm.exchange.bring_in import imported
 
@@ -48,18 +47,15 @@ def import_gears(
     return 0
 
 
-def export_rexs(
-    scene: Path,
-    /,
-    *,
-    out: Annotated[Path | None, Parameter(help="The file; SCENE.rexs beside you if left out.")] = None,
-) -> int:
+def export_rexs(scene: Path, /, *, out: Path | None = None) -> int:
     """Write the pair of SCENE as a REXS file.
 
     Parameters
     ----------
     scene : Path
         The scene file (TOML); its sections pair and material count.
+    out : Path, optional
+        The file; SCENE.rexs beside you if left out.
     """
     from flankfilm.build import gear_pair
     from flankfilm.exchange.rexs_write import rexs_text
@@ -80,13 +76,11 @@ def export_profile(
     scene: Path,
     /,
     *,
-    gear: Annotated[Literal["pinion", "wheel"], Parameter(help="Which gear.")] = "pinion",
-    format: Annotated[
-        Literal["dxf", "csv"], Parameter(help="A drawing (release 12, arcs exact), or points.")
-    ] = "dxf",
-    teeth: Annotated[str, Parameter(help="How many teeth about +y, with the body below; or all.")] = "1",
-    tolerance_um: Annotated[float, Parameter(help="Largest distance of a chord from its curve.")] = 1.0,
-    out: Annotated[Path | None, Parameter(help="The file; SCENE-GEAR.FORMAT beside you if left out.")] = None,
+    gear: Literal["pinion", "wheel"] = "pinion",
+    format: Literal["dxf", "csv"] = "dxf",
+    teeth: str = "1",
+    tolerance_um: float = 1.0,
+    out: Path | None = None,
 ) -> int:
     """Write the exact tooth profile of a gear of SCENE, tip relief included, in millimetres.
 
@@ -94,6 +88,16 @@ def export_profile(
     ----------
     scene : Path
         The scene file (TOML); its section pair counts.
+    gear : {"pinion", "wheel"}
+        Which gear.
+    format : {"dxf", "csv"}
+        A drawing (release 12, arcs exact), or points.
+    teeth : str
+        How many teeth about +y, with the body below; or all.
+    tolerance_um : float
+        Largest distance of a chord from its curve.
+    out : Path, optional
+        The file; SCENE-GEAR.FORMAT beside you if left out.
     """
     from flankfilm.build import gear_pair
     from flankfilm.exchange.profile_files import write_drawing, write_points
@@ -119,18 +123,10 @@ def export_mesh(
     scene: Path,
     /,
     *,
-    out: Annotated[Path, Parameter(help="Folder for pinion and wheel.")],
-    format: Annotated[
-        str,
-        Parameter(
-            help="inp: CalculiX and Abaqus with loads; msh: gmsh; vtm: named blocks of VTK; or another format of "
-            "meshio (med, vtu, xdmf, ...)."
-        ),
-    ] = "inp",
-    position: Annotated[
-        float, Parameter(help="Travel after a pair is at A, over the base pitch, 0 to 1.")
-    ] = 0.5,
-    refinements: Annotated[int, Parameter(help="How often every element is split in four, 0 to 4.")] = 1,
+    out: Path,
+    format: str = "inp",
+    position: float = 0.5,
+    refinements: int = 1,
 ) -> int:
     """Write both gears of SCENE, meshed whole and loaded as they mesh at one position, for other programs.
 
@@ -138,6 +134,15 @@ def export_mesh(
     ----------
     scene : Path
         The scene file (TOML); its sections pair, material and operating count.
+    out : Path
+        Folder for pinion and wheel.
+    format : str
+        inp: CalculiX and Abaqus with loads; msh: gmsh; vtm: named blocks of VTK; or another format of meshio (med,
+        vtu, xdmf, ...).
+    position : float
+        Travel after a pair is at A, over the base pitch, 0 to 1.
+    refinements : int
+        How often every element is split in four, 0 to 4.
     """
     from fem.export import export_position
     from flankfilm.build import pinion_torque

@@ -115,13 +115,13 @@ class _Writer:
             rexs.TOOL_ADDENDUM[0]: float(pair.rack.h_fP),
             rexs.TOOL_TIP_RADIUS[0]: float(pair.rack.rho_fP),
         }
-        flanks = {
-            side: self.component("cylindrical_gear_flank", f"{name}, {side} flank", angle | shape)
+        left, right = (
+            self.component("cylindrical_gear_flank", f"{name}, {side} flank", angle | shape)
             for side in ("left", "right")
-        }
-        self.relation("flank", gear=key, **flanks)
+        )
+        self.relation("flank", gear=key, left=left, right=right)
         tool = self.component("rack_shaped_tool", f"{name}, basic rack", module | angle | depth)
-        for flank in flanks.values():
+        for flank in (left, right):
             settings = self.component(
                 "cylindrical_gear_manufacturing_settings", "", {rexs.GENERATED_SHIFT: shift}
             )
