@@ -18,10 +18,6 @@ from .exponents import lyapunov_exponents as lyapunov_exponents
 from .exponents import lyapunov_scan as lyapunov_scan
 from .finding import OrbitSet as OrbitSet
 from .finding import find_orbits as find_orbits
-from .flow import MapResult as MapResult
-from .flow import Trajectory as Trajectory
-from .flow import period_map as period_map
-from .flow import trajectory as trajectory
 from .fourier import FourierFit as FourierFit
 from .fourier import fit_fourier as fit_fourier
 from .grazing import ContactGrazing as ContactGrazing
@@ -36,9 +32,13 @@ from .loci import Locus as Locus
 from .loci import continue_locus as continue_locus
 from .manifolds import Manifold as Manifold
 from .manifolds import manifold as manifold
+from .motions import Trajectory as Trajectory
+from .motions import period_map as period_map
+from .motions import trajectory as trajectory
 from .multi_sweeps import MultiSweep as MultiSweep
 from .multi_sweeps import multi_sweep as multi_sweep
 from .oscillator import GearOscillator as GearOscillator
+from .protocol import MapResult as MapResult
 from .robustness import special_sensitivities as special_sensitivities
 from .scaling import Scaling as Scaling
 from .shooting import Orbit as Orbit

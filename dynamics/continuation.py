@@ -10,14 +10,19 @@ import numpy as np
 from base import Array, Faults
 from dynamics.arclength import follow
 from dynamics.branch import Branch
-from dynamics.branch_problem import Steps, checked_range
+from dynamics.branch_problem import BranchProblem, Steps, checked_range
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.crossings import Crossing, find_crossings, locate
+from dynamics.flows import unserved
+from dynamics.oscillator import GearOscillator
+from dynamics.protocol import Oscillator
 from dynamics.shooting import Orbit
 from dynamics.special import SpecialPoint
-from dynamics.stepwise.problem import PeriodMap
+from dynamics.stepwise.flow import TOLERANCE
+from dynamics.stepwise.oscillator import SmoothOscillator
+from dynamics.stepwise.problem import FlowProblem, PeriodMap
 
-__all__ = ["ExactBranch", "continue_branch", "follow_branch"]
+__all__ = ["ExactBranch", "continue_branch", "follow_branch", "orbits_over"]
 
 
 def continue_branch(
@@ -81,7 +86,7 @@ def continue_branch(
     steps.check(faults)
     faults.raise_if_any()
     scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.floor)
-    problem = orbit.oscillator.orbits(parameter, orbit.periods, (low, high), scale, orbit.tolerance)
+    problem = orbits_over(orbit.oscillator, parameter, orbit.periods, (low, high), scale, orbit.tolerance)
     return follow(problem, orbit.state, value, steps, progress)
 
 
@@ -119,9 +124,10 @@ def follow_branch(
     Examples
     --------
     >>> from dynamics import FourierStiffness, PowerContact, SmoothOscillator, find_orbit
+    >>> from dynamics.continuation import orbits_over
     >>> law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=0.2)
     >>> orbit = find_orbit(SmoothOscillator(law, 0.05, 0.1, 0.02, 0.5), (0.3, 0.0), tolerance=1e-9)
-    >>> problem = orbit.oscillator.orbits("frequency", 1, (0.49, 0.51), scale=0.3, tolerance=1e-9)
+    >>> problem = orbits_over(orbit.oscillator, "frequency", 1, (0.49, 0.51), scale=0.3, tolerance=1e-9)
     >>> follow_branch(problem, orbit.state, 0.5).converged
     True
     """
@@ -155,3 +161,37 @@ class ExactBranch(OrbitProblem):
     def magnified(self, factor: float) -> ExactBranch:
         """With a larger scale."""
         return replace(self, scale=factor * self.scale)
+
+
+def orbits_over(
+    oscillator: Oscillator,
+    parameter: str,
+    periods: int,
+    bounds: tuple[float, float],
+    scale: float,
+    tolerance: float | None = None,
+) -> BranchProblem:
+    """Periodic orbits of an oscillator over a range of one parameter, as continuation takes them.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or SmoothOscillator
+        The oscillator.
+    parameter : str
+        One of its `parameters`.
+    periods : int
+        Of the orbits.
+    bounds : tuple of float
+        Range of the parameter.
+    scale : float
+        Size of the motion.
+    tolerance : float, optional
+        Of a step of the stepwise flow; tables of the exact flow are always the full ones.
+    """
+    if isinstance(oscillator, GearOscillator):
+        low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
+        return ExactBranch(oscillator, (parameter,), periods, low, high, scale)
+    if isinstance(oscillator, SmoothOscillator):
+        given = TOLERANCE if tolerance is None else tolerance
+        return FlowProblem(oscillator, parameter, periods, *bounds, scale, given)
+    raise unserved(oscillator)

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from base import Array, Integers
 from dynamics.branch_problem import PlanePoint
-from dynamics.flow import DEGREE, period_map, tabulated
+from dynamics.flow import DEGREE, tabulated
+from dynamics.motions import period_map
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.protocol import EPS
 

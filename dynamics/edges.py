@@ -6,9 +6,10 @@ import numpy as np
 
 from base import Array, Booleans, Faults
 from dynamics.attraction import Attractor
-from dynamics.flow import period_map, tables
+from dynamics.flow import tables
 from dynamics.homes import Homes
 from dynamics.manifolds import is_direct_saddle
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit, find_orbit

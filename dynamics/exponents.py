@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.flow import checked_state
 from dynamics.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
 from dynamics.protocol import Flow, Oscillator, lost_motion
+from dynamics.states import checked_state
 from dynamics.sweeps import long_flow, settling_periods
 
 __all__ = ["LyapunovResult", "LyapunovScan", "lyapunov_exponents", "lyapunov_scan", "stretch_rate"]

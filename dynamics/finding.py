@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow import Tables, period_map, tables
+from dynamics.flow import Tables, tables
 from dynamics.index import index_at_infinity
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.regions import Region, checked_region

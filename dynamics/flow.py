@@ -1,36 +1,24 @@
-"""Motions by themselves: the tables of the exact flow, period map, sampled motion, extrema and impacts."""
+"""The exact flow: its tables, the motion that they carry, its extrema and impacts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
-from dynamics.arrays import AsArray
-from dynamics.limits import PERIODS, POINTS, POSITIVE, REFINEMENT, TAYLOR_DEGREE, TRANSIENT
-from dynamics.multiple_shooting import Chain, shoot_in_stretches
+from base import Array, Cost, Faults, Integers, Stopwatch
+from dynamics.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import EPS, Flow, MapResult, Oscillator, Stretches, exact_only, lost_motion
+from dynamics.protocol import EPS, Flow, MapResult, Stretches, exact_only, lost_motion
+from dynamics.states import checked_state
 
-__all__ = [
-    "DEGREE",
-    "MapResult",
-    "Tables",
-    "Trajectory",
-    "period_map",
-    "tables",
-    "tabulated",
-    "trajectory",
-    "turning_points",
-]
+__all__ = ["DEGREE", "Tables", "tables", "tabulated", "turning_points"]
 
 # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
 DEGREE = 13
-LONG = 200  # cells of an orbit that multiple shooting is tried for, too, where one shot fails
 _REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
 
 
@@ -128,49 +116,6 @@ class Tables(Flow):
 
         return int(settle(self.arrays, starts, homes, radius, limit, labels))
 
-    def chain(
-        self, oscillator: GearOscillator, guess: Array, periods: int, limit: int, lost: bool
-    ) -> Chain | None:
-        """Orbit by multiple shooting where one shot is lost, or is not enough for a long one."""
-        if not lost and self.cells * periods <= LONG:
-            return None
-        return shoot_in_stretches(oscillator, self, guess, periods, limit)
-
-
-@record
-class Trajectory(AsArray):
-    """Motion at equal times, and its impacts."""
-
-    headline = ("points_per_period",)
-
-    tau: Array = quantity("1", "dimensionless time from 0, both ends included", "sample")
-    x: Array = quantity("1", "displacement X", "sample")
-    v: Array = quantity("1", "speed dX/dtau", "sample")
-    points_per_period: int = quantity("1", "samples per excitation period")
-    events: Array = quantity(
-        "1",
-        "time, X (+-D), speed and region entered (1, 0, -1) at every crossing of the backlash's limits",
-        "event column",
-    )
-    extrema: Array = quantity("1", "time, X and acceleration at every extremum of X", "extremum column")
-    error: float = quantity(
-        "1",
-        "difference to the motion on a finer flow, largest over the samples, over the largest size of X and of V",
-    )
-    cost: Cost
-
-    converged = True  # a motion that cannot be followed raises
-    message = ""
-
-    def columns(self) -> Array:
-        """Columns tau, X, V."""
-        return np.stack([self.tau, self.x, self.v], axis=1)
-
-    @property
-    def poincare(self) -> Array:
-        """States at tau = 0 mod the excitation period, shape (periods + 1, 2)."""
-        return np.stack([self.x, self.v], axis=1)[:: self.points_per_period]
-
 
 def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:
     """Degree of the Taylor tables that leaves less than a tolerance, at most the usual one.
@@ -233,130 +178,6 @@ def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> Tables:
     return Tables(packed, *tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree))
 
 
-def period_map(
-    oscillator: Oscillator | Flow,
-    state: npt.ArrayLike,
-    periods: int = 1,
-    skip: int = 0,
-    *,
-    parameters: tuple[str, ...] = (),
-    extrema: bool = False,
-    tolerance: float | None = None,
-) -> MapResult:
-    """Follow a state at tau = 0 over whole excitation periods.
-
-    Parameters
-    ----------
-    oscillator : Oscillator or Flow
-        The oscillator; its ``flow()`` made once saves the cost of that in repeated calls, and the error estimate.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
-    periods : int
-        Number of periods kept.
-    skip : int
-        Periods followed before those; the derivatives cover them too.
-    parameters : tuple of str
-        Parameters to differentiate by, stepwise flow alone; `map_derivatives` serves the exact one.
-    extrema : bool
-        Whether extrema of X are among the events, stepwise flow alone; the exact one has `turning_points`.
-    tolerance : float, optional
-        Of a step, or of one period's map where the flow is exact.
-
-    Returns
-    -------
-    MapResult
-        States, Jacobian and counts of impacts.
-
-    Raises
-    ------
-    InputError
-        If the state is not finite or an argument out of range.
-
-    Examples
-    --------
-    >>> from dynamics import FourierStiffness, GearOscillator
-    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.6, half_backlash=0.2)
-    >>> period_map(oscillator, (0.3, 0.0)).state.round(12) + 0.0
-    array([0.3, 0. ])
-    """
-    watch = Stopwatch()
-    at = checked_state(state)
-    if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
-        return oscillator.follow(at, periods, skip)
-    faults = Faults()
-    n = faults.whole("periods", periods, *PERIODS)
-    n_skip = faults.whole("skip", skip, *TRANSIENT)
-    faults.raise_if_any()
-    if isinstance(oscillator, Flow):
-        return oscillator.follow(at, n, n_skip)
-    flow = oscillator.flow(tolerance, parameters, extrema)
-    here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
-    size = max(float(np.max(np.abs(here.states))), oscillator.floor)
-    error = float(np.max(np.abs(here.state - there.state))) / size
-    cost = replace(here.cost + there.cost, seconds=watch.seconds)
-    return replace(here, error=error, cost=cost)
-
-
-def trajectory(
-    oscillator: Oscillator,
-    state: npt.ArrayLike,
-    periods: int = 1,
-    points_per_period: int = 200,
-    *,
-    tolerance: float | None = None,
-) -> Trajectory:
-    """Sample the motion from a state at tau = 0; for phase portraits and Poincare points.
-
-    Parameters
-    ----------
-    oscillator : Oscillator
-        The oscillator.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
-    periods : int
-        Excitation periods.
-    points_per_period : int
-        Samples per period; on the exact flow more of them are not more accurate, and a step of the other ends at each.
-    tolerance : float, optional
-        As of `period_map`.
-
-    Returns
-    -------
-    Trajectory
-        The samples, impacts (crossings of the first two surfaces of a law) and extrema.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the motion cannot be followed.
-
-    Examples
-    --------
-    >>> from dynamics import FourierStiffness, GearOscillator
-    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> trajectory(oscillator, (0.5, 0.2), periods=2, points_per_period=50).x.shape
-    (101,)
-    """
-    watch = Stopwatch()
-    faults = Faults()
-    n = faults.whole("periods", periods, *PERIODS)
-    points = faults.whole("points_per_period", points_per_period, *POINTS)
-    faults.raise_if_any()
-    flow = oscillator.flow(tolerance)
-    samples, turns, events = flow.sampled(checked_state(state), n, points)
-    finer, _, _ = flow.finer().sampled(checked_state(state), n, points)
-    return Trajectory(
-        tau=np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points),
-        x=samples[:, 0],
-        v=samples[:, 1],
-        points_per_period=points,
-        events=events,
-        extrema=turns[:, :3],
-        error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
-        cost=Cost(watch.seconds, periods=2 * n),
-    )
-
-
 @exact_only
 def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, periods: int = 1) -> Array:
     """Every extremum of X from a state at tau = 0.
@@ -390,13 +211,3 @@ def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, pe
     """
     t = oscillator if isinstance(oscillator, Tables) else tables(oscillator)
     return t.sampled(checked_state(state), periods, 0)[1]
-
-
-def checked_state(state: npt.ArrayLike, where: str = "state") -> Array:
-    """Return a fresh array of X and V, or raise InputError."""
-    at = np.array(state, dtype=np.float64)
-    if at.shape != (2,) or not np.all(np.isfinite(at)):
-        faults = Faults()
-        faults.add(where, at.tolist(), "must be two finite numbers, X and V", "give the state at tau = 0")
-        faults.raise_if_any()
-    return at

@@ -11,7 +11,7 @@ from dynamics.branch import MEETS, Branch
 from dynamics.conditions import Condition, special_orbit
 from dynamics.continuation import continue_branch
 from dynamics.corrector import OrbitProblem
-from dynamics.flow import period_map
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit
 from dynamics.states import apart, scale_of

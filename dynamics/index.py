@@ -8,8 +8,9 @@ import math
 import numpy as np
 
 from base import Array
-from dynamics.flow import Tables, period_map, tables
+from dynamics.flow import Tables, tables
 from dynamics.manifolds import carried
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 
 __all__ = ["index_at_infinity", "winding"]

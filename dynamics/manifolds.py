@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow import Tables, period_map, tables, tabulated
+from dynamics.flow import Tables, tables, tabulated
 from dynamics.limits import POSITIVE
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.regions import Region, within

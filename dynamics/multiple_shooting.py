@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from base import Array, Integers
-
-if TYPE_CHECKING:
-    from dynamics.flow import Tables
-    from dynamics.oscillator import GearOscillator
+from dynamics.flow import Tables
+from dynamics.oscillator import GearOscillator
 
 __all__ = ["Chain", "shoot_in_stretches"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,6 @@ from dynamics.limits import OSCILLATOR
 from dynamics.naming import series, series_names
 from dynamics.protocol import Oscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
-
-if TYPE_CHECKING:
-    from dynamics.continuation import ExactBranch
-    from dynamics.flow import Tables
 
 __all__ = ["PARAMETERS", "GearOscillator"]
 
@@ -133,50 +129,6 @@ class GearOscillator(Oscillator):
         if parameter in _PLACES:
             return _PLACES[parameter]
         return 7 + self.parameters.index(parameter) - len(PARAMETERS)
-
-    def flow(
-        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
-    ) -> Tables:
-        """Tables of the exact flow.
-
-        Raises
-        ------
-        InputError
-            If derivatives by parameters or extrema are asked for, which `map_derivatives` and `turning_points` give.
-        """
-        from dynamics.flow import tables
-
-        faults = Faults()
-        if parameters:
-            faults.add(
-                "parameters",
-                parameters,
-                "must be left out for a GearOscillator",
-                "take dynamics.sensitivity.map_derivatives",
-            )
-        if extrema:
-            faults.add(
-                "extrema",
-                extrema,
-                "must be left out for a GearOscillator",
-                "take dynamics.flow.turning_points",
-            )
-        faults.raise_if_any()
-        return tables(self, tolerance=tolerance)
-
-    def orbits(
-        self,
-        parameter: str,
-        periods: int,
-        bounds: tuple[float, float],
-        scale: float,
-        tolerance: float | None = None,
-    ) -> ExactBranch:
-        """Periodic orbits over a range of one parameter; their tables are always the full ones."""
-        from dynamics.continuation import ExactBranch
-
-        low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
-        return ExactBranch(self, (parameter,), periods, low, high, scale)
 
     def rest_state(self) -> Array:
         """State at rest with the flanks pressed together by the mean force, at the centre without one."""

@@ -1,7 +1,8 @@
 """What an oscillator and its flow offer; every function that takes any oscillator asks for no more.
 
-There are two kinds of flow: the exact one of `GearOscillator` and the stepwise one of `SmoothOscillator`. A state is
-a vector with X first; nothing here says how long it is.
+There are two kinds of flow: the exact one of `GearOscillator` and the stepwise one of `SmoothOscillator`;
+`dynamics.flows` makes the one that an oscillator has. A state is a vector with X first; nothing here says how long it
+is.
 """
 
 from __future__ import annotations
@@ -10,16 +11,12 @@ import functools
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
+from typing import Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
 
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Integers, quantity, record
 from dynamics.naming import natural_size, unknown, value_at, with_value
-
-if TYPE_CHECKING:
-    from dynamics.branch_problem import BranchProblem
-    from dynamics.multiple_shooting import Chain
 
 __all__ = ["EPS", "Flow", "MapResult", "Oscillator", "Stretches", "exact_only", "lost_motion"]
 
@@ -167,10 +164,6 @@ class Flow(ABC):
             used += period
         return used
 
-    def chain(self, oscillator: Any, guess: Array, periods: int, limit: int, lost: bool) -> Chain | None:
-        """Orbit by multiple shooting; None where the flow has none, or one shot is enough."""
-        return None
-
 
 class Oscillator(ABC):
     """What moves: a frozen record of parameters, each with a name."""
@@ -192,33 +185,6 @@ class Oscillator(ABC):
     @abstractmethod
     def floor(self) -> float:
         """Least size that a motion is measured by."""
-
-    @abstractmethod
-    def flow(
-        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
-    ) -> Flow:
-        """Make ready to be followed.
-
-        Parameters
-        ----------
-        tolerance : float, optional
-            Of a step (stepwise flow) or of one period's map (exact flow).
-        parameters : tuple of str
-            Parameters to differentiate by.
-        extrema : bool
-            Whether extrema of X are among the events.
-        """
-
-    @abstractmethod
-    def orbits(
-        self,
-        parameter: str,
-        periods: int,
-        bounds: tuple[float, float],
-        scale: float,
-        tolerance: float | None = None,
-    ) -> BranchProblem:
-        """Periodic orbits over a range of one parameter, as continuation takes them."""
 
     @abstractmethod
     def rest_state(self) -> Array:

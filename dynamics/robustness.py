@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Faults, quantity, record
-from dynamics.flow import trajectory
+from dynamics.motions import trajectory
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.special import SpecialPoint

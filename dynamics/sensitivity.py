@@ -6,10 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, quantity, record
-from dynamics.flow import checked_state, tables
+from dynamics.flow import tables
 from dynamics.limits import PERIODS
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only, lost_motion
+from dynamics.states import checked_state
 
 __all__ = ["MapDerivatives", "map_derivatives"]
 

@@ -10,13 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record
-from dynamics.flow import checked_state
+from dynamics.flow import Tables
+from dynamics.flows import flow_of
 from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
+from dynamics.multiple_shooting import shoot_in_stretches
+from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, Flow, MapResult, Oscillator
+from dynamics.states import checked_state
 
 __all__ = ["Orbit", "find_orbit", "floquet_multipliers", "motion_label"]
 
 FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
+LONG = 200  # cells of an orbit that many shots are tried for, too, where one shot fails
 
 
 @record
@@ -61,7 +66,7 @@ class Orbit:
     @cached_property
     def points(self) -> Array:
         """X and V after each excitation period, shape (periods, 2)."""
-        flow: Flow = self.oscillator.flow(self.tolerance)
+        flow = flow_of(self.oscillator, self.tolerance)
         return flow.follow(self.state, self.periods, derivatives=False).states
 
 
@@ -156,7 +161,7 @@ def find_orbit(
     limit = faults.whole("max_iterations", max_iterations, *NEWTON_STEPS)
     wait = faults.whole("transient", transient, *TRANSIENT)
     faults.raise_if_any()
-    flow = oscillator.flow(tolerance)
+    flow = flow_of(oscillator, tolerance)
     state = checked_state(guess, "guess")
     size = max(float(np.max(np.abs(state))), oscillator.natural_size)
     used = wait
@@ -198,8 +203,15 @@ def _in_stretches(
     oscillator: Oscillator, flow: Flow, guess: Array, n: int, limit: int, size: float, lost: bool, watch: Stopwatch,
     used: int,
 ) -> Orbit | None:  # fmt: skip
-    """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits."""
-    chain = flow.chain(oscillator, guess, n, limit, lost)
+    """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits.
+
+    Of the exact flow alone; tried where one shot is lost, or is not enough for a long orbit.
+    """
+    if not (isinstance(oscillator, GearOscillator) and isinstance(flow, Tables)):
+        return None
+    if not lost and flow.cells * n <= LONG:
+        return None
+    chain = shoot_in_stretches(oscillator, flow, guess, n, limit)
     if chain is None:
         return None
     scale = max(float(np.max(np.abs(chain.nodes))), 1e-300)

@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.flow import checked_state
+from dynamics.flows import flow_of
 from dynamics.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
 from dynamics.protocol import EPS, Flow, Oscillator
 from dynamics.shooting import find_orbit, motion_label
+from dynamics.states import checked_state
 
 __all__ = ["APERIODIC", "DIVERGED", "SweepResult", "settling_periods", "sweep"]
 
@@ -70,7 +71,7 @@ def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -
 
 def long_flow(oscillator: Oscillator, tolerance: float | None) -> Flow:
     """Flow of a motion that is followed for long; no tolerance makes the exact one coarser unless it is given."""
-    return oscillator.flow(tolerance if tolerance is not None or oscillator.is_exact else TOLERANCE)
+    return flow_of(oscillator, tolerance if tolerance is not None or oscillator.is_exact else TOLERANCE)
 
 
 def sweep(

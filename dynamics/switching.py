@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from base import Faults
+from dynamics.continuation import orbits_over
+from dynamics.flows import flow_of
 from dynamics.protocol import Oscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.special import SpecialPoint
@@ -61,9 +63,9 @@ def doubled_orbit(
     faults.raise_if_any()
     n = point.periods
     scale = scale_of(oscillator, point.state)
-    problem = oscillator.orbits(parameter, 2 * n, bounds, scale, tolerance)
+    problem = orbits_over(oscillator, parameter, 2 * n, bounds, scale, tolerance)
     here = oscillator.with_parameter(parameter, point.parameter)
-    values, vectors = np.linalg.eig(here.flow(tolerance).follow(point.state, n).jacobian)
+    values, vectors = np.linalg.eig(flow_of(here, tolerance).follow(point.state, n).jacobian)
     along = np.append(np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]), 0.0)
     along /= np.linalg.norm(along)
     origin = problem.unknowns(point.state, point.parameter)

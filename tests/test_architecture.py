@@ -6,6 +6,7 @@ import ast
 import importlib
 import subprocess
 import sys
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -42,6 +43,85 @@ def test_imports_only_go_downwards(package: str):
         if (found := imported(source) & (MAY_IMPORT.keys() - MAY_IMPORT[package] - {package}))
     }
     assert climbing == {}
+
+
+WITHOUT_CIRCLES = sorted(MAY_IMPORT.keys() - {"gears", "flankfilm"})
+
+
+class Files:
+    """Modules of a package and what each imports of the others, in functions and under TYPE_CHECKING too."""
+
+    def __init__(self, folder: Path) -> None:
+        self.sources = {self.named(source, folder): source for source in folder.rglob("*.py")}
+        self.shown = {name: self.names_of(name) for name in self.sources}
+        self.imports = {name: self.reached(name) for name in self.sources}
+
+    @staticmethod
+    def named(source: Path, folder: Path) -> str:
+        parts = source.relative_to(folder.parent).with_suffix("").parts
+        return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+    def from_imports(self, module: str, tree: ast.AST):
+        """Absolute name of the module, name in it and name here, for every `from module import name as name`."""
+        package = module if self.sources[module].name == "__init__.py" else module.rpartition(".")[0]
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                above = package.split(".")[: len(package.split(".")) + 1 - node.level] if node.level else []
+                start = ".".join([*above, *([node.module] if node.module else [])])
+                for alias in node.names:
+                    yield start, alias.name, alias.asname or alias.name
+
+    def names_of(self, module: str) -> dict[str, tuple[str, str]]:
+        """Where a package has the names from that it hands on: its stub says it, or the package itself."""
+        source = self.sources[module]
+        if source.name != "__init__.py":
+            return {}
+        stub = source.with_suffix(".pyi")
+        tree = ast.parse((stub if stub.exists() else source).read_text(encoding="utf-8"))
+        return {here: (start, name) for start, name, here in self.from_imports(module, tree)}
+
+    def home(self, module: str, name: str) -> str:
+        """File that holds a name which is taken from a module."""
+        if f"{module}.{name}" in self.sources:
+            return f"{module}.{name}"
+        start, there = self.shown.get(module, {}).get(name, (module, name))
+        return module if start == module or start not in self.sources else self.home(start, there)
+
+    def reached(self, module: str) -> set[str]:
+        tree = ast.parse(self.sources[module].read_text(encoding="utf-8"))
+        found = {self.home(start, name) for start, name, _ in self.from_imports(module, tree)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+        return found & self.sources.keys()
+
+    def circle(self) -> list[str]:
+        """Modules that import each other in a circle, the first again at the end; none if there is no circle."""
+        try:
+            TopologicalSorter(self.imports).prepare()
+        except CycleError as error:
+            return list(error.args[1])
+        return []
+
+
+@pytest.mark.parametrize("package", WITHOUT_CIRCLES)
+def test_no_files_import_each_other_in_a_circle(package: str):
+    assert Files(ROOT / package).circle() == []
+
+
+def test_circles_are_found_in_functions_under_type_checking_and_through_stubs(tmp_path):
+    package = tmp_path / "shop"
+    package.mkdir()
+    (package / "__init__.py").write_text("import lazy_loader")
+    (package / "__init__.pyi").write_text("from .till import Till as Till")
+    (package / "till.py").write_text("def pay():\n    from .door import Door")
+    (package / "door.py").write_text("if TYPE_CHECKING:\n    from shop import Till")
+    (package / "shelf.py").write_text("import shop.till\nfrom shop import door")
+    files = Files(package)
+    assert files.imports["shop.shelf"] == {"shop.till", "shop.door"}
+    assert set(files.circle()) == {"shop.till", "shop.door"}
+    (package / "door.py").write_text("from math import pi")
+    assert Files(package).circle() == []
 
 
 def test_the_coupling_knows_no_scene_and_no_files():

@@ -4,17 +4,37 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
+from base import Array
 from dynamics.branch_problem import match_extrema
 from dynamics.protocol import EPS
 from dynamics.roots import along_chord
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special import SpecialPoint
-from dynamics.stepwise.problem import MapPoint, PeriodMap
+from dynamics.stepwise.point import MapPoint
 
 __all__ = ["Sign", "find_crossings", "locate"]
+
+
+class RefinedMap(Protocol):
+    """What locating asks of a period map."""
+
+    @property
+    def periods(self) -> int: ...
+
+    @property
+    def scale(self) -> float: ...
+
+    def correct(self, guess: Array, across: Array) -> MapPoint | None:
+        """Periodic orbit in the plane across . (u - guess) = 0, or None if Newton's method does not arrive."""
+        ...
+
+    def refined(self) -> RefinedMap:
+        """The same map, more accurately, for an error estimate."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -83,7 +103,7 @@ def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Sign], bool]:
     return found, change == [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
 
 
-def locate(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[SpecialPoint | None, bool]:
+def locate(problem: RefinedMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[SpecialPoint | None, bool]:
     """Special point between two neighbours, and whether the search arrived.
 
     A determinant of one with real multipliers is no Neimark-Sacker point: then there is none, and that is no failure.
@@ -112,7 +132,7 @@ def locate(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[Sp
     return special, True
 
 
-def _bracket(problem: PeriodMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[MapPoint | None, float]:
+def _bracket(problem: RefinedMap, a: MapPoint, b: MapPoint, sign: Sign) -> tuple[MapPoint | None, float]:
     """Root search along the chord, each trial corrected on to the branch."""
     found = along_chord(problem.correct, sign.measure, a, b, 1e-14)
     return (None, math.nan) if found is None else found

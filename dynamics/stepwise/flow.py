@@ -55,21 +55,18 @@ class StepwiseFlow(Flow):
         parameters: tuple[str, ...] = (),
         extrema: bool = False,
     ) -> None:
-        law, faults = oscillator.law, Faults()
+        faults = Faults()
         self.oscillator, self.extrema = oscillator, extrema
         self.tolerance = faults.number(
             "tolerance", TOLERANCE if tolerance is None else tolerance, STEP_TOLERANCE
         )
         faults.raise_if_any()
         self.noise = NOISE * self.tolerance
-        places = np.array([oscillator.place(name) for name in parameters], dtype=np.int64)
-        values = np.ascontiguousarray(law.values, dtype=np.float64)
-        data = np.ascontiguousarray(law.data, dtype=np.float64)
-        self.model = (oscillator.own, law.compiled, values, data, places)
-        levels = np.ascontiguousarray(law.surfaces, dtype=np.float64).reshape(-1, 4)
+        self.model = oscillator.model(parameters)
+        levels = oscillator.surfaces
         self.levels = len(levels)
         self.surfaces = np.vstack([levels, TURNING]) if extrema else levels
-        self.columns = 2 + len(places)
+        self.columns = 2 + len(parameters)
         self.size = 1e-2 * oscillator.floor
 
     def finer(self) -> StepwiseFlow:

@@ -5,20 +5,16 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Faults
+from base import Array, Faults, Integers
 from dynamics.laws.contacts import Law
 from dynamics.limits import NUMBER, OSCILLATOR
 from dynamics.naming import natural_size
 from dynamics.protocol import Oscillator
-
-if TYPE_CHECKING:
-    from dynamics.stepwise.flow import StepwiseFlow
-    from dynamics.stepwise.problem import FlowProblem
 
 __all__ = ["SmoothOscillator", "restoring_force"]
 
@@ -88,6 +84,25 @@ class SmoothOscillator(Oscillator):
         """Values of the parameters that are not the law's."""
         return np.array([getattr(self, name) for name in OWN], dtype=np.float64)
 
+    @property
+    def surfaces(self) -> Array:
+        """Switching surfaces of the law, shape (s, 4), as the kernels take them."""
+        return np.ascontiguousarray(self.law.surfaces, dtype=np.float64).reshape(-1, 4)
+
+    def model(self, parameters: tuple[str, ...] = ()) -> tuple[Array, Any, Array, Array, Integers]:
+        """What moves, as the kernels take it: own parameters, law, its values and data, places to differentiate by.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter.
+        """
+        law = self.law
+        values = np.ascontiguousarray(law.values, dtype=np.float64)
+        data = np.ascontiguousarray(law.data, dtype=np.float64)
+        places = np.array([self.place(name) for name in parameters], dtype=np.int64)
+        return self.own, law.compiled, values, data, places
+
     def get(self, parameter: str) -> float:
         """Value of a parameter.
 
@@ -122,30 +137,6 @@ class SmoothOscillator(Oscillator):
         if parameter not in OWN:
             change = {"law": self.law.with_value(parameter, value)}
         return dataclasses.replace(self, **change)
-
-    def flow(
-        self, tolerance: float | None = None, parameters: tuple[str, ...] = (), extrema: bool = False
-    ) -> StepwiseFlow:
-        """Make ready for the kernels."""
-        from dynamics.stepwise.flow import StepwiseFlow
-
-        return StepwiseFlow(self, tolerance, parameters, extrema)
-
-    def orbits(
-        self,
-        parameter: str,
-        periods: int,
-        bounds: tuple[float, float],
-        scale: float,
-        tolerance: float | None = None,
-    ) -> FlowProblem:
-        """Periodic orbits over a range of one parameter."""
-        from dynamics.stepwise.flow import TOLERANCE
-        from dynamics.stepwise.problem import FlowProblem
-
-        return FlowProblem(
-            self, parameter, periods, *bounds, scale, TOLERANCE if tolerance is None else tolerance
-        )
 
     def rest_state(self) -> Array:
         """State at rest where the mean of the force over the angle balances the mean force; zeros if there is none."""
@@ -194,8 +185,8 @@ def restoring_force(
     from dynamics.kernels.stepwise.carrying import probe
 
     theta, place, speed = np.broadcast_arrays(angle, x, v)
-    flow = oscillator.flow()
-    out = np.empty((theta.size, 3 + len(flow.model[2])))
+    model = oscillator.model()
+    out = np.empty((theta.size, 3 + len(model[2])))
     points = np.column_stack([np.asarray(a, dtype=np.float64).ravel() for a in (theta, place, speed)])
-    probe(flow.model, flow.surfaces, points, out)
+    probe(model, oscillator.surfaces, points, out)
     return out[:, :3].reshape(*theta.shape, 3)

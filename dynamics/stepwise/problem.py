@@ -5,65 +5,17 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, InputError
-from dynamics.branch_problem import PlanePoint
 from dynamics.special import SpecialPoint
-from dynamics.stepwise.flow import NOISE
+from dynamics.stepwise.crossings import Sign, find_crossings, locate
+from dynamics.stepwise.flow import NOISE, StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
+from dynamics.stepwise.point import MapPoint
 
-if TYPE_CHECKING:
-    from dynamics.stepwise.crossings import Sign
-
-__all__ = ["FlowProblem", "MapPoint", "PeriodMap"]
-
-
-@dataclass(frozen=True, eq=False)
-class MapPoint(PlanePoint):
-    """A state and its image under the map of n periods, at one value of the parameter.
-
-    Parameters
-    ----------
-    u : ndarray, shape (3,)
-        Unknowns: X and V over the scale, the parameter as a fraction of its range.
-    values : ndarray, shape (1,)
-        The parameter.
-    period : float
-        Excitation period, in tau.
-    image : ndarray, shape (2,)
-        Image of X and V over the scale.
-    derivative : ndarray, shape (2, 3)
-        Of the image with respect to the unknowns; its first two columns are the Jacobian.
-    determinant : float
-        Of the Jacobian.
-    counts : tuple of int
-        p and q.
-    levels : ndarray, shape (s,)
-        Values of X at which crossings are counted.
-    extrema : ndarray, shape (k, 3)
-        Phase in [0, 1) of n periods, X, X'' at every extremum of X.
-    iterations : int
-        Newton iterations spent.
-    """
-
-    u: Array
-    values: Array
-    period: float
-    image: Array
-    derivative: Array
-    determinant: float
-    counts: tuple[int, int]
-    levels: Array
-    extrema: Array
-    iterations: int = 0
-
-    @property
-    def torus(self) -> float:
-        """Product of the multipliers less 1: zero at a Neimark-Sacker point, if they are a pair."""
-        return self.determinant - 1.0
+__all__ = ["FlowProblem", "PeriodMap"]
 
 
 class PeriodMap(ABC):
@@ -128,14 +80,10 @@ class PeriodMap(ABC):
 
     def crossings(self, last: MapPoint, new: MapPoint) -> tuple[list[Sign], bool]:
         """Changes of sign between neighbours."""
-        from dynamics.stepwise.crossings import find_crossings
-
         return find_crossings(last, new)
 
     def locate(self, last: MapPoint, new: MapPoint, crossing: Sign) -> tuple[SpecialPoint | None, bool]:
         """Special point of a crossing; a determinant of 1 with real multipliers is none."""
-        from dynamics.stepwise.crossings import locate
-
         return locate(self, last, new, crossing)
 
     def correct(self, guess: Array, across: Array, limit: int = 12) -> MapPoint | None:
@@ -189,7 +137,7 @@ class FlowProblem(PeriodMap):
             here = self.oscillator.with_parameter(self.parameter, value)
         except InputError:  # the continuation tries a smaller step
             return None
-        flow = here.flow(self.tolerance, (self.parameter,), extrema=True)
+        flow = StepwiseFlow(here, self.tolerance, (self.parameter,), extrema=True)
         image = flow.follow(u[:2] * self.scale, self.periods)
         if image.message:
             return None
@@ -210,7 +158,8 @@ class FlowProblem(PeriodMap):
     def states(self, point: MapPoint) -> Array:
         """X and V over the scale after each period."""
         here = self.oscillator.with_parameter(self.parameter, point.value)
-        image = here.flow(self.tolerance).follow(point.u[:2] * self.scale, self.periods, derivatives=False)
+        flow = StepwiseFlow(here, self.tolerance)
+        image = flow.follow(point.u[:2] * self.scale, self.periods, derivatives=False)
         return image.states / self.scale
 
     def refined(self) -> FlowProblem:

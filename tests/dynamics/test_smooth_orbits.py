@@ -23,7 +23,8 @@ from dynamics import (
 from dynamics.branch import MEETS
 from dynamics.flow import turning_points
 from dynamics.sensitivity import map_derivatives
-from dynamics.stepwise.problem import MapPoint, PeriodMap
+from dynamics.stepwise.point import MapPoint
+from dynamics.stepwise.problem import PeriodMap
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
 

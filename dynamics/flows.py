@@ -1,0 +1,68 @@
+"""Which flow an oscillator has: the one place where it is chosen by what the oscillator is."""
+
+from __future__ import annotations
+
+from base import Faults, InputError
+from dynamics.flow import Tables, tables
+from dynamics.oscillator import GearOscillator
+from dynamics.protocol import Flow, Oscillator
+from dynamics.stepwise.flow import StepwiseFlow
+from dynamics.stepwise.oscillator import SmoothOscillator
+
+__all__ = ["flow_of", "unserved"]
+
+
+def flow_of(
+    oscillator: Oscillator,
+    tolerance: float | None = None,
+    parameters: tuple[str, ...] = (),
+    extrema: bool = False,
+) -> Flow:
+    """Make an oscillator ready to be followed.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or SmoothOscillator
+        The oscillator.
+    tolerance : float, optional
+        Of a step (stepwise flow) or of one period's map (exact flow).
+    parameters : tuple of str
+        Parameters to differentiate by, stepwise flow alone.
+    extrema : bool
+        Whether extrema of X are among the events, stepwise flow alone.
+
+    Raises
+    ------
+    InputError
+        If the tolerance is out of range or there is no such parameter; also if derivatives by parameters or extrema
+        of the exact flow are asked for, which `map_derivatives` and `turning_points` give.
+    """
+    if isinstance(oscillator, GearOscillator):
+        return _exact(oscillator, tolerance, parameters, extrema)
+    if isinstance(oscillator, SmoothOscillator):
+        return StepwiseFlow(oscillator, tolerance, parameters, extrema)
+    raise unserved(oscillator)
+
+
+def _exact(
+    oscillator: GearOscillator, tolerance: float | None, parameters: tuple[str, ...], extrema: bool
+) -> Tables:
+    """Tables, which neither derivatives by parameters nor extrema come from."""
+    asked = (
+        ("parameters", parameters, "take dynamics.sensitivity.map_derivatives"),
+        ("extrema", extrema, "take dynamics.flow.turning_points"),
+    )
+    faults = Faults()
+    for name, value, remedy in asked:
+        if value:
+            faults.add(name, value, "must be left out for a GearOscillator", remedy)
+    faults.raise_if_any()
+    return tables(oscillator, tolerance=tolerance)
+
+
+def unserved(oscillator: object) -> InputError:
+    """Error of what is no oscillator that there is a flow for."""
+    faults = Faults()
+    name = type(oscillator).__name__
+    faults.add("oscillator", name, "must be a GearOscillator or a SmoothOscillator", "take one of these")
+    return InputError(faults.found)

@@ -1,0 +1,177 @@
+"""Motions of any oscillator by themselves: period map and sampled motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Cost, Faults, Stopwatch, quantity, record
+from dynamics.arrays import AsArray
+from dynamics.flows import flow_of
+from dynamics.limits import PERIODS, POINTS, TRANSIENT
+from dynamics.protocol import Flow, MapResult, Oscillator
+from dynamics.states import checked_state
+
+__all__ = ["Trajectory", "period_map", "trajectory"]
+
+
+@record
+class Trajectory(AsArray):
+    """Motion at equal times, and its impacts."""
+
+    headline = ("points_per_period",)
+
+    tau: Array = quantity("1", "dimensionless time from 0, both ends included", "sample")
+    x: Array = quantity("1", "displacement X", "sample")
+    v: Array = quantity("1", "speed dX/dtau", "sample")
+    points_per_period: int = quantity("1", "samples per excitation period")
+    events: Array = quantity(
+        "1",
+        "time, X (+-D), speed and region entered (1, 0, -1) at every crossing of the backlash's limits",
+        "event column",
+    )
+    extrema: Array = quantity("1", "time, X and acceleration at every extremum of X", "extremum column")
+    error: float = quantity(
+        "1",
+        "difference to the motion on a finer flow, largest over the samples, over the largest size of X and of V",
+    )
+    cost: Cost
+
+    converged = True  # a motion that cannot be followed raises
+    message = ""
+
+    def columns(self) -> Array:
+        """Columns tau, X, V."""
+        return np.stack([self.tau, self.x, self.v], axis=1)
+
+    @property
+    def poincare(self) -> Array:
+        """States at tau = 0 mod the excitation period, shape (periods + 1, 2)."""
+        return np.stack([self.x, self.v], axis=1)[:: self.points_per_period]
+
+
+def period_map(
+    oscillator: Oscillator | Flow,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    skip: int = 0,
+    *,
+    parameters: tuple[str, ...] = (),
+    extrema: bool = False,
+    tolerance: float | None = None,
+) -> MapResult:
+    """Follow a state at tau = 0 over whole excitation periods.
+
+    Parameters
+    ----------
+    oscillator : Oscillator or Flow
+        The oscillator; its flow (`dynamics.flows.flow_of`) made once saves the cost of that in repeated calls, and the
+        error estimate.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Number of periods kept.
+    skip : int
+        Periods followed before those; the derivatives cover them too.
+    parameters : tuple of str
+        Parameters to differentiate by, stepwise flow alone; `map_derivatives` serves the exact one.
+    extrema : bool
+        Whether extrema of X are among the events, stepwise flow alone; the exact one has `turning_points`.
+    tolerance : float, optional
+        Of a step, or of one period's map where the flow is exact.
+
+    Returns
+    -------
+    MapResult
+        States, Jacobian and counts of impacts.
+
+    Raises
+    ------
+    InputError
+        If the state is not finite or an argument out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.6, half_backlash=0.2)
+    >>> period_map(oscillator, (0.3, 0.0)).state.round(12) + 0.0
+    array([0.3, 0. ])
+    """
+    watch = Stopwatch()
+    at = checked_state(state)
+    if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
+        return oscillator.follow(at, periods, skip)
+    faults = Faults()
+    n = faults.whole("periods", periods, *PERIODS)
+    n_skip = faults.whole("skip", skip, *TRANSIENT)
+    faults.raise_if_any()
+    if isinstance(oscillator, Flow):
+        return oscillator.follow(at, n, n_skip)
+    flow = flow_of(oscillator, tolerance, parameters, extrema)
+    here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
+    size = max(float(np.max(np.abs(here.states))), oscillator.floor)
+    error = float(np.max(np.abs(here.state - there.state))) / size
+    cost = replace(here.cost + there.cost, seconds=watch.seconds)
+    return replace(here, error=error, cost=cost)
+
+
+def trajectory(
+    oscillator: Oscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    points_per_period: int = 200,
+    *,
+    tolerance: float | None = None,
+) -> Trajectory:
+    """Sample the motion from a state at tau = 0; for phase portraits and Poincare points.
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+        The oscillator.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    points_per_period : int
+        Samples per period; on the exact flow more of them are not more accurate, and a step of the other ends at each.
+    tolerance : float, optional
+        As of `period_map`.
+
+    Returns
+    -------
+    Trajectory
+        The samples, impacts (crossings of the first two surfaces of a law) and extrema.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or the motion cannot be followed.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> trajectory(oscillator, (0.5, 0.2), periods=2, points_per_period=50).x.shape
+    (101,)
+    """
+    watch = Stopwatch()
+    faults = Faults()
+    n = faults.whole("periods", periods, *PERIODS)
+    points = faults.whole("points_per_period", points_per_period, *POINTS)
+    faults.raise_if_any()
+    flow = flow_of(oscillator, tolerance)
+    samples, turns, events = flow.sampled(checked_state(state), n, points)
+    finer, _, _ = flow.finer().sampled(checked_state(state), n, points)
+    return Trajectory(
+        tau=np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points),
+        x=samples[:, 0],
+        v=samples[:, 1],
+        points_per_period=points,
+        events=events,
+        extrema=turns[:, :3],
+        error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
+        cost=Cost(watch.seconds, periods=2 * n),
+    )
