@@ -9,8 +9,8 @@ from base import Fault, Faults, Limit, shorten
 __all__ = ["LIMITS", "RELIEF_LIMITS", "Gear", "TipRelief"]
 
 RELIEF_LIMITS = {
-    "amount": Limit(0.0, 5e-3, "m", "give the material removed at the tip in metres"),
-    "length": Limit(0.0, 0.5, "m", "give the length along the path of contact in metres", low_open=True),
+    "amount": Limit(0.0, 1.0, "m", "give the material removed at the tip in metres"),
+    "length": Limit(0.0, 1e3, "m", "give the length along the path of contact in metres", low_open=True),
 }
 """What the numbers of tip relief may be."""
 
@@ -19,14 +19,14 @@ LIMITS = {
     "profile_shift": Limit(-0.8, 1.5, "modules", "shift the profile less"),
     "bore_radius": Limit(
         0.0,
-        500.0,
+        1e4,
         "m",
         "give the radius of the bore in metres, or None for half the root radius",
         low_open=True,
     ),
     "tip_alteration": Limit(-1.0, 1.0, "modules", "change the tip less"),
-    "thickness_allowance": Limit(0.0, 0.05, "m", "give the arc by which the tooth is thinned, in metres"),
-    "tip_chamfer": Limit(0.0, 0.1, "m", "give the radial height of the chamfer in metres"),
+    "thickness_allowance": Limit(0.0, 1.0, "m", "give the arc by which the tooth is thinned, in metres"),
+    "tip_chamfer": Limit(0.0, 1.0, "m", "give the radial height of the chamfer in metres"),
 }
 """What the numbers of a gear may be."""
 

@@ -9,9 +9,9 @@ from base import Fault, Faults, Limit
 __all__ = ["LIMITS", "STEEL", "Material", "reduced_modulus"]
 
 LIMITS = {
-    "youngs_modulus": Limit(1e7, 2e12, "Pa", "give the modulus in pascals (steel 206e9)"),
+    "youngs_modulus": Limit(1e6, 1e13, "Pa", "give the modulus in pascals (steel 206e9)"),
     "poisson_ratio": Limit(0.0, 0.4999, remedy="give Poisson's ratio of a compressible solid (steel 0.3)"),
-    "density": Limit(100.0, 3e4, "kg/m3", "give the density in kg/m3 (steel 7850)"),
+    "density": Limit(1.0, 1e5, "kg/m3", "give the density in kg/m3 (steel 7850)"),
 }
 """What the numbers of a material may be."""
 

@@ -22,15 +22,15 @@ from gears.profile import ToothProfile, generate
 from gears.rack import ISO_53_A, BasicRack
 
 LIMITS = {
-    "module": Limit(1e-5, 0.1, "m", "give the module in metres (2 mm is 2e-3)"),
-    "face_width": Limit(1e-5, 10.0, "m", "give the face width in metres (40 mm is 40e-3)"),
+    "module": Limit(1e-5, 1.0, "m", "give the module in metres (2 mm is 2e-3)"),
+    "face_width": Limit(1e-6, 100.0, "m", "give the face width in metres (40 mm is 40e-3)"),
     "centre_distance": Limit(
-        0.0, 1e3, "m", "give the distance of the axes in metres, or None", low_open=True
+        0.0, 1e4, "m", "give the distance of the axes in metres, or None", low_open=True
     ),
 }
 """What the numbers of a pair itself may be."""
 
-BACKLASH = Limit(0.0, 0.05, "m", "give the normal backlash in metres (50 um is 50e-6)")
+BACKLASH = Limit(0.0, 1.0, "m", "give the normal backlash in metres (50 um is 50e-6)")
 """What the normal backlash of a pair may be."""
 
 

@@ -277,7 +277,7 @@ def test_faults_of_the_geometry_speak_of_the_scenes_keys_and_units(old: str, new
 def test_bounds_are_those_of_the_ground():
     """The same at both ends, in the unit of the key."""
     assert (
-        "at least 0.01 and at most 100 mm"
+        "at least 0.01 and at most 1000 mm"
         in faults(changed("module_mm = 2.0", "module_mm = 0"))["pair.module_mm"]
     )
     found = faults(changed("poisson_ratio = 0.3", "poisson_ratio = 0.5"))["material.poisson_ratio"]
