@@ -10,6 +10,7 @@ from base import InputError
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import film_model, lubricant, roughness
 from flankfilm.scene import parse_scene, template
+from flankfilm.scene.ground import under_keys
 from flankfilm.stages.catalogue import PLAN
 from flankfilm.stages.engine import Engine
 
@@ -156,7 +157,7 @@ def test_supplies():
     placed = supply_of(fixed, c)
     assert isinstance(placed, Meniscus)
     assert placed.position == pytest.approx(-2e-4)
-    with pytest.raises(InputError, match="meniscus"):
+    with pytest.raises(InputError, match=r"film\.meniscus_mm"), under_keys(fixed.film, "film"):
         supply_of(fixed, contact(load=4.434e6))
 
 

@@ -89,7 +89,11 @@ def test_tables_read_back(run):
         ("[operating]", '[stiffness]\nmodel = "ishikawa"\n[operating]', "stiffness.model"),
         ("[operating]", '[stiffness]\npairs = "independent"\n[operating]', "stiffness.pairs"),
         ("torques_Nm = [50, 100, 200, 300, 400, 500, 700, 800]", "", "operating.torques_Nm"),
-        ("teeth = 36", "teeth = 35", "cumulative_pitch_um = 36 values: must have one value for each of 35 teeth"),
+        (
+            "teeth = 36",
+            "teeth = 35",
+            "cumulative_pitch_um = 36 values: must have one value for each of 35 teeth",
+        ),
         ("roll_deg = [11.0, 16.0", "roll_deg = [16.0, 11.0", "roll_deg: must rise"),
         ("friction = 0.05", "friction = 0.9", "operating.friction"),
     ],
