@@ -86,9 +86,3 @@ class Results:
     def decisions(self) -> tuple[Decision, ...]:
         """What the run decided by itself, and what the scene had decided."""
         return decisions(self.values)
-
-    def _repr_html_(self) -> str:
-        """Headline figures, for notebooks."""
-        from flankfilm.notebook import results_html
-
-        return results_html(self)

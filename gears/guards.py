@@ -14,7 +14,7 @@ from gears.profile import ToothProfile, generate
 from gears.rack import BasicRack
 
 if TYPE_CHECKING:
-    from gears.pair import GearPair
+    from gears.pair_geometry import PairGeometry
 
 THIN_TIP = 0.2
 """Thickness of the top land below which a pair warns [modules]."""
@@ -132,7 +132,7 @@ def _check_rim(
         )
 
 
-def check_mesh(found: Findings, pair: GearPair) -> None:
+def check_mesh(found: Findings, pair: PairGeometry) -> None:
     """Note why two sound gears cannot run together: axes, jam, contact ratio, interference, tips."""
     bases = sum(pair.base_radii)
     if pair.centre_distance is not None and pair.centre_distance <= bases:
@@ -170,7 +170,7 @@ def check_mesh(found: Findings, pair: GearPair) -> None:
             found.add(f"{other}.tip_radius", f"{mate.tip_radius:.6g}", allowed, remedy)
 
 
-def _add_jam(found: Findings, pair: GearPair) -> None:
+def _add_jam(found: Findings, pair: PairGeometry) -> None:
     """Note teeth thicker than their gaps at the given centre distance."""
     free = sum(pair.base_radii) * math.hypot(1.0, tangent_from_involute(max(pair._working_involute, 1e-300)))
     allowance = -pair.backlash / math.cos(pair.rack.alpha)

@@ -10,7 +10,7 @@ import numpy as np
 from base import Array, quantity, record
 
 if TYPE_CHECKING:
-    from gears.pair import GearPair
+    from gears.pair_geometry import PairGeometry
 
 
 @record
@@ -61,7 +61,7 @@ def mirrored(points: Array) -> Array:
     return np.asarray(points * np.array([-1.0, 1.0]))
 
 
-def place(pair: GearPair, rho1: float) -> Placement:
+def place(pair: PairGeometry, rho1: float) -> Placement:
     """Placement of the gears for a contact at curvature radius `rho1` of the pinion.
 
     The line of action leaves the pinion's base circle at r_b1 (sin alpha_w, cos alpha_w) in the direction
@@ -70,7 +70,7 @@ def place(pair: GearPair, rho1: float) -> Placement:
 
     Parameters
     ----------
-    pair : GearPair
+    pair : PairGeometry
         The gears.
     rho1 : float
         Curvature radius of the pinion's flank at the contact [m].

@@ -55,6 +55,10 @@ class Optimum:
     computed: int
     seconds: float
 
+    def __repr__(self) -> str:
+        """One line: points, those that are best, seconds."""
+        return f"Optimum({len(self.evaluations)} points, {len(self.best)} best, {self.seconds:.3g} s)"
+
     def objectives(self) -> Array:
         """Objectives as they are, (evaluations, m); NaN where one failed."""
         m = len(self.task.objectives)

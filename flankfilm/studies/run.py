@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from base import view
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
@@ -38,11 +39,11 @@ class StudyResults:
         """Rows that failed."""
         return tuple(row for row in self.rows if row.fault)
 
-    def _repr_html_(self) -> str:
-        """First rows, for notebooks."""
-        from flankfilm.notebook import study_html
+    def __repr__(self) -> str:
+        """One line: rows, failures, seconds."""
+        return f"StudyResults({len(self.rows)} rows, {len(self.failures)} failed, {self.seconds:.3g} s)"
 
-        return study_html(self)
+    _repr_html_ = view
 
 
 def run_study(

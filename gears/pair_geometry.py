@@ -1,0 +1,234 @@
+"""What follows from the sizes of a pair of spur gears: radii, angles, path of contact, backlash, inertia."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from base import Array, Fault, Figure, described
+from gears.errors import GeometryError
+from gears.gear import Gear
+from gears.involute import involute_function, tangent_from_involute
+from gears.material import STEEL, Material, reduced_modulus
+from gears.path import PathOfContact, PathPoints
+from gears.profile import ToothProfile, generate
+from gears.rack import ISO_53_A, BasicRack
+
+
+@dataclass(frozen=True)
+class PairGeometry:
+    """Sizes of a pair, not yet known to mesh, and what follows from them; see `gears.GearPair`."""
+
+    pinion: Gear
+    wheel: Gear
+    module: float = field(metadata={"figure": Figure("m", "module", shown="mm")})  # m, m
+    face_width: float = field(metadata={"figure": Figure("m", "face width", shown="mm")})  # b, m
+    rack: BasicRack = ISO_53_A
+    material: Material | tuple[Material, Material] = STEEL
+    centre_distance: float | None = None  # a, m
+
+    @cached_property
+    def materials(self) -> tuple[Material, Material]:
+        """Materials of pinion and wheel."""
+        return self.material if isinstance(self.material, tuple) else (self.material, self.material)
+
+    @cached_property
+    def teeth_profiles(self) -> tuple[ToothProfile, ToothProfile]:
+        """Generated teeth of pinion and wheel."""
+        first, second = (generate(gear, self.module, self.rack) for gear in (self.pinion, self.wheel))
+        assert first is not None
+        assert second is not None
+        return first, second
+
+    def _of_both(self, name: str) -> tuple[float, float]:
+        """Length that each tooth has, of pinion and wheel [m]."""
+        first, second = (getattr(tooth, name) for tooth in self.teeth_profiles)
+        return first, second
+
+    @property
+    @described("m", "gear", shown="mm")
+    def reference_radii(self) -> tuple[float, float]:
+        """Reference radius, r = m z / 2."""
+        return self._of_both("reference_radius")
+
+    @property
+    @described("m", "gear", shown="mm")
+    def base_radii(self) -> tuple[float, float]:
+        """Base radius, r_b = r cos alpha."""
+        return self._of_both("base_radius")
+
+    @property
+    @described("m", "gear", shown="mm")
+    def root_radii(self) -> tuple[float, float]:
+        """Root radius, r_f = r - m (h_fP - x)."""
+        return self._of_both("root_radius")
+
+    @property
+    @described("m", "gear", shown="mm")
+    def tip_radii(self) -> tuple[float, float]:
+        """Tip radius, r_a = r + m (h_aP + x + k)."""
+        return self._of_both("tip_radius")
+
+    @property
+    @described("m", "gear", shown="mm")
+    def form_radii(self) -> tuple[float, float]:
+        """Form radius, at which the involute starts."""
+        return self._of_both("form_radius")
+
+    @property
+    @described("m", "gear", shown="mm")
+    def bore_radii(self) -> tuple[float, float]:
+        """Bore radius, half the root radius where none was given."""
+        return self._of_both("bore_radius")
+
+    @property
+    @described("1")
+    def ratio(self) -> float:
+        """Gear ratio, z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @cached_property
+    def _working_tangent(self) -> float:
+        """Tangent of the working pressure angle."""
+        bases = sum(self.base_radii)
+        if self.centre_distance is not None:
+            excess = self.centre_distance / bases
+            return math.sqrt((excess - 1.0) * (excess + 1.0))
+        return tangent_from_involute(self._working_involute)
+
+    @property
+    def _working_involute(self) -> float:
+        """Involute function of alpha_w of a pair whose nominal teeth have no backlash [rad]."""
+        shifts = self.pinion.profile_shift + self.wheel.profile_shift
+        tangent = math.tan(self.rack.alpha)
+        teeth = self.pinion.teeth + self.wheel.teeth
+        return 2.0 * shifts / teeth * tangent + float(involute_function(tangent))
+
+    @property
+    @described("rad", shown="deg")
+    def working_pressure_angle(self) -> float:
+        """Working pressure angle, alpha_w."""
+        return math.atan(self._working_tangent)
+
+    @cached_property
+    @described("m", shown="mm")
+    def working_centre_distance(self) -> float:
+        """Centre distance, a = (r_b1 + r_b2) / cos alpha_w."""
+        if self.centre_distance is not None:
+            return float(self.centre_distance)
+        return sum(self.base_radii) * math.hypot(1.0, self._working_tangent)
+
+    @property
+    @described("m", shown="mm")
+    def line_of_action(self) -> float:
+        """Line of action, between the base circles' tangent points: rho1 + rho2 = a sin alpha_w."""
+        return sum(self.base_radii) * self._working_tangent
+
+    @property
+    @described("m", "gear", shown="mm")
+    def pitch_radii(self) -> tuple[float, float]:
+        """Working pitch radius, r_b / cos alpha_w."""
+        first, second = self.base_radii
+        scale = math.hypot(1.0, self._working_tangent)
+        return first * scale, second * scale
+
+    @property
+    @described("m", shown="mm")
+    def base_pitch(self) -> float:
+        """Base pitch, p_b = pi m cos alpha."""
+        return math.pi * self.module * math.cos(self.rack.alpha)
+
+    @cached_property
+    def points(self) -> PathPoints:
+        """Points A to E of the line of action by rho1 [m]."""
+        first, second = self.teeth_profiles
+        start = self.line_of_action - second.flank_rho[1]
+        end = first.flank_rho[1]
+        pitch = self.base_radii[0] * self._working_tangent
+        return PathPoints(A=start, B=end - self.base_pitch, C=pitch, D=start + self.base_pitch, E=end)
+
+    @property
+    @described("1")
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio, length of the path over the base pitch."""
+        return (self.points.E - self.points.A) / self.base_pitch
+
+    @cached_property
+    @described("m", shown="um")
+    def backlash(self) -> float:
+        """Normal backlash, along the line of action.
+
+        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha.
+        """
+        thinning = self.pinion.thickness_allowance + self.wheel.thickness_allowance
+        return self._nominal_backlash + thinning * math.cos(self.rack.alpha)
+
+    @property
+    def _nominal_backlash(self) -> float:
+        """Normal backlash of the pair without thickness allowances [m]."""
+        if self.centre_distance is None:
+            return 0.0
+        tangent = math.tan(self.rack.alpha)
+        spread = float(involute_function(self._working_tangent) - involute_function(tangent))
+        shifts = self.pinion.profile_shift + self.wheel.profile_shift
+        teeth = self.pinion.teeth + self.wheel.teeth
+        return self.module * math.cos(self.rack.alpha) * (teeth * spread - 2.0 * shifts * tangent)
+
+    @property
+    def reduced_modulus(self) -> float:
+        """Reduced modulus E' = 2 / [(1 - nu1^2)/E1 + (1 - nu2^2)/E2] [Pa]."""
+        return reduced_modulus(*self.materials)
+
+    def normal_force(self, torque: float) -> float:
+        """Return the normal force T / r_b1 [N] of a pinion torque T [N m]."""
+        return torque / self.base_radii[0]
+
+    @property
+    def moments_of_inertia(self) -> tuple[float, float]:
+        """Polar moments of inertia of discs from the bore to the reference circle [kg m^2].
+
+        J = pi rho b (r^4 - r_bore^4) / 2
+        """
+        first, second = (
+            0.5
+            * math.pi
+            * material.density
+            * self.face_width
+            * (tooth.reference_radius**4 - tooth.bore_radius**4)
+            for material, tooth in zip(self.materials, self.teeth_profiles, strict=True)
+        )
+        return first, second
+
+    def path_at(self, rho1: float | Array) -> PathOfContact:
+        """Path of contact at given curvature radii of the pinion.
+
+        Parameters
+        ----------
+        rho1 : float or (n,) array
+            Curvature radii [m], from 0 to `line_of_action`; they need not lie between A and E.
+
+        Returns
+        -------
+        PathOfContact
+            The points.
+        """
+        first = np.atleast_1d(np.asarray(rho1, dtype=float))
+        total = self.line_of_action
+        if not np.all((first >= 0.0) & (first <= total)):
+            allowed = f"must be finite, at least 0 and at most {total:.6g} m (the line of action)"
+            fault = Fault(
+                "rho1", f"{np.min(first):g} .. {np.max(first):g}", allowed, "stay on the line of action"
+            )
+            raise GeometryError([fault])
+        return PathOfContact(first, total - first, self.points.A, self.base_radii)
+
+    def path_of_contact(self, n: int = 9) -> PathOfContact:
+        """Path of contact at `n` equally spaced points from A to E, both included."""
+        if n < 2:
+            raise GeometryError(
+                [Fault("n", str(n), "must be at least 2 points", "A and E are both included")]
+            )
+        return self.path_at(np.linspace(self.points.A, self.points.E, n))
