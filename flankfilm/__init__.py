@@ -6,13 +6,4 @@ files: :func:`run`, :func:`study`, :func:`optimise`, :func:`verify`. Nothing hea
 
 import lazy_loader as _lazy
 
-from base import show_with as _show_with
-
 __getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
-
-_show_with(
-    {
-        "flankfilm.results:Results": "flankfilm.notebook:results_html",
-        "flankfilm.studies.run:StudyResults": "flankfilm.notebook:study_html",
-    }
-)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from base import Cost, record
+from base import Cost, record, show_with
 from flankfilm.scene import Scene
 from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import Stage, StageRun
@@ -86,3 +86,6 @@ class Results:
     def decisions(self) -> tuple[Decision, ...]:
         """What the run decided by itself, and what the scene had decided."""
         return decisions(self.values)
+
+
+show_with({"flankfilm.results:Results": "flankfilm.notebook:results_html"})

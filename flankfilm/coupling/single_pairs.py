@@ -126,8 +126,9 @@ def single_pairs(
     --------
     >>> from gears import Gear, GearPair
     >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
-    >>> sorted(single_pairs(pair, 600.0).curves)
-    ['Ishikawa', 'Weber-Banaschek', 'potential energy, Sainsot body']
+    >>> found = single_pairs(pair, 600.0)
+    >>> all(curve.shape == found.rho1.shape for curve in found.stiffness.values())
+    True
     """
     from gears import closed_form as forms
 

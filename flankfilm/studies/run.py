@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import view
+from base import show_with, view
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
@@ -89,3 +89,6 @@ def run_study(
             progress(len(done), len(plan.rows))
     ordered = tuple(done[index] for index in range(len(plan.rows)))
     return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
+
+
+show_with({"flankfilm.studies.run:StudyResults": "flankfilm.notebook:study_html"})
