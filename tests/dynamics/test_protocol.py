@@ -69,6 +69,11 @@ def test_exact_flow_names_what_gives_derivatives_and_extrema():
         dynamics.period_map(EXACT, (0.5, 0.2), extrema=True)
 
 
+def test_what_has_no_flow_is_refused():
+    with pytest.raises(InputError, match="must be a GearOscillator or a SmoothOscillator"):
+        dynamics.find_orbit(SERIES, (0.5, 0.2))
+
+
 @pytest.mark.parametrize("oscillator", [EXACT, STEPWISE], ids=["exact", "stepwise"])
 def test_results_describe_their_figures(oscillator):
     orbit = dynamics.find_orbit(oscillator, (0.5, 0.2))
