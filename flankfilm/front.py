@@ -58,7 +58,7 @@ def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True
     ... '''
     ... )
     >>> results = run(scene)
-    >>> round(float(results.dataset.contact_ratio), 3), results.files
+    >>> round(float(results.dataset.pair_contact_ratio), 3), results.files
     (1.703, ())
     """
     keep_compiled_code()

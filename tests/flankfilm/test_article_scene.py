@@ -33,7 +33,7 @@ def test_films_are_in_series_with_the_teeth_before_load_sharing(results):
     share = results.lubricated_load_share.values
     assert np.allclose(share.sum(axis=1), 1.0, atol=1e-9)
     # the film at its own load: films are solved at every ninth position of the cycle, with the forces there
-    rho1, force = results.lubricated_rho1.values.ravel(), results.lubricated_force.values.ravel()
+    rho1, force = results.lubricated_rho1.values.ravel(), results.lubricated_forces.values.ravel()
     same = np.nanargmin(np.abs(rho1 - results.film_rho1.values[:, None]), axis=1)
     assert np.allclose(rho1[same], results.film_rho1.values, rtol=1e-9)
     assert np.allclose(force[same], results.film_load.values * 0.040, rtol=2e-4)
