@@ -16,13 +16,16 @@ import pytest
 from base import InputError
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level, true_error
 from flankfilm.bench.catalogue import SOLVERS
+from flankfilm.bench.element_cases import elements
 from flankfilm.bench.examples import example_pair
 from flankfilm.bench.gear_cases import enclosed_area
 from flankfilm.bench.machine import this_machine
 from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
+from flankfilm.bench.stepwise_cases import stepwise
 from flankfilm.bench.tables import read_bench, remarks, summaries, write_tables
+from flankfilm.bench.work_cases import work_contact, work_film, work_geometry
 from flankfilm.figures.bench import error_against_cost
 from tests.flankfilm.program import flankfilm
 
@@ -261,3 +264,26 @@ def test_faults_of_the_command_give_status_2_and_no_traceback(tmp_path):
     )
     assert "2 faults" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_curved_sides_and_higher_orders_are_nearer_to_the_finest_energy():
+    rows = measure("elements", elements(True), repeat=1).rows
+    finer = {row.series: row.error for row in rows if row.level == "refined 1 times"}
+    assert finer["P3 curved"] < finer["P2 curved"] < finer["P2 straight"] < finer["P1"] < 0.05
+
+
+def test_steps_of_a_contact_with_exponent_1_agree_with_the_exact_flow():
+    one = stepwise()[0]
+    assert one.finest is not None
+    exact = one.finest.answer(one.finest.work()).values["state"]
+    states = next(series for series in one.series if series.name == "states alone")
+    found = [step.answer(step.work()).values["state"] for step in (states.levels[0], states.levels[-1])]
+    assert true_error(found[1], exact) < 1e-12 < true_error(found[0], exact) < 1e-4
+
+
+@pytest.mark.parametrize("build", [work_geometry, work_contact, work_film])
+def test_works_whose_time_alone_counts_have_rows_without_errors(build):
+    found = measure("work", build(), repeat=1)
+    assert {row.failure for row in found.rows} == {""}
+    assert all(math.isnan(row.error) and row.cpu > 0 for row in found.rows)
+    assert found.finest == ""
