@@ -14,6 +14,7 @@ from fem.contact_candidates import ContactCandidates
 from fem.cycle import MeshCycle
 from fem.local_law import Film
 from fem.pair_compliance import compliance as _compliance
+from fem.references import REFERENCES, held_turns
 from fem.setting import Deviations, Setting
 from fem.sharing import Solution, solve
 
@@ -72,6 +73,7 @@ def mesh_cycle(
     first_teeth: tuple[int, int] = (0, 0),
     tip_rounding: float | tuple[float, float] = 0.0,
     friction: float = 0.0,
+    reference: str = "bore",
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -109,6 +111,10 @@ def mesh_cycle(
         sum F_i (lever_i + mu sign(u1 - u2) arm_i) = torque. Only these lever arms are changed: that teeth
         also yield to the tangential forces is left out, up to 0.35 mu of a pair's deflection at A and E,
         nothing at C.
+    reference : {"bore", "body", "teeth"}
+        What D is measured against: the turn of what holds the bores, of the bodies weighted by their inertia
+        (what motion needs), or of the root circles (what closed forms describe). No force depends on it
+        (``MeshCycle.against``). A compliance that leaves parts out measures its own way at "bore".
 
     Returns
     -------
@@ -130,7 +136,7 @@ def mesh_cycle(
     21.4
     """
     given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding, friction)
-    _check(given, torque, compliance)
+    _check(given, torque, compliance, reference)
     watch = Stopwatch()
     bodies = compliance if compliance is not None else _compliance(pair, tolerance, plane)
     ready = watch.seconds
@@ -143,11 +149,13 @@ def mesh_cycle(
         parts={**before.parts, "contact": watch.seconds - ready},
         counts=bodies.cost.counts,
     )
-    return tuple(_result(given, bodies, contact, k, float(t), cost) for k, t in enumerate(torque))
+    cycles = tuple(_result(given, bodies, contact, k, float(t), cost) for k, t in enumerate(torque))
+    return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
 
 
-def _check(given: Setting, torque: Array, compliance: Compliance | None) -> None:
+def _check(given: Setting, torque: Array, compliance: Compliance | None, reference: str) -> None:
     found = Faults()
+    found.choice("reference", reference, REFERENCES)
     if not torque.size:
         found.add("torque", "none", "must be at least one", "give torques in N m")
     for one in torque.tolist():
@@ -173,6 +181,7 @@ def _result(
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
     rho = np.where(where.touchable, where.rho, np.nan)
+    held, supports = held_turns(bodies)
     return MeshCycle(
         torque=torque,
         force=force,
@@ -187,6 +196,7 @@ def _result(
         transmission_error=deflection + touch + bad,
         stiffness=contact.share.stiffness[number].ravel() + bad,
         secant_stiffness=force / deflection + bad,
+        pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=given.beyond_path,
         error=bodies.error,
@@ -196,6 +206,8 @@ def _result(
         pair=given.pair,
         candidates=where,
         friction=float(given.friction),
+        supports=supports,
+        reference=held,
     )
 
 

@@ -7,6 +7,8 @@ import numpy as np
 from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
+from fem.references import measured_against
+from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
 
 __all__ = ["MeshCycle", "check_row", "require_row"]
@@ -55,8 +57,8 @@ class MeshCycle:
     )
     transmission_error: Array = quantity(
         "m",
-        "loaded static transmission error D, the pinion's turn times its base radius with the wheel's hub held: all "
-        "deflection, relief and deviations; positive when the wheel lags",
+        "loaded static transmission error D, the pinion's turn times its base radius with the wheel held: all "
+        "deflection up to `reference`, relief and deviations; positive when the wheel lags",
         "position",
         shown="um",
         error="error",
@@ -66,6 +68,9 @@ class MeshCycle:
     )
     secant_stiffness: Array = quantity(
         "N/m", "F/(D - D_0), D_0 the unloaded transmission error", "position", error="error"
+    )
+    pair_stiffness: Array = quantity(
+        "N/m", "slope dF_i/dD of each pair's force; zero where unloaded", "position pair"
     )
     plane: str = part('"strain" or "stress", as of the compliance')
     beyond_path: bool = part("whether tip edges were among the candidates")
@@ -78,6 +83,37 @@ class MeshCycle:
         "places, teeth, levers and unloaded gaps of all contacts that were looked for"
     )
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
+    supports: tuple[Support, Support] = part(
+        "how the bores are held, of what the compliance counts", default=(FIXED, FIXED)
+    )
+    reference: str = quantity(
+        "", 'what the deflection is measured against: "bore", "body" or "teeth"', default="bore"
+    )
+    bore_inertia: tuple[float, float] = quantity(
+        "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0)
+    )
+
+    def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> MeshCycle:
+        """Measure the deflection against something else; no force changes (``fem.references``).
+
+        Parameters
+        ----------
+        reference : {"bore", "body", "teeth"}
+            The turn of what holds the bores, of the bodies weighted by their inertia, or of the root circles.
+        bore_inertia : (float, float)
+            What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
+
+        Returns
+        -------
+        MeshCycle
+            With its transmission error, secant and tangent stiffness, and the error of these.
+
+        Raises
+        ------
+        base.InputError
+            No such reference, a negative inertia, or a compliance without coupling.
+        """
+        return measured_against(self, reference, bore_inertia)
 
     @property
     @described("N/m", error="error")

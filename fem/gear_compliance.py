@@ -179,10 +179,12 @@ def wedge_logarithms(angle: float, law: PlaneElasticity) -> tuple[float, float, 
 def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: PlaneElasticity) -> float:
     """Turn the body on its held bore, measured along the line of action [m per N/m].
 
-    delta = r_b^2/(4 pi G) (1/r_h^2 - 1/r_f^2) per N/m: a ring in shear by a torque (Lame), exact for a ring
-    of outer radius r_f. Closed forms of tooth deflection leave it out.
+    That of a ring in shear by a torque, which is the mean turn of a gear's root circle exactly
+    (``gears.closed_form.ring_wind_up``). Closed forms of tooth deflection leave it out.
     """
-    return base_radius**2 / (4 * np.pi * law.shear_modulus) * (1 / bore_radius**2 - 1 / root_radius**2)
+    from gears.closed_form import ring_wind_up
+
+    return ring_wind_up(root_radius, bore_radius, base_radius, law.shear_modulus)
 
 
 @record

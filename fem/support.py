@@ -66,7 +66,11 @@ class Support:
 
     def compliance(self, base_radius: float) -> float:
         """1/k_r + r_b^2/k_t along the line of action [m/N]."""
-        return 1 / self.radial_stiffness + base_radius**2 / self.torsional_stiffness
+        return 1 / self.radial_stiffness + self.turn(base_radius)
+
+    def turn(self, base_radius: float) -> float:
+        """r_b^2/k_t, the hub's turn along the line of action [m/N]."""
+        return base_radius**2 / self.torsional_stiffness
 
 
 FIXED = Support()

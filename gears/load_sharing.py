@@ -36,6 +36,9 @@ class LoadShare:
         "m", "common approach D of the gears along the line of action", "...", shown="um"
     )
     stiffness: Array = quantity("N/m", "tangent dF/dD for the pairs in contact", "...")
+    pair_stiffness: Array = quantity(
+        "N/m", "slope dF_i/dD of each pair's force, zero where unloaded", "... pair"
+    )
     iterations: int = quantity("1", "Newton steps")
 
     headline = ("transmission_error", "stiffness", "iterations")
@@ -123,7 +126,8 @@ def share_load(
     for iteration in range(1, _ITERATIONS + 1):
         jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
         overlap = deflection - approach[..., None]
-        step, lift, tangent = _newton_step(jacobian, overlap, loads, active, whole, arms)
+        step, lift, slopes = _newton_step(jacobian, overlap, loads, active, whole, arms)
+        tangent = (arms * slopes).sum(axis=-1)
         approach = approach + lift
         moved = np.where(active, loads + step, 0.0)
         negative = active & (moved <= 0.0)
@@ -137,7 +141,7 @@ def share_load(
         loads = np.where(taken, _START * each, loads)
         active = (active & ~released) | taken
         if settled.all() and not (negative.any() or taken.any()):
-            return LoadShare(loads, approach, tangent, iteration)
+            return LoadShare(loads, approach, tangent, slopes, iteration)
     remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
     allowed = "must have deflections that grow with the force"
     raise LoadSharingError([Fault("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)])
@@ -164,7 +168,7 @@ def _linearise(
 def _newton_step(
     jacobian: Array, residual: Array, loads: Array, active: Booleans, force: Array, levers: Array
 ) -> tuple[Array, Array, Array]:
-    """Step of the active forces, step of the approach and tangent stiffness.
+    """Step of the active forces, step of the approach and slopes dF_i/dD.
 
     Two right-hand sides, J a = 1 and J b = residual on the active pairs, give the bordered system's solution
     dF = a dD - b with dD from the sum of the moments.
@@ -178,7 +182,7 @@ def _newton_step(
     total = (levers * unit).sum(axis=-1)
     carried = (levers * np.where(active, loads, 0.0)).sum(axis=-1)
     reduced = (force - carried + (levers * response).sum(axis=-1)) / total
-    return unit * reduced[..., None] - response, reduced * scale, total / scale
+    return unit * reduced[..., None] - response, reduced * scale, unit / scale
 
 
 def _first_touch(
@@ -189,9 +193,9 @@ def _first_touch(
     nothing = np.zeros_like(at_zero)
     slope = hertz.slope(nothing) if film is None else hertz.slope(nothing) - film.slope(nothing)
     compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + slope
-    compliance = (compliance + np.zeros_like(at_zero)) / levers
-    first = np.take_along_axis(compliance, at_zero.argmin(axis=-1)[..., None], axis=-1)[..., 0]
-    return LoadShare(nothing, approach, np.asarray(1.0 / first), 0)
+    first = np.arange(at_zero.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
+    slopes = np.where(first, 1.0 / (compliance + nothing), 0.0)
+    return LoadShare(nothing, approach, (levers * slopes).sum(axis=-1), slopes, 0)
 
 
 def _finite(prop: Array) -> Array:
@@ -285,4 +289,4 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     series = np.where(carries, 1.0 / compliance, 0.0)
     total = series.sum(axis=-1)
     forces = force * series / total[..., None]
-    return LoadShare(forces, np.asarray(force / total), np.asarray(total), 0)
+    return LoadShare(forces, np.asarray(force / total), np.asarray(total), series, 0)

@@ -7,8 +7,9 @@ from .record import ClosedForm as ClosedForm
 from .root_stress import Iso6336RootStress as Iso6336RootStress
 from .root_stress import RootSection as RootSection
 from .root_stress import iso6336_3 as iso6336_3
-from .sainsot import ring_wind_up as ring_wind_up
 from .sainsot import sainsot_body as sainsot_body
 from .tooth_stiffness import Iso6336Stiffness as Iso6336Stiffness
 from .tooth_stiffness import iso6336 as iso6336
 from .trapezoid import ishikawa as ishikawa
+from .wind_up import inertial_share as inertial_share
+from .wind_up import ring_wind_up as ring_wind_up

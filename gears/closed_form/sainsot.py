@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 
 import numpy as np
@@ -79,29 +78,3 @@ def sainsot_body(
     tangent = np.tan(load_angle)
     bracket = L * ratio**2 + M * ratio + P * (1.0 + Q * tangent**2)
     return np.asarray(np.cos(load_angle) ** 2 * bracket)
-
-
-def ring_wind_up(root_radius: float, bore_radius: float, base_radius: float, shear_modulus: float) -> float:
-    """Deflection along the line of action by the twist of a ring, times b / F.
-
-    r_b^2 / (4 pi G) (1 / r_bore^2 - 1 / r_f^2), the exact solution of a ring between bore and root circle
-    under the torque F r_b.
-
-    Parameters
-    ----------
-    root_radius, bore_radius, base_radius : float
-        r_f, radius of the bore, r_b [m].
-    shear_modulus : float
-        G [Pa].
-
-    Returns
-    -------
-    float
-        delta b / F [m^2/N].
-
-    Examples
-    --------
-    >>> ring_wind_up(33.5e-3, 16.75e-3, 33.83e-3, shear_modulus=79.2e9)
-    3.0739768...e-12
-    """
-    return base_radius**2 / (4.0 * math.pi * shear_modulus) * (1.0 / bore_radius**2 - 1.0 / root_radius**2)

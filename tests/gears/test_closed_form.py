@@ -239,3 +239,24 @@ def test_ring_wind_up_is_the_twist_of_concentric_rings():
         0.02, 0.01, 0.032, 80e9
     )
     assert whole == pytest.approx(parts)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "share"), [(0.2, 0.0138), (0.5, 0.0933), (0.7, 0.1817), (0.9, 0.2827), (0.9999, 1 / 3)]
+)
+def test_inertia_leaves_a_share_of_the_wind_up(ratio, share):
+    """Known numbers, and the integral by quadrature, with an inertia on the bore too."""
+    found = closed_form.inertial_share(ratio)
+    assert found == pytest.approx(share, abs=1.2e-4)
+    t, weight = np.polynomial.legendre.leggauss(60)
+    x = ratio + 0.5 * (1 - ratio) * (1 + t)
+    for hub in (0.0, 0.05, 3.0):
+        carried = (hub + x**4 - ratio**4) / (hub + 1 - ratio**4)
+        expected = weight @ (carried**2 / x**3) / (weight @ x**-3.0)
+        assert closed_form.inertial_share(ratio, hub) == pytest.approx(expected, rel=1e-10)
+
+
+def test_a_heavy_hub_holds_the_ring():
+    shares = [closed_form.inertial_share(0.5, hub) for hub in (0.0, 0.1, 1.0, 10.0, 1e6)]
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1.0, abs=1e-5)

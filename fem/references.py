@@ -1,0 +1,131 @@
+"""What a deflection is measured against: the turn of the bores, of the bodies, or of the root circles.
+
+A deflection D along the line of action is the turn of the pinion less that of the wheel, each times its base radius,
+and a gear that yields has no single turn. What two references differ by is a turn of each gear, so it adds to D the
+same for all pairs in contact and changes no force:
+
+    D' = D - sum_g (c_g - c'_g) N_g,   dD'/dD = 1 - sum_g (c_g - c'_g) dN_g/dD,
+
+N_g the moment of the normal forces about the gear's axis over its base radius, F without friction and tip edges. With
+the torsional stiffness k_t of the support, the ring's wind-up w between the held radius and the root circle
+(``gears.closed_form.ring_wind_up``), and the share lambda of it that is left where inertia balances the torque
+(``gears.closed_form.inertial_share``), the turn c per force that D holds is
+
+- bore: w + r_b^2/k_t, all up to what holds the gear: the static transmission error between the shafts;
+- body: lambda w, against the turn of the ring weighted by its inertia, the torque balanced by that inertia: what the
+  equation of motion of a rigid gear means by its angle, while the shaft keeps the torque that it had. The inertia of
+  the teeth is left out (docs/validation/fem.md has what that changes);
+- teeth: 0, against the mean turn of the root circle.
+
+Translations are no turn: a support's radial stiffness stays in D.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Faults, Limit
+from fem.elasticity import PlaneElasticity
+from fem.gear_compliance import hub_windup
+from fem.support import Support, held_profiles
+from gears.closed_form import inertial_share
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+    from fem.cycle import MeshCycle
+    from gears import GearPair
+
+__all__ = ["REFERENCES", "held_turns", "measured_against", "turns"]
+
+REFERENCES = ("bore", "body", "teeth")
+"""What a deflection may be measured against."""
+
+INERTIA = Limit(0.0, unit="kg m2", remedy="give what turns with the bore, 0 for nothing")
+
+
+def turns(
+    pair: GearPair,
+    supports: tuple[Support, Support],
+    reference: str,
+    bore_inertia: tuple[float, float] = (0.0, 0.0),
+) -> Array:
+    """Turn of pinion and wheel along the line of action per force that a deflection holds (2,) [m/N].
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    supports : (Support, Support)
+        How the bores are held. What a rigid hub fills beyond the bore turns with it, and so does its inertia.
+    reference : {"bore", "body", "teeth"}
+    bore_inertia : (float, float)
+        What turns with the bores of pinion and wheel, for "body" [kg m2].
+    """
+    found = []
+    for gear, profile in enumerate(held_profiles(pair, supports)):
+        base, root, held = profile.base_radius, profile.root_radius, profile.bore_radius
+        material = pair.materials[gear]
+        # the plane's state does not matter in torsion
+        turn = hub_windup(base, held, root, PlaneElasticity.of(material, "strain")) / pair.face_width
+        if reference == "teeth":
+            turn = 0.0
+        elif reference == "bore":
+            turn += supports[gear].turn(base)
+        else:
+            disc = 0.5 * pi * material.density * pair.face_width * root**4
+            filled = (held**4 - pair.bore_radii[gear] ** 4) / root**4
+            turn *= inertial_share(held / root, bore_inertia[gear] / disc + filled)
+        found.append(turn)
+    return np.array(found)
+
+
+def held_turns(bodies: Compliance) -> tuple[str, tuple[Support, Support]]:
+    """What a compliance measures against, and the supports whose turn it holds.
+
+    Without the hub wind-up that is the teeth. Empty where the turn is not alike for all pairs: without coupling it
+    goes with each pair's own force.
+    """
+    supports = bodies.supports
+    if "support" in bodies.left_out:
+        first, second = (Support(hub_radius=one.hub_radius) for one in supports)
+        supports = first, second
+    if "coupling" in bodies.left_out:
+        return "", supports
+    if "hub_windup" not in bodies.left_out:
+        return "bore", supports
+    sprung = any(one.torsional_stiffness != inf for one in supports)
+    return ("" if sprung else "teeth"), supports
+
+
+def measured_against(
+    cycle: MeshCycle, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)
+) -> MeshCycle:
+    """Mesh cycle with its deflection measured against something else; see ``MeshCycle.against``."""
+    found = Faults()
+    found.choice("reference", reference, REFERENCES)
+    for name, inertia in zip(("pinion", "wheel"), bore_inertia, strict=True):
+        found.number(f"bore_inertia.{name}", inertia, INERTIA)
+    if not cycle.reference:
+        allowed = "requires a compliance whose coupling and supports' turn are not left out"
+        found.add("reference", repr(reference), allowed, "take the whole compliance")
+    found.raise_if_any()
+    before = turns(cycle.pair, cycle.supports, cycle.reference, cycle.bore_inertia)
+    less = before - turns(cycle.pair, cycle.supports, reference, bore_inertia)
+    lever = np.where(cycle.forces > 0, cycle.candidates.lever, 0.0)
+    shift = less @ np.sum(lever * cycle.forces, axis=-1)
+    slope = 1.0 - less @ np.sum(lever * cycle.pair_stiffness, axis=-1)
+    stiffness = cycle.stiffness / slope
+    return replace(
+        cycle,
+        reference=reference,
+        bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
+        transmission_error=cycle.transmission_error - shift,
+        stiffness=stiffness,
+        secant_stiffness=cycle.force / (cycle.force / cycle.secant_stiffness - shift),
+        pair_stiffness=cycle.pair_stiffness / slope[:, None],
+        # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
+        error=cycle.error * max(1.0, float(np.max(stiffness / cycle.stiffness))),
+    )
