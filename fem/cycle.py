@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
-from fem.references import measured_against
+from fem.references import check_reference, turns
 from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
 
@@ -113,7 +115,25 @@ class MeshCycle:
         base.InputError
             No such reference, a negative inertia, or a compliance without coupling.
         """
-        return measured_against(self, reference, bore_inertia)
+        found = Faults()
+        check_reference(found, self.reference, reference, bore_inertia)
+        found.raise_if_any()
+        less = turns(self.pair, self.supports, self.reference, self.bore_inertia)
+        less = less - turns(self.pair, self.supports, reference, bore_inertia)
+        lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
+        shift = less @ np.sum(lever * self.forces, axis=-1)
+        slope = 1.0 - less @ np.sum(lever * self.pair_stiffness, axis=-1)  # dD'/dD
+        return replace(
+            self,
+            reference=reference,
+            bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
+            transmission_error=self.transmission_error - shift,
+            stiffness=self.stiffness / slope,
+            secant_stiffness=self.force / (self.force / self.secant_stiffness - shift),
+            pair_stiffness=self.pair_stiffness / slope[:, None],
+            # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
+            error=self.error * max(1.0, float(np.max(1.0 / slope))),
+        )
 
     @property
     @described("N/m", error="error")

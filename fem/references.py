@@ -22,7 +22,6 @@ Translations are no turn: a support's radial stiffness stays in D.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf, pi
 from typing import TYPE_CHECKING
 
@@ -36,10 +35,9 @@ from gears.closed_form import inertial_share
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
-    from fem.cycle import MeshCycle
     from gears import GearPair
 
-__all__ = ["REFERENCES", "held_turns", "measured_against", "turns"]
+__all__ = ["REFERENCES", "check_reference", "held_turns", "turns"]
 
 REFERENCES = ("bore", "body", "teeth")
 """What a deflection may be measured against."""
@@ -100,32 +98,13 @@ def held_turns(bodies: Compliance) -> tuple[str, tuple[Support, Support]]:
     return ("" if sprung else "teeth"), supports
 
 
-def measured_against(
-    cycle: MeshCycle, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)
-) -> MeshCycle:
-    """Mesh cycle with its deflection measured against something else; see ``MeshCycle.against``."""
-    found = Faults()
+def check_reference(
+    found: Faults, measured: str, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)
+) -> None:
+    """Note what cannot be measured: `measured` is what a deflection is measured against, empty for nothing common."""
     found.choice("reference", reference, REFERENCES)
     for name, inertia in zip(("pinion", "wheel"), bore_inertia, strict=True):
         found.number(f"bore_inertia.{name}", inertia, INERTIA)
-    if not cycle.reference:
+    if not measured:
         allowed = "requires a compliance whose coupling and supports' turn are not left out"
         found.add("reference", repr(reference), allowed, "take the whole compliance")
-    found.raise_if_any()
-    before = turns(cycle.pair, cycle.supports, cycle.reference, cycle.bore_inertia)
-    less = before - turns(cycle.pair, cycle.supports, reference, bore_inertia)
-    lever = np.where(cycle.forces > 0, cycle.candidates.lever, 0.0)
-    shift = less @ np.sum(lever * cycle.forces, axis=-1)
-    slope = 1.0 - less @ np.sum(lever * cycle.pair_stiffness, axis=-1)
-    stiffness = cycle.stiffness / slope
-    return replace(
-        cycle,
-        reference=reference,
-        bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
-        transmission_error=cycle.transmission_error - shift,
-        stiffness=stiffness,
-        secant_stiffness=cycle.force / (cycle.force / cycle.secant_stiffness - shift),
-        pair_stiffness=cycle.pair_stiffness / slope[:, None],
-        # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
-        error=cycle.error * max(1.0, float(np.max(stiffness / cycle.stiffness))),
-    )
