@@ -13,8 +13,9 @@ from runs import example, save
 
 import ehl
 from flankfilm import figures
-from flankfilm.figures.reading import PATH_LABEL
-from flankfilm.figures.style import figure, from_zero, legend_above, looks, styled
+from flankfilm.figures.panels import PATH_LABEL, curves
+from flankfilm.figures.reading import Reading
+from flankfilm.figures.style import from_zero, looks, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,9 +31,7 @@ def contact() -> Figure:
         "130 equal nodes, -4 to 1.2": ehl.solve(CONTACT, grid="article"),
         "grid around the spike": ehl.solve(CONTACT, tolerance=0.005, spike=0.01),
     }
-    with styled():
-        drawn = figure(height=4.4)
-        upper, lower = drawn.subplots(2, 1, sharex=True)
+    with sheet(None, 2, height=4.4) as (drawn, (upper, lower)):
         for (label, film), look, mark in zip(films.items(), looks(2), (".", ""), strict=True):
             x = film.x / CONTACT.half_width
             upper.plot(x, 1e-9 * film.pressure, label=label, marker=mark, markersize=4, **look)
@@ -44,7 +43,6 @@ def contact() -> Figure:
             print(f"contact, {label}: {thickness}, spike {1e-9 * film.pressure[after].max():.3f} GPa")
         upper.set(ylabel="pressure [GPa]")
         from_zero(upper)
-        legend_above(drawn, upper)
         lower.set(xlabel="distance from the line of centres [half-widths]", ylabel="film thickness [µm]")
         lower.set(xlim=(-2.0, 1.3), ylim=(0.0, 3e6 * film.central_thickness))
     return drawn
@@ -57,17 +55,16 @@ def deflection() -> Figure:
     steel = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
     pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=0.04, material=steel)
     path, force = pair.path_of_contact(n=81), pair.normal_force(600.0)
-    parts = closed_form.ishikawa(pair, path).parts
-    with styled():
-        drawn = figure(height=3.4)
-        axes = drawn.subplots()
-        for (name, compliance), look in zip(parts.items(), looks(len(parts)), strict=True):
-            values = 1e6 * force * compliance
-            axes.plot(1e3 * path.position, values, label=name.replace("_", " "), **look)
-            print(f"deflection, {name}: {values[40]:.2f} um at C, {values[0]:.2f} um at A")
-        axes.set(xlabel=PATH_LABEL, ylabel="deflection of one pair [µm]")
+    parts = {
+        name.replace("_", " "): Reading(1e6 * force * compliance, "deflection of one pair", "µm")
+        for name, compliance in closed_form.ishikawa(pair, path).parts.items()
+    }
+    for name, part in parts.items():
+        print(f"deflection, {name}: {part.values[40]:.2f} um at C, {part.values[0]:.2f} um at A")
+    with sheet(height=3.4, legend=5) as (drawn, (axes,)):
+        curves(axes, 1e3 * path.position, parts)
+        axes.set(xlabel=PATH_LABEL)
         from_zero(axes)
-        legend_above(drawn, axes, columns=5)
     return drawn
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from runs import save
+
 from flankfilm.bench.tables import read_bench
 from flankfilm.figures import bench
-from flankfilm.figures.style import styled
 
-IMAGES = Path(__file__).parent / "images"
 CASES = ("compliance", "contact_free", "root_stress", "film_tolerance", "motion_flow")
 
 
@@ -24,10 +24,7 @@ def main(folder: Path) -> None:
         if case.key in CASES:
             peers = [peer for peer in found.peers if peer.case == case.key]
             drawn[case.key] = bench.error_against_cost(case, peers)
-    IMAGES.mkdir(exist_ok=True)
-    with styled():
-        for name, figure in drawn.items():
-            figure.savefig(IMAGES / f"bench_{name}.png", dpi=100)
+    save({f"bench_{name}": figure for name, figure in drawn.items()}, dpi=100)
 
 
 if __name__ == "__main__":

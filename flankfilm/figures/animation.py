@@ -16,7 +16,7 @@ from base import Fault, InputError, SolverError, shorten
 from base.files import replacing
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
-from flankfilm.figures.view import View
+from flankfilm.figures.rendering import View, draw, plotter_of, steps
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,12 +115,7 @@ def view_cycle(folder: Path | str, *, frame: Frame = Frame()) -> None:
     folder, frame
         As of `animate_cycle`.
     """
-    import xarray as xr
-
-    _check(Path(folder), None, ())
-    with xr.open_dataset(Path(folder) / "results.nc", engine="h5netcdf") as results:
-        view = _view(results, Path(folder), Path(), frame)
-    _in_a_process(replace(view, window=True), patience=None)
+    _in_a_process(replace(_view(Path(folder), frame), window=True), patience=None)
 
 
 def teeth_scene(folder: Path | str, *, frame: Frame = Frame(size=(720, 480))) -> Any:
@@ -136,27 +131,18 @@ def teeth_scene(folder: Path | str, *, frame: Frame = Frame(size=(720, 480))) ->
     pyvista.Plotter
         VTK ends the process where OpenGL is missing.
     """
-    import xarray as xr
-
-    from flankfilm.figures.rendering import draw, plotter_of, steps
-
-    _check(Path(folder), None, ())
-    with xr.open_dataset(Path(folder) / "results.nc", engine="h5netcdf") as results:
-        view = _view(results, Path(folder), Path(), frame)
-    plotter, chosen = plotter_of(view), steps(Path(folder))
-    at = min(chosen, key=lambda place: abs(place - view.only))
-    draw(plotter, view, at, chosen[at])
+    view = _view(Path(folder), frame)
+    plotter = plotter_of(view)
+    draw(plotter, view, view.only)
     return plotter
 
 
 def _render(
     folder: Path, target: Path, suffixes: tuple[str, ...], frame: Frame, seconds: float = 0.0
 ) -> Path:
-    import xarray as xr
-
-    _check(folder, target, suffixes)
-    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results, replacing(target) as beside:
-        _in_a_process(replace(_view(results, folder, beside, frame), seconds=seconds))
+    view = _view(folder, frame, target, suffixes)
+    with replacing(target) as beside:
+        _in_a_process(replace(view, target=str(beside.absolute()), seconds=seconds))
     return target
 
 
@@ -175,7 +161,16 @@ def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None
         raise InputError(faults)
 
 
-def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View:
+def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tuple[str, ...] = ()) -> View:
+    """Check what is asked for, and read what the pictures of a run have in common."""
+    import xarray as xr
+
+    _check(folder, target, suffixes)
+    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
+        return _view_of(results, folder, frame)
+
+
+def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
     need(results, 'run a scene that wants "vtk" with this version', "field_point", "pair_module")
     prefix = "lubricated" if "lubricated_position" in results else "dry"
     error = results[f"{prefix}_transmission_error"].values
@@ -189,7 +184,6 @@ def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View
     step, ticks = _scale_of_colours(results, folder, frame.field)
     return View(
         folder=str(folder.absolute()),
-        target=str(target.absolute()),
         size=frame.size,
         scale=scale,
         greatest=step * ticks,
@@ -199,7 +193,6 @@ def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View
         base_radius=float(results["pair_base_radii"][0]),
         position=tuple(results[f"{prefix}_position"].values.tolist()),
         error=tuple(error.tolist()),
-        seconds=0.0,
         only=position,
         field=frame.field,
     )
@@ -208,8 +201,6 @@ def _view(results: xr.Dataset, folder: Path, target: Path, frame: Frame) -> View
 def _scale_of_colours(results: xr.Dataset, folder: Path, field: str) -> tuple[float, int]:
     """Step between the ticks of the scale of colours, and their number; from all but the peaks under contacts."""
     import pyvista as pv
-
-    from flankfilm.figures.rendering import steps
 
     if field == Frame.field:
         top = 1e6 * stress_of_nearly_all(results)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.figures.style import COLOURS, figure, styled
+from flankfilm.figures.style import COLOURS, sheet
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -35,10 +35,9 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
     solution itself is estimated to be off by: true errors near it or below are not known better.
     """
     groups = _groups(case.rows)
-    with styled():
-        drawn = figure(7.4, 0.9 + 2.6 * len(groups))
-        panels = drawn.subplots(len(groups), 2, squeeze=False, sharey="row")
-        for (over_time, over_size), quantities in zip(panels, groups, strict=True):
+    options: dict[str, Any] = {"width": 7.4, "height": 0.9 + 2.6 * len(groups), "sharey": "row"}
+    with sheet(None, len(groups), 2, legend=0, **options) as (drawn, panels):
+        for over_time, over_size, quantities in zip(panels[::2], panels[1::2], groups, strict=True):
             rows = [r for r in case.rows if r.quantity in quantities and not r.failure]
             for place, name in enumerate(dict.fromkeys(r.series for r in case.rows if r.quantity)):
                 one = [r for r in rows if r.series == name]
@@ -55,7 +54,7 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
             what = quantities[0] if len(quantities) == 1 else "each mean"
             over_time.set(xlabel="processor time [s]", ylabel=f"relative error\n{what}")
             over_size.set(xlabel=case.size_name)
-        _legend(drawn, panels[:, 0], [case.orders[q] for group in groups for q in group if q in case.orders])
+        _legend(drawn, panels[::2], [case.orders[q] for group in groups for q in group if q in case.orders])
     return drawn
 
 
@@ -150,9 +149,7 @@ def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> N
 
 def estimates(cases: Sequence[CaseResult]) -> Figure:
     """Draw estimated over true errors of all cases; above the diagonal an estimate is on the safe side."""
-    with styled():
-        drawn = figure(6.2, 5.0)
-        axes = drawn.subplots()
+    with sheet(width=6.2, height=5.0, legend=4) as (drawn, (axes,)):
         values = []
         for place, (solver, own) in enumerate(_by_solver(cases)):
             rows = [r for c in own for r in c.rows if r.estimate > 0]
@@ -164,7 +161,6 @@ def estimates(cases: Sequence[CaseResult]) -> Figure:
             axes.plot(span, [factor * v for v in span], line, **GREY, label=name)
         axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
         axes.set(xlabel="true relative error", ylabel="estimated relative error")
-        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
     return drawn
 
 
@@ -174,14 +170,11 @@ def _by_solver(cases: Sequence[CaseResult]) -> list[tuple[str, list[CaseResult]]
 
 def overview(cases: Sequence[CaseResult]) -> Figure:
     """Draw true error over processor time of one work of each solver: its first case, series and quantity."""
-    with styled():
-        drawn = figure(7.4, 5.2)
-        axes = drawn.subplots()
+    with sheet(width=7.4, height=5.2, legend=2) as (drawn, (axes,)):
         for place, (solver, own) in enumerate(_by_solver(cases)):
             rows = [r for r in own[0].rows if not r.failure]
             rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
             label = f"{solver}: {rows[0].quantity}" if rows else None
             axes.plot([r.cpu for r in rows], _drawn(rows, "error"), "-", **_look(place), label=label)
         axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error")
-        drawn.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
     return drawn

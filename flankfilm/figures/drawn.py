@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from base import Array, quantity, record
+from base import Array, Quantity, quantity, record
+from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from flankfilm.coupling.motion import Portrait
     from gears import GearPair
 
-__all__ = ["NearMesh", "Outlines", "Path", "Portraits", "near_mesh", "outlines", "path", "portraits"]
+__all__ = ["Path", "near_mesh", "outlines", "path", "portraits"]
 
 OUTLINE = 12
 """Points of each part of a tooth's outline: straight sides between them do not show."""
@@ -26,15 +27,6 @@ STATIONS = 81
 
 PICTURED = 2.7
 """Half-width of the pictured part of the mesh, in pitches."""
-
-
-@record
-class Outlines:
-    """Both gears as closed polygons, with a pair of teeth at the pitch point."""
-
-    pinion: NDArray[np.float32] = quantity("m", "outline of the pinion", "node_pinion axis", shown="mm")
-    wheel: NDArray[np.float32] = quantity("m", "outline of the wheel", "node_wheel axis", shown="mm")
-    centre: Array = quantity("m", "axes of pinion and wheel", "gear axis", shown="mm")
 
 
 @record
@@ -51,33 +43,8 @@ class Path:
     sliding: Array | None = quantity("m/s", "sliding, u1 - u2", "station", default=None)
 
 
-@record
-class NearMesh:
-    """Stress of both gears around the pitch point as linear triangles, in a frame whose origin is the pinion's axis."""
-
-    point: Array = quantity("m", "unloaded place", "node axis", shown="mm")
-    von_mises: NDArray[np.float32] = quantity("Pa", "von Mises stress", "node", shown="MPa")
-    triangles: NDArray[np.int32] = quantity("1", "numbers of the nodes of each triangle", "triangle corner")
-    centre: Array = quantity("m", "pitch point", "axis", shown="mm")
-    reach: float = quantity("m", "half-width of the pictured part", shown="mm")
-
-
-@record
-class Portraits:
-    """Settled motions one after another; ``of_sample`` and ``of_point`` say which one an entry belongs to."""
-
-    frequency: Array = quantity("1", "mesh over natural frequency", "portrait")
-    direction: Array = quantity("", "sweep that met the motion", "portrait")
-    motion: Array = quantity("", "motion n-p-q", "portrait")
-    of_sample: Array = quantity("1", "portrait of the sample", "sample")
-    displacement: Array = quantity("1", "displacement X", "sample")
-    velocity: Array = quantity("1", "velocity dX/dτ", "sample")
-    of_point: Array = quantity("1", "portrait of the point", "point")
-    section: Array = quantity("1", "displacement and velocity at tau = 0", "point state")
-
-
-def outlines(pair: GearPair) -> Outlines:
-    """Draw both gears with a pair of teeth at the pitch point."""
+def outlines(pair: GearPair) -> tuple[Quantity, ...]:
+    """Draw both gears as closed polygons, with a pair of teeth at the pitch point."""
     from gears.polygon import outline
 
     placed = pair.placement(pair.points.C)
@@ -85,7 +52,12 @@ def outlines(pair: GearPair) -> Outlines:
         place(outline(tooth, points_per_part=OUTLINE)).astype(np.float32)
         for place, tooth in zip((placed.pinion, placed.wheel), pair.teeth_profiles, strict=True)
     )
-    return Outlines(pinion, wheel, np.array([np.zeros(2), placed.wheel_centre]))
+    centres = np.array([np.zeros(2), placed.wheel_centre])
+    return (
+        figure_of("pinion", "m", "outline of the pinion", "node_pinion axis", pinion, shown="mm"),
+        figure_of("wheel", "m", "outline of the wheel", "node_wheel axis", wheel, shown="mm"),
+        figure_of("centre", "m", "axes of pinion and wheel", "gear axis", centres, shown="mm"),
+    )
 
 
 def path(pair: GearPair, speed: float | None = None) -> Path:
@@ -112,18 +84,19 @@ def path(pair: GearPair, speed: float | None = None) -> Path:
     )
 
 
-def near_mesh(pair: GearPair, fields: tuple[GearField, GearField]) -> NearMesh:
-    """Cut out what a picture of the mesh shows of the stress in both gears."""
+def near_mesh(pair: GearPair, fields: tuple[GearField, GearField]) -> tuple[Quantity, ...]:
+    """Cut out the stress of both gears around the pitch point, in a frame whose origin is the pinion's axis."""
     focus = pair.placement(pair.points.C).contact_point
     reach = PICTURED * np.pi * pair.module
-    parts = [_near(field, focus, reach) for field in fields]
-    first = np.cumsum([0, *(len(points) for points, _, _ in parts)])[:-1]
-    return NearMesh(
-        point=np.concatenate([points for points, _, _ in parts]),
-        von_mises=np.concatenate([stress for _, stress, _ in parts]),
-        triangles=np.concatenate([cells + start for (_, _, cells), start in zip(parts, first, strict=True)]),
-        centre=focus,
-        reach=reach,
+    points, stresses, cells = zip(*(_near(field, focus, reach) for field in fields), strict=True)
+    corners = np.concatenate([cells[0], cells[1] + len(points[0])])
+    stress = np.concatenate(stresses)
+    return (
+        figure_of("point", "m", "unloaded place", "node axis", np.concatenate(points), shown="mm"),
+        figure_of("von_mises", "Pa", "von Mises stress", "node", stress, shown="MPa"),
+        figure_of("triangles", "1", "numbers of the nodes of each triangle", "triangle corner", corners),
+        figure_of("centre", "m", "pitch point", "axis", focus, shown="mm"),
+        figure_of("reach", "m", "half-width of the pictured part", "", reach, shown="mm"),
     )
 
 
@@ -144,16 +117,25 @@ def _near(
     )
 
 
-def portraits(motions: Sequence[Portrait]) -> Portraits:
-    """Gather settled motions, at least one."""
+def portraits(motions: Sequence[Portrait]) -> tuple[Quantity, ...]:
+    """Gather settled motions, at least one; ``of_sample`` and ``of_point`` say which one an entry belongs to."""
     order = np.arange(len(motions))
-    return Portraits(
-        frequency=np.array([motion.frequency for motion in motions]),
-        direction=np.array([motion.direction for motion in motions]),
-        motion=np.array([motion.label for motion in motions]),
-        of_sample=np.repeat(order, [motion.displacement.size for motion in motions]),
-        displacement=np.concatenate([motion.displacement for motion in motions]),
-        velocity=np.concatenate([motion.velocity for motion in motions]),
-        of_point=np.repeat(order, [len(motion.section) for motion in motions]),
-        section=np.concatenate([motion.section for motion in motions]),
+    of_sample = np.repeat(order, [motion.displacement.size for motion in motions])
+    of_point = np.repeat(order, [len(motion.section) for motion in motions])
+
+    def each(name: str) -> Array:
+        return np.array([getattr(motion, name) for motion in motions])
+
+    def all_of(name: str) -> Array:
+        return np.concatenate([getattr(motion, name) for motion in motions])
+
+    return (
+        figure_of("frequency", "1", "mesh over natural frequency", "portrait", each("frequency")),
+        figure_of("direction", "", "sweep that met the motion", "portrait", each("direction")),
+        figure_of("motion", "", "motion n-p-q", "portrait", each("label")),
+        figure_of("of_sample", "1", "portrait of the sample", "sample", of_sample),
+        figure_of("displacement", "1", "displacement X", "sample", all_of("displacement")),
+        figure_of("velocity", "1", "velocity dX/dτ", "sample", all_of("velocity")),
+        figure_of("of_point", "1", "portrait of the point", "point", of_point),
+        figure_of("section", "1", "displacement and velocity at tau = 0", "point state", all_of("section")),
     )

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
-from flankfilm.figures.reading import PATH_LABEL, label_of, mark_path, need, read, text, travel
-from flankfilm.figures.style import Style, colours, figure, from_zero, legend_above, looks, styled
+from flankfilm.figures.panels import PATH_LABEL, curves, over_path
+from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
+from flankfilm.figures.style import Style, colours, from_zero, looks, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,22 +37,14 @@ def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figur
         rcParams that overrule the house's.
     """
     need(results, FILM, "film_rho1", "film_central_thickness", "path_point_rho1")
-    at = travel(results, "film_rho1")
-    with styled(style):
-        drawn = figure(height=4.2)
-        upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        first, second, third = looks(3)
-        for name, look in (("central", first), ("minimum", second)):
-            film = read(results, f"film_{name}_thickness")
-            upper.plot(at, film.values, label=f"{name} film", **look)
-        upper.set(ylabel=film.named("film thickness"))
-        from_zero(upper)
-        legend_above(drawn, upper)
-        pressure = read(results, "film_hertz_pressure")
-        lower.plot(at, pressure.values, color=third["color"])
-        lower.set(xlabel=PATH_LABEL, ylabel=pressure.named("Hertz pressure"))
-        from_zero(lower)
-        mark_path(results, (upper, lower), upper)
+    at, pressure = travel(results, "film_rho1"), read(results, "film_hertz_pressure")
+    films = {f"{name} film": read(results, f"film_{name}_thickness") for name in ("central", "minimum")}
+    with sheet(style, 2, height=4.2, height_ratios=(3, 2)) as (drawn, (upper, lower)):
+        curves(upper, at, films, "film thickness")
+        lower.plot(at, pressure.values, color=colours(3)[2])
+        lower.set(ylabel=pressure.named("Hertz pressure"))
+        from_zero(upper, lower)
+        over_path(results, upper, lower)
     return drawn
 
 
@@ -69,15 +61,12 @@ def film_shares(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     shown = [read(results, name) for name in SHARES if name in results]
     if not shown:
         need(results, "run a scene with a starved film or a section [roughness]", *SHARES)
-    with styled(style):
-        drawn = figure(height=0.8 + 1.5 * len(shown))
-        panels = drawn.subplots(len(shown), 1, sharex=True, squeeze=False).ravel().tolist()
+    with sheet(style, len(shown), height=0.8 + 1.5 * len(shown)) as (drawn, panels):
         for axes, share, colour in zip(panels, shown, colours(len(shown)), strict=True):
             axes.plot(travel(results, "film_rho1"), share.values, color=colour)
             axes.set(ylabel=share.label)
-            from_zero(axes)
-        panels[-1].set(xlabel=PATH_LABEL)
-        mark_path(results, panels, panels[0])
+        from_zero(*panels)
+        over_path(results, *panels)
     return drawn
 
 
@@ -94,13 +83,10 @@ def film_profiles(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     points = [name for name in POINTS if f"film_profile_{name}_x" in results]
     if not points:
         need(results, SOLVED, "film_profile_C_x")
-    with styled(style):
-        drawn = figure(height=4.4)
-        upper, lower = drawn.subplots(2, 1, sharex=True)
+    with sheet(style, 2, height=4.4, legend=5) as (drawn, (upper, lower)):
         for name, look in zip(points, looks(len(points)), strict=True):
             _through(upper, lower, results, name, {"label": name.replace("_", " "), **look})
         from_zero(upper)
-        legend_above(drawn, upper, columns=5)
         lower.set(xlabel=THROUGH, xlim=(-2.0, 1.5), ylim=(0, 3 * _thickest(lower)))
     return drawn
 
@@ -120,22 +106,15 @@ def film_families(
         rcParams that overrule the house's.
     """
     (name,) = [name for name in POINTS if name.endswith(point)]
-    with styled(style):
-        drawn = figure(7.6, 4.4)
-        (pressure, hertz), (thickness, along) = drawn.subplots(2, 2)
+    with sheet(style, 2, 2, width=7.6, height=4.4) as (drawn, (pressure, hertz, thickness, along)):
         for (label, results), look in zip(family.items(), looks(len(family)), strict=True):
             need(results, SOLVED, f"film_profile_{name}_x", "film_rho1")
             _through(pressure, thickness, results, name, {"label": label, **look})
             for axes, what in ((hertz, "film_hertz_pressure"), (along, "film_minimum_thickness")):
-                shown = read(results, what)
-                axes.plot(travel(results, "film_rho1"), shown.values, **look)
-                axes.set(ylabel=shown.label)
-                from_zero(axes)
-        legend_above(drawn, pressure)
-        for axes in (pressure, thickness):
-            axes.set(xlim=(-1.5, 1.2))
-        from_zero(pressure)
-        thickness.set(xlabel=THROUGH, ylim=(0, 2 * _thickest(thickness)))
+                curves(axes, travel(results, "film_rho1"), {label: read(results, what)}, **look)
+        from_zero(pressure, hertz, along)
+        pressure.set(xlim=(-1.5, 1.2))
+        thickness.set(xlabel=THROUGH, xlim=(-1.5, 1.2), ylim=(0, 2 * _thickest(thickness)))
         along.set(xlabel=PATH_LABEL)
     return drawn
 
@@ -168,26 +147,18 @@ def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's.
     """
     need(results, FILM, "dry_stiffness", "lubricated_stiffness", "lubricated_label")
-    dry = read(results, "dry_stiffness", per_face=True)
-    cycles: dict[str, Array] = {
-        text(results, "lubricated_label"): read(results, "lubricated_stiffness", per_face=True).values
-    }
-    if "held_model" in results:
-        held = read(results, "held_stiffness", per_face=True).values
-        cycles = dict(zip(results["held_model"].values.tolist(), held, strict=True))
+    dry, wet = (read(results, f"{name}_stiffness", per_face=True) for name in ("dry", "lubricated"))
     position = read(results, "dry_position")
-    with styled(style):
-        drawn = figure(height=4.4)
-        upper, lower = drawn.subplots(2, 1, sharex=True)
-        *own, last = looks(len(cycles) + 1)
-        for (label, tangent), look in zip(cycles.items(), own, strict=True):
-            upper.plot(position.values, tangent, label=label, **look)
-            lower.plot(position.values, 100 * (tangent / dry.values - 1), **look)
-        upper.plot(position.values, dry.values, label=text(results, "dry_label"), **last)
-        upper.set(ylabel=dry.named("tangent stiffness"))
+    cycles = beside(results, "held_stiffness", per_face=True) or {text(results, "lubricated_label"): wet}
+    changes = {
+        label: Reading(100 * (cycle.values / dry.values - 1), "change by the film", "%")
+        for label, cycle in cycles.items()
+    }
+    with sheet(style, 2, height=4.4, legend=2) as (drawn, (upper, lower)):
+        curves(upper, position.values, {**cycles, text(results, "dry_label"): dry}, "tangent stiffness")
         from_zero(upper)
-        lower.set(xlabel=position.label, ylabel="change by the film [%]")
-        legend_above(drawn, upper, columns=2)
+        curves(lower, position.values, changes)
+        lower.set(xlabel=position.label)
     return drawn
 
 
@@ -202,14 +173,8 @@ def film_stiffness(results: xr.Dataset, *, style: Style | None = None) -> Figure
         rcParams that overrule the house's.
     """
     need(results, FILM, "film_rho1", "path_point_rho1")
-    names = [str(name) for name in results.data_vars if str(name).startswith("film_stiffness_")]
-    with styled(style):
-        drawn = figure(height=3.6)
-        axes = drawn.subplots()
-        for name, look in zip(names, looks(len(names)), strict=True):
-            k = read(results, name)
-            axes.plot(travel(results, "film_rho1"), k.values, label=label_of(results, name), **look)
-        axes.set(xlabel=PATH_LABEL, ylabel=k.label, yscale="log")
-        mark_path(results, (axes,), axes)
-        legend_above(drawn, axes)
+    with sheet(style, height=3.6) as (drawn, (axes,)):
+        curves(axes, travel(results, "film_rho1"), labelled(results, "film_stiffness_"))
+        axes.set(yscale="log")
+        over_path(results, axes)
     return drawn

@@ -1,14 +1,16 @@
-"""Gears in mesh, and the stress in their teeth."""
+"""Gears in mesh, and the stress in their teeth and at their roots."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from base import Array
-from flankfilm.figures.reading import PATH_LABEL, mark_path, need, read, travel
-from flankfilm.figures.style import Style, colours, figure, legend_above, looks, styled
+from flankfilm.figures.panels import curves, over_path
+from flankfilm.figures.reading import need, read, travel
+from flankfilm.figures.style import Style, colours, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,13 +37,16 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(results, PAIR, "outline_pinion", "outline_wheel", "path_point_place", "pair_bore_radii")
     outlines = [read(results, f"outline_{name}") for name in ("pinion", "wheel")]
     centres, bores = (read(results, name).values for name in ("outline_centre", "pair_bore_radii"))
-    with styled(style):
-        drawn = figure(height=4.4)
-        whole, close = drawn.subplots(1, 2, width_ratios=(2, 3))
+    with sheet(style, 1, 2, height=4.4, width_ratios=(2, 3)) as (drawn, (whole, close)):
         lines = colours(2)
         middle, reach = _path(close, results)
         for shape, colour, shade in zip(outlines, lines, SHADES, strict=True):
-            look = {"facecolor": shade, "edgecolor": colour, "linestyle": "-", "linewidth": 0.7}
+            look: dict[str, Any] = {
+                "facecolor": shade,
+                "edgecolor": colour,
+                "linestyle": "-",
+                "linewidth": 0.7,
+            }
             whole.fill(*shape.values.T, **look)
             close.fill(*_nearby(shape.values, middle, reach).T, **look)
         for centre, radius, colour in zip(centres, bores, lines, strict=True):
@@ -104,35 +109,22 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     need(results, PAIR, "path_rho1", "path_point_rho1")
     at, known = travel(results, "path_rho1"), "path_sliding" in results
-    radii = {"path_rho1": "pinion, R1", "path_rho2": "wheel, R2", "path_radius": "reduced, R"}
-    with styled(style):
-        drawn = figure(height=4.8 if known else 2.6)
-        panels = drawn.subplots(1 + known, 1, sharex=True, squeeze=False).ravel().tolist()
-        for (name, label), look in zip(radii.items(), looks(3), strict=True):
-            radius = read(results, name)
-            panels[0].plot(at, radius.values, label=label, **look)
-        panels[0].set(ylabel=radius.named("curvature radius"))
-        legend_above(drawn, panels[0])
+    radii = {"pinion, R1": "path_rho1", "wheel, R2": "path_rho2", "reduced, R": "path_radius"}
+    with sheet(style, 1 + known, height=4.8 if known else 2.6) as (drawn, panels):
+        curves(
+            panels[0], at, {label: read(results, name) for label, name in radii.items()}, "curvature radius"
+        )
         if known:
-            _velocities(panels[1], results, at)
-        panels[-1].set(xlabel=PATH_LABEL)
-        mark_path(results, panels, panels[0])
+            mean, sliding = read(results, "path_entrainment"), read(results, "path_sliding")
+            flanks = {"pinion, u1": 0.5, "wheel, u2": -0.5}
+            speeds = {
+                n: replace(mean, values=mean.values + part * sliding.values) for n, part in flanks.items()
+            }
+            speeds |= {mean.meaning: mean, sliding.meaning: sliding}
+            curves(panels[1], at, speeds, "velocity")
+            legend_over(panels[1], 4)
+        over_path(results, *panels)
     return drawn
-
-
-def _velocities(axes: Axes, results: xr.Dataset, at: Array) -> None:
-    """Draw the velocities of both flanks, their mean and their difference."""
-    mean, sliding = read(results, "path_entrainment"), read(results, "path_sliding")
-    curves = {
-        "pinion, u1": mean.values + sliding.values / 2,
-        "wheel, u2": mean.values - sliding.values / 2,
-        mean.meaning: mean.values,
-        sliding.meaning: sliding.values,
-    }
-    for (label, speed), look in zip(curves.items(), looks(4), strict=True):
-        axes.plot(at, speed, label=label, **look)
-    axes.set(ylabel=mean.named("velocity"))
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2, handlelength=2.6)
 
 
 def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -154,9 +146,7 @@ def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         read(results, f"field_{name}") for name in ("point", "von_mises", "centre", "reach")
     )
     cells, half = results["field_triangles"].values, float(reach.values)
-    with styled(style):
-        drawn = figure(height=4.3)
-        axes = drawn.subplots()
+    with sheet(style, height=4.3) as (drawn, (axes,)):
         top = stress_of_nearly_all(results)
         x, y = points.values.T
         painted = axes.tripcolor(
@@ -168,6 +158,31 @@ def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         x, y = centre.values.tolist()
         axes.set(xlim=(x - half, x + half), ylim=(y - 0.75 * half, y + 0.75 * half))
         axes.set(xlabel=points.named("x"), ylabel=points.named("y"))
+    return drawn
+
+
+def root_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw tension and compression at the roots of one tooth of each gear while it passes through the mesh.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``root-stress``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, 'run a scene that wants "root-stress"', "root_pinion_tension", "root_wheel_tension")
+    with sheet(style, height=3.6) as (drawn, (axes,)):
+        for i, (name, colour) in enumerate(zip(("pinion", "wheel"), colours(2), strict=True)):
+            travel = read(results, f"root_{name}_travel")
+            for what, dash in (("tension", "-"), ("compression", "--")):
+                stress = {f"{name}, {what}": read(results, f"root_{name}_{what}")}
+                curves(axes, travel.values, stress, "stress along the fillet", color=colour, linestyle=dash)
+            if "iso6336_3_stresses" in results:
+                nominal = float(read(results, "iso6336_3_stresses").values[i])
+                axes.axhline(nominal, color=colour, linestyle=":", label=f"{name}, ISO 6336-3 at D")
+        axes.axhline(0.0, color="black", linewidth=0.6)
+        axes.set(xlabel=travel.label)
     return drawn
 
 

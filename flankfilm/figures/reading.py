@@ -1,4 +1,4 @@
-"""What the figures read from a dataset of results: numbers in the unit that people read, labels, and shared marks.
+"""What the figures read from a dataset of results: numbers in the unit that people read, and labels.
 
 The one place that turns a variable into numbers and a label; both follow from the variable's attributes.
 """
@@ -6,8 +6,7 @@ The one place that turns a variable into numbers and a label; both follow from t
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -16,15 +15,11 @@ import numpy as np
 from base import Array
 from base.results import figures
 from base.units import factor, suffix
-from flankfilm.figures.style import MARK
 from flankfilm.output.tables import read_in
 from flankfilm.output.variables import sentence
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-
-PATH_LABEL = "travel along the path of contact from A [mm]"
 
 PER_FACE = "N/(mm um)"
 """Unit that people read a stiffness in, per face width."""
@@ -160,27 +155,22 @@ def travel(results: xr.Dataset, name: str) -> Array:
     return np.asarray(1e3 * (results[name].values - start))
 
 
-def two_pitches(position: Array, values: Array) -> tuple[Array, Array]:
-    """Repeat a curve over a second base pitch."""
-    return np.concatenate([position, position + 1]), np.concatenate([values, values])
+def labelled(results: xr.Dataset, start: str, *, per_face: bool = False) -> dict[str, Reading]:
+    """Curves of the variables whose names begin alike, by the model that ``long_name`` names after its colon."""
+    names = [name for name in map(str, results.data_vars) if name.startswith(start)]
+    return {
+        str(results[name].attrs["long_name"]).partition(": ")[2]: read(results, name, per_face=per_face)
+        for name in names
+    }
 
 
-def mark_path(results: xr.Dataset, panels: Sequence[Axes], named: Axes) -> None:
-    """Mark A to E in all panels, and name them above one."""
-    for name, at in zip(
-        results["path_point"].values, travel(results, "path_point_rho1").tolist(), strict=True
-    ):
-        for axes in panels:
-            axes.axvline(at, color=MARK, linewidth=0.8)
-        named.annotate(
-            str(name), (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
-            ha="center", va="bottom", color="#000000",
-        )  # fmt: skip
-
-
-def label_of(results: xr.Dataset, name: str) -> str:
-    """Model that a variable's ``long_name`` names after its colon."""
-    return str(results[name].attrs["long_name"]).partition(": ")[2]
+def beside(results: xr.Dataset, name: str, *, per_face: bool = False) -> dict[str, Reading]:
+    """Curves that stand beside each other in a variable, by the labels of its first axis; none without the variable."""
+    if name not in results:
+        return {}
+    every = read(results, name, per_face=per_face)
+    labels = results[results[name].dims[0]].values.tolist()
+    return {label: replace(every, values=one) for label, one in zip(labels, every.values, strict=True)}
 
 
 def words(results: xr.Dataset, name: str) -> str:

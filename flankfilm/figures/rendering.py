@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-
-from flankfilm.figures.view import View
 
 INK, PAPER = "#1c2126", "#ffffff"
 
@@ -24,6 +23,57 @@ SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
 
 COLOURS = 160
 """Colours of the scale in a GIF, which can hold 256 in all."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What is drawn, and how.
+
+    Attributes
+    ----------
+    folder : str
+        Of the run.
+    size : tuple of int
+        Width and height [pixels].
+    scale : float
+        Factor of the displacements.
+    greatest, ticks : float, int
+        End of the scale of colours [Pa], and its parts.
+    centre : tuple of float
+        Middle of the picture [m].
+    reach : float
+        Half its width [m].
+    base_radius : float
+        Of the pinion [m].
+    position, error : tuple of float
+        Positions of the mesh cycle [base pitches], and the loaded transmission error there [m].
+    only : float
+        Position of the one picture [base pitches].
+    field : str
+        Name of the field that is drawn.
+    target : str
+        Picture or animation; its suffix is the format.
+    seconds : float
+        Length of the animation; 0 for one picture.
+    window : bool
+        Whether a window is opened instead of a file written.
+    """
+
+    folder: str
+    size: tuple[int, int]
+    scale: float
+    greatest: float
+    ticks: int
+    centre: tuple[float, float]
+    reach: float
+    base_radius: float
+    position: tuple[float, ...]
+    error: tuple[float, ...]
+    only: float
+    field: str
+    target: str = ""
+    seconds: float = 0.0
+    window: bool = False
 
 
 def steps(folder: Path) -> dict[float, dict[str, Path]]:
@@ -37,13 +87,9 @@ def steps(folder: Path) -> dict[float, dict[str, Path]]:
 
 def frames(view: View) -> Iterator[Any]:
     """Draw the positions, each as an array of pixels."""
-    chosen = steps(Path(view.folder))
-    if not view.seconds:
-        nearest = min(chosen, key=lambda at: abs(at - view.only))
-        chosen = {nearest: chosen[nearest]}
     plotter = plotter_of(view, off_screen=True)
-    for at, files in chosen.items():
-        draw(plotter, view, at, files)
+    for at in steps(Path(view.folder)) if view.seconds else [view.only]:
+        draw(plotter, view, at)
         yield plotter.screenshot(return_img=True)
     plotter.close()
 
@@ -60,25 +106,27 @@ def plotter_of(view: View, **options: Any) -> Any:
 
 def show(view: View) -> None:
     """Open a window with a slider over the positions."""
-    plotter, chosen = plotter_of(view), steps(Path(view.folder))
-    places = list(chosen)
-
-    def move(value: float) -> None:
-        at = min(places, key=lambda place: abs(place - value))
-        draw(plotter, view, at, chosen[at])
-
-    start = min(places, key=lambda place: abs(place - view.only))
+    plotter, places = plotter_of(view), list(steps(Path(view.folder)))
     plotter.add_slider_widget(
-        move, [places[0], places[-1]], value=start, title="base pitches from A", color=PAPER,
+        lambda value: draw(plotter, view, value), [places[0], places[-1]], value=nearest(places, view.only),
+        title="base pitches from A", color=PAPER,
         pointa=(0.65, 0.93), pointb=(0.97, 0.93), title_height=0.02, fmt="%.3f",
     )  # fmt: skip
     plotter.show(title="flankfilm")
 
 
-def draw(plotter: Any, view: View, at: float, files: dict[str, Path]) -> None:
-    """One position: a field on the deformed teeth, and their outlines; replaces the position before."""
+def nearest(places: Iterable[float], at: float) -> float:
+    """Position that lies nearest to `at`."""
+    return min(places, key=lambda place: abs(place - at))
+
+
+def draw(plotter: Any, view: View, at: float) -> None:
+    """The position nearest to `at`: a field on the deformed teeth, and their outlines; replaces the one before."""
     import pyvista as pv
 
+    chosen = steps(Path(view.folder))
+    at = nearest(chosen, at)
+    files = chosen[at]
     unit, factor = SHOWN_UNITS.get(view.field.rpartition("_")[2], ("", 1.0))
     # the pinion turns ahead by the deflection, as much exaggerated as the displacements
     turn = view.scale * float(np.interp(at, view.position, view.error)) / view.base_radius
@@ -147,16 +195,12 @@ def write(view: View) -> None:
         pictures[0].save(target)
         return
     wait = round(1e3 * view.seconds / len(pictures))
+    options: dict[str, Any] = {"quality": 80, "method": 4}
     if target.suffix == ".gif":
-        palette = _palette()
+        palette, options = _palette(), {"optimize": True}
         pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-        pictures[0].save(
-            target, append_images=pictures[1:], save_all=True, duration=wait, loop=0, optimize=True
-        )
-    else:
-        pictures[0].save(
-            target, append_images=pictures[1:], save_all=True, duration=wait, loop=0, quality=80, method=4
-        )
+    first, *rest = pictures
+    first.save(target, append_images=rest, save_all=True, duration=wait, loop=0, **options)
 
 
 def _palette() -> Any:

@@ -1,24 +1,16 @@
-"""Stiffness, load share, transmission error and Fourier fit over the mesh cycle."""
+"""Stiffness, load share, transmission error and Fourier fit over the mesh cycle; over torque; beside closed forms."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from base import Array
-from flankfilm.figures.reading import (
-    PATH_LABEL,
-    Reading,
-    label_of,
-    mark_path,
-    need,
-    read,
-    text,
-    travel,
-    two_pitches,
-)
-from flankfilm.figures.style import Style, colours, figure, from_zero, legend_above, looks, styled
+from flankfilm.figures.panels import curves, over_path, over_two_pitches
+from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
+from flankfilm.figures.style import Style, colours, from_zero, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,17 +33,11 @@ def single_pairs(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's.
     """
     need(results, 'run a scene that wants "closed-forms"', "single_pair_rho1", "pair_face_width")
-    names = [str(n) for n in results.data_vars if str(n).startswith("single_pair_stiffness_")]
-    with styled(style):
-        drawn = figure()
-        axes = drawn.subplots()
-        for name, look in zip(names, looks(len(names)), strict=True):
-            k = read(results, name, per_face=True)
-            axes.plot(travel(results, "single_pair_rho1"), k.values, label=label_of(results, name), **look)
-        mark_path(results, (axes,), axes)
-        axes.set(xlabel=PATH_LABEL, ylabel=k.label)
+    models = labelled(results, "single_pair_stiffness_", per_face=True)
+    with sheet(style, legend=4) as (drawn, (axes,)):
+        curves(axes, travel(results, "single_pair_rho1"), models)
         from_zero(axes)
-        legend_above(drawn, axes, columns=4)
+        over_path(results, axes)
     return drawn
 
 
@@ -92,21 +78,12 @@ def _over_the_cycle(
     prefix = _final(results)
     own = list(dict.fromkeys((prefix, "dry")))
     need(results, STIFFNESS, *(f"{name}_{what}" for name in own))
-    curves = {
+    cycles = {
         text(results, f"{name}_label"): read(results, f"{name}_{what}", per_face=per_face) for name in own
     }
-    if "other_model" in results:
-        others = read(results, f"other_{what}", per_face=per_face)
-        for label, values in zip(results["other_model"].values.tolist(), others.values, strict=True):
-            curves[label] = Reading(values, others.meaning, others.unit)
-    position = read(results, f"{prefix}_position")
-    with styled(style):
-        drawn = figure(height=height)
-        axes = drawn.subplots()
-        for (label, curve), look in zip(curves.items(), looks(len(curves)), strict=True):
-            axes.plot(*two_pitches(position.values, curve.values), label=label, **look)
-        axes.set(xlabel=position.label, ylabel=curve.label)
-        legend_above(drawn, axes, columns=2)
+    cycles |= beside(results, f"other_{what}", per_face=per_face)
+    with sheet(style, height=height, legend=2) as (drawn, (axes,)):
+        over_two_pitches(axes, read(results, f"{prefix}_position"), cycles)
     return drawn
 
 
@@ -122,14 +99,11 @@ def load_share(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     prefix = _final(results)
     at, share = travel(results, f"{prefix}_rho1").ravel(), read(results, f"{prefix}_load_share")
-    order = np.flatnonzero(np.isfinite(at))
-    order = order[np.argsort(at[order])]
-    with styled(style):
-        drawn = figure(height=2.8)
-        axes = drawn.subplots()
+    order = np.argsort(at)[: np.isfinite(at).sum()]
+    with sheet(style, height=2.8) as (drawn, (axes,)):
         axes.plot(at[order], share.values.ravel()[order], ".-", color=colours(1)[0], markersize=3)
-        mark_path(results, (axes,), axes)
-        axes.set(xlabel=PATH_LABEL, ylabel=share.label, ylim=(-0.02, 1.05))
+        axes.set(ylabel=share.label, ylim=(-0.02, 1.05))
+        over_path(results, axes)
     return drawn
 
 
@@ -149,22 +123,110 @@ def fourier(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     series = {f"{kind}, order {order}": "fourier"}
     if "fourier_other_mean" in results:
         series[f"{'tangent' if kind == 'secant' else 'secant'}, order {order}"] = "fourier_other"
-    samples = read(results, f"{prefix}_{KINDS[kind]}", per_face=True)
-    position = read(results, f"{prefix}_position")
-    with styled(style):
-        drawn = figure(height=3.2)
-        left, right = drawn.subplots(1, 2, width_ratios=(3, 1))
-        curve = two_pitches(position.values, samples.values)
-        left.plot(*curve, ".", color="#777777", markersize=3, label=kind)
-        fine = np.linspace(0, 2, 401)
-        for (label, name), look in zip(series.items(), looks(len(series)), strict=True):
-            left.plot(fine, _sum(results, name, fine), label=label, **look)
-        left.set(xlabel=position.label, ylabel=samples.named("stiffness"))
-        legend_above(drawn, left)
-        harmonics = read(results, "fourier_harmonics")
-        numbers = np.arange(1, harmonics.values[:12].size + 1)
+    samples, position = (
+        read(results, f"{prefix}_{KINDS[kind]}", per_face=True),
+        read(results, f"{prefix}_position"),
+    )
+    fine, harmonics = np.linspace(0, 2, 401), read(results, "fourier_harmonics")
+    numbers = np.arange(1, harmonics.values[:12].size + 1)
+    with sheet(style, 1, 2, width_ratios=(3, 1)) as (drawn, (left, right)):
+        dots: dict[str, Any] = {"color": "#777777", "linestyle": "none", "marker": ".", "markersize": 3}
+        over_two_pitches(left, position, {kind: samples}, **dots)
+        sums = {label: replace(samples, values=_sum(results, name, fine)) for label, name in series.items()}
+        curves(left, fine, sums, "stiffness")
         right.bar(numbers, harmonics.values[:12], color=colours(1)[0])
         right.set(xlabel="harmonic [-]", ylabel=harmonics.label, xticks=numbers[:: max(1, numbers.size // 5)])
+    return drawn
+
+
+def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw mean stiffness, and transmission error, over the pinion's torque.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``torques``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    names = {"secant": "torque_secant_stiffness", "tangent": "torque_stiffness"}
+    need(results, 'run a scene that wants "torques"', *names.values(), "pair_face_width")
+    torque, error = read(results, "torque"), read(results, "torque_transmission_error")
+    means = {kind: read(results, name, per_face=True) for kind, name in names.items()}
+    with sheet(style, 1, 2, height=2.8) as (drawn, (left, right)):
+        curves(left, torque.values, means, "mean stiffness", marker=".")
+        right.plot(torque.values, error.values, ".-", color=colours(1)[0])
+        right.set(ylabel=error.label)
+        from_zero(right)
+        for axes in (left, right):
+            axes.set(xlabel=torque.label)
+    return drawn
+
+
+def revolution(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the transmission error tooth by tooth, under load and without.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``revolution``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    names = {
+        "under load": "revolution_transmission_error",
+        "without load": "revolution_unloaded_transmission_error",
+    }
+    need(results, 'run a scene that wants "revolution"', *names.values())
+    position, errors = read(results, "revolution_position"), {k: read(results, n) for k, n in names.items()}
+    with sheet(style, height=2.8) as (drawn, (axes,)):
+        curves(axes, position.values, errors, "transmission error", linewidth=0.9)
+        axes.set(xlabel=position.label)
+    return drawn
+
+
+def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw one pair along the path, the mesh cycle, and each model's difference from finite elements.
+
+    Black lines are finite elements: with all parts, and without what closed forms lack (hub wind-up and
+    coupling of neighbouring teeth). The grey band about zero is the numerical error of the latter.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        What ``verify.nc`` holds.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    singles, secants = (
+        {of: f"{of}_{what}" for of in ("reference", "model")}
+        for what in ("single_stiffness", "secant_stiffness")
+    )
+    need(found, "give the verify.nc of a verification", "model", "reference", *singles.values())
+    single, secant = (
+        {of: beside(found, name, per_face=True) for of, name in names.items()} for names in (singles, secants)
+    )
+    at, position, like = travel(found, "path_rho1"), read(found, "mesh_position"), int(found["like_for_like"])
+    whole, lacking = (list(single["reference"])[i] for i in (0, like))
+    base, error = single["reference"][lacking].values, 100 * float(found["reference_error"][like])
+    differences = {
+        name: Reading(100 * (curve.values / base - 1), "", "%") for name, curve in single["model"].items()
+    }
+    with sheet(style, 3, height=7.4, legend=2, sharex=False) as (drawn, (one, mesh, off)):
+        for name, label, dash in ((whole, whole, "-"), (lacking, f"finite elements {lacking}", "--")):
+            curves(one, at, {label: single["reference"][name]}, color="#000000", linestyle=dash)
+            over_two_pitches(
+                mesh, position, {label: secant["reference"][name]}, color="#000000", linestyle=dash
+            )
+        curves(one, at, single["model"])
+        over_two_pitches(mesh, position, secant["model"])
+        curves(off, at, differences)
+        off.axhspan(-error, error, color="#bbbbbb", linewidth=0)
+        off.axhline(0.0, color="#000000", linewidth=0.8, linestyle="--")
+        off.set(ylabel="one pair, difference\nfrom dashed black line [%]")
+        from_zero(one, mesh)
+        for axes in (one, off):
+            over_path(found, axes)
     return drawn
 
 

@@ -76,19 +76,52 @@ def colours(count: int) -> list[str]:
     return [str(look["color"]) for look in looks(count)]
 
 
-def figure(width: float = 7.0, height: float = 3.2) -> Figure:
-    """Give an empty figure of `width` by `height` inches, or the style's own, free of pyplot's global list."""
+@contextmanager
+def sheet(
+    style: Style | None = None,
+    rows: int = 1,
+    columns: int = 1,
+    *,
+    width: float = 7.0,
+    height: float = 3.2,
+    legend: int = 3,
+    **options: Any,
+) -> Iterator[tuple[Figure, list[Axes]]]:
+    """Give a figure with empty panels in the house's style, free of pyplot's global list, and legend it at the end.
+
+    Parameters
+    ----------
+    style : mapping, optional
+        As of `styled`; its ``figure.figsize`` goes before width and height.
+    rows, columns : int
+        Of panels; where they stand below each other alone, they share the horizontal axis.
+    width, height : float
+        [inches]
+    legend : int
+        Columns of the legend of the first panel's curves. It stands above the figure, where it covers no data and
+        takes no width from it; 0 for none.
+    options
+        As of ``Figure.subplots``.
+    """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    own = tuple(mpl.rcParams["figure.figsize"])
-    return Figure(figsize=own if min(own) > 0 else (width, height))
+    with styled(style):
+        own = tuple(mpl.rcParams["figure.figsize"])
+        drawn = Figure(figsize=own if min(own) > 0 else (width, height))
+        grid = drawn.subplots(rows, columns, squeeze=False, **{"sharex": columns == 1, **options})
+        panels = grid.ravel().tolist()
+        yield drawn, panels
+        handles, labels = panels[0].get_legend_handles_labels()
+        if legend and labels:
+            drawn.legend(handles, labels, loc="outside upper left", ncols=legend, handlelength=2.6)
 
 
-def legend_above(drawn: Figure, axes: Axes, columns: int = 3) -> None:
-    """Put the legend of `axes` above the figure, where it covers no data and takes no width from it."""
-    handles, labels = axes.get_legend_handles_labels()
-    drawn.legend(handles, labels, loc="outside upper left", ncols=columns, handlelength=2.6)
+def legend_over(axes: Axes, columns: int) -> None:
+    """Put the legend of `axes` right above it: the curves leave no corner free for certain."""
+    axes.legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, handlelength=2.6
+    )
 
 
 def from_zero(*panels: Axes) -> None:

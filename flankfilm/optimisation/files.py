@@ -47,19 +47,12 @@ def phases(found: Optimum) -> tuple[float, float, float] | None:
 
     Points that failed are left out: what ends early says nothing of tolerances.
     """
-    coarse, fine = found.task.tolerances
-    seconds = {
-        tolerance: [
-            e.result.seconds for e in found.evaluations if e.tolerance == tolerance and not e.result.fault
-        ]
-        for tolerance in (coarse, fine)
-    }
-    if not seconds[coarse] or not seconds[fine]:
+    done = [(e.tolerance, e.result.seconds) for e in found.evaluations if not e.result.fault]
+    coarse, fine = (np.array([s for t, s in done if t == phase]) for phase in found.task.tolerances)
+    if not coarse.size or not fine.size:
         return None
-    first, second = (float(np.mean(seconds[tolerance])) for tolerance in (coarse, fine))
-    spent = sum(seconds[coarse]) + sum(seconds[fine])
-    whole = second * (len(seconds[coarse]) + len(seconds[fine]))
-    return first, second, 1.0 - spent / whole
+    whole = fine.mean() * (coarse.size + fine.size)
+    return float(coarse.mean()), float(fine.mean()), float(1.0 - (coarse.sum() + fine.sum()) / whole)
 
 
 def dataset(found: Optimum) -> xr.Dataset:
@@ -68,7 +61,11 @@ def dataset(found: Optimum) -> xr.Dataset:
     best = np.isin(np.arange(len(points)), found.best).astype(np.int8)
     fine = np.array([point.tolerance == task.tolerances[1] for point in points], dtype=np.int8)
     scene = json.dumps(task.raw_scene(points[found.best[0]].values, task.tolerances[1]))
-    attributes = {"title": task.title, "objectives_json": json.dumps(task.objectives), **provenance(scene)}
+    attributes = {
+        "title": task.asked.title,
+        "objectives_json": json.dumps(task.objectives),
+        **provenance(scene),
+    }
     values, results = [point.values for point in points], [point.result for point in points]
     return (
         of_rows("point", task.keys, values, task.outputs, results)
@@ -89,11 +86,8 @@ def write_optimum(found: Optimum, folder: Path) -> list[Path]:
     task = found.task
     chosen = [found.evaluations[place] for place in found.best]
     table, scene, points, picture = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml", "nc", "svg"))
-    write_csv(
-        table,
-        {key: [point.values[i] for point in chosen] for i, key in enumerate(task.keys)}
-        | {name: [point.result.values[i] for point in chosen] for i, name in enumerate(task.outputs)},
-    )
+    rows = zip(*((*point.values, *point.result.values) for point in chosen), strict=True)
+    write_csv(table, dict(zip((*task.keys, *task.outputs), rows, strict=True)))
     raw = task.raw_scene(chosen[0].values, task.tolerances[1])
     write_text(scene, "\n".join(toml_lines(raw)) + "\n")
     held = dataset(found)

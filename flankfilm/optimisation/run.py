@@ -92,7 +92,7 @@ class _Evaluator:
             self.kept.add((tol, *values), result)
             self.known[tol, values] = result
             self.computed += 1
-            self.progress(len(self.known), self.task.evaluations)
+            self.progress(len(self.known), self.task.asked.evaluations)
         for point in points:
             self.asked.setdefault(point, self.known[point])
         results = [self.known[point] for point in points]
@@ -147,7 +147,7 @@ def optimise(
     """
     start = time.perf_counter()
     columns = Columns(("tolerance", *task.keys), task.outputs)
-    work = Work("optimisation", task.title, {"task": _plain(task), "scene": task.scene}, columns)
+    work = Work("optimisation", task.asked.title, {"task": _plain(task), "scene": task.scene}, columns)
     with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
         evaluator = _Evaluator(task, kept, staff, how.cache, progress, dict(_points(task, kept.lines)))
         search(task, evaluator)
@@ -169,17 +169,18 @@ def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
 
 
 def _plain(task: Task) -> list[object]:
-    ranges = {key: span.model_dump() for key, span in task.ranges.items()}
-    follow = {key: rule.model_dump() for key, rule in task.follow.items()}
-    numbers = (task.evaluations, task.population, task.seed, task.tolerances)
-    return [task.objectives, task.signs, task.limits, ranges, follow, numbers]
+    asked = task.asked
+    spans = asked.model_dump(include={"vary", "follow"})
+    numbers = (asked.evaluations, asked.population, asked.seed, task.tolerances)
+    return [task.objectives, task.signs, task.limits, spans["vary"], spans["follow"], numbers]
 
 
 def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[tuple[float, tuple[Value, ...]], RowResult]]:
     """Points of the table with their results."""
-    whole = [span.whole for span in task.ranges.values()] + [
-        task.ranges[rule.of].whole and rule.times.is_integer() and rule.plus.is_integer()
-        for rule in task.follow.values()
+    ranges, follow = task.asked.vary, task.asked.follow
+    whole = [span.whole for span in ranges.values()] + [
+        ranges[rule.of].whole and rule.times.is_integer() and rule.plus.is_integer()
+        for rule in follow.values()
     ]
     for line in lines:
         tolerance, *texts = line.values

@@ -26,21 +26,21 @@ FIRST_PHASE = 0.6
 def search(task: Task, evaluate: Evaluate) -> None:
     """Spend the evaluations of a task: first coarse over all the ranges, then fine from where that led."""
     find = _one if len(task.objectives) == 1 else _several
-    first = round(FIRST_PHASE * task.evaluations)
+    first = round(FIRST_PHASE * task.asked.evaluations)
     coarse, fine = task.tolerances
     led_to = find(task, evaluate, coarse, first, None)
-    find(task, evaluate, fine, task.evaluations - first, led_to)
+    find(task, evaluate, fine, task.asked.evaluations - first, led_to)
 
 
 def _generations(task: Task, evaluations: int) -> int:
-    return max(1, evaluations // task.population - 1)
+    return max(1, evaluations // task.asked.population - 1)
 
 
 def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, start: Array | None) -> Array:
     """Differential evolution (Storn and Price, doi:10.1023/A:1008202821328); the last population."""
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
-    d = len(task.ranges)
+    d = len(task.asked.vary)
     held = NonlinearConstraint(lambda x: _limits(evaluate, x, tolerance), -np.inf, 0.0)
     # the stubs know neither objectives of many points at once nor plain lists of bounds
     evolve: Any = differential_evolution
@@ -50,7 +50,7 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
         maxiter=_generations(task, evaluations),
         init=_latin(task) if start is None else start,
         constraints=(held,) if task.limits else (),
-        rng=task.seed,
+        rng=task.asked.seed,
         polish=False,
         tol=1e-6,
         updating="deferred",
@@ -68,7 +68,9 @@ def _limits(evaluate: Evaluate, x: Array, tolerance: float) -> Array:
 def _latin(task: Task) -> Array:
     from scipy.stats import qmc
 
-    return np.asarray(qmc.LatinHypercube(len(task.ranges), rng=task.seed).random(task.population))
+    return np.asarray(
+        qmc.LatinHypercube(len(task.asked.vary), rng=task.asked.seed).random(task.asked.population)
+    )
 
 
 def _several(
@@ -86,7 +88,7 @@ def _several(
     class Pair(Problem):
         def __init__(self) -> None:
             super().__init__(
-                n_var=len(task.ranges),
+                n_var=len(task.asked.vary),
                 n_obj=len(task.objectives),
                 n_ieq_constr=len(task.limits),
                 xl=0.0,
@@ -98,9 +100,9 @@ def _several(
 
     found = minimize(
         Pair(),
-        NSGA2(pop_size=task.population, sampling=_latin(task) if start is None else start),
+        NSGA2(pop_size=task.asked.population, sampling=_latin(task) if start is None else start),
         ("n_gen", _generations(task, evaluations) + 1),
-        seed=task.seed,
+        seed=task.asked.seed,
     )
     return np.asarray(found.pop.get("X"))
 

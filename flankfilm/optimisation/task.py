@@ -14,7 +14,6 @@ from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section
 from flankfilm.studies.plan import (
-    Follow,
     Range,
     RowsFile,
     Value,
@@ -74,35 +73,37 @@ class Task:
 
     Attributes
     ----------
-    title : str
+    asked : OptimisationFile
+        What the file asks for.
     scene : mapping
         The scene's keys as read, with what the file sets.
-    objectives : tuple of str
-        Outputs, those to minimise first.
-    signs : tuple of float
-        1 for an objective that is minimised, -1 for one that is maximised.
-    limits : tuple of (str, float, float)
-        Output, sign and bound: sign (value - bound) <= 0 is allowed.
-    ranges : mapping
-        Varied key to its range.
-    follow : mapping
-        Key that follows to its rule.
-    evaluations, population, seed : int
     tolerances : tuple of float
         Of the first phase, far from the optimum, and of the second.
     """
 
-    title: str
+    asked: OptimisationFile
     scene: Mapping[str, Any]
-    objectives: tuple[str, ...]
-    signs: tuple[float, ...]
-    limits: tuple[tuple[str, float, float], ...]
-    ranges: Mapping[str, Range]
-    follow: Mapping[str, Follow]
-    evaluations: int
-    population: int
-    seed: int
     tolerances: tuple[float, float]
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Outputs that are traded off, those to minimise first."""
+        return (*self.asked.minimise, *self.asked.maximise)
+
+    @property
+    def signs(self) -> tuple[float, ...]:
+        """Of each objective: 1 where it is minimised, -1 where it is maximised."""
+        return (1.0,) * len(self.asked.minimise) + (-1.0,) * len(self.asked.maximise)
+
+    @property
+    def limits(self) -> tuple[tuple[str, float, float], ...]:
+        """Output, sign and bound of each limit: sign (value - bound) <= 0 is allowed."""
+        return tuple(
+            (name, sign, bound)
+            for name, limit in self.asked.limits.items()
+            for sign, bound in ((-1.0, limit.at_least), (1.0, limit.at_most))
+            if bound is not None
+        )
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -112,12 +113,12 @@ class Task:
     @property
     def keys(self) -> tuple[str, ...]:
         """Keys of the scene that change."""
-        return (*self.ranges, *self.follow)
+        return (*self.asked.vary, *self.asked.follow)
 
     def values(self, unit: Sequence[float]) -> tuple[Value, ...]:
         """Values of the keys at a point of the unit cube."""
-        own = {key: span.at(u) for (key, span), u in zip(self.ranges.items(), unit, strict=True)}
-        return (*own.values(), *(following(own, rule) for rule in self.follow.values()))
+        own = {key: span.at(u) for (key, span), u in zip(self.asked.vary.items(), unit, strict=True)}
+        return (*own.values(), *(following(own, rule) for rule in self.asked.follow.values()))
 
     def raw_scene(self, values: Sequence[Value], tolerance: float) -> dict[str, Any]:
         """Keys of the scene with these values."""
@@ -141,26 +142,9 @@ def read_task(path: Path) -> Task:
     refuse_unknown_outputs(names)
     scene = base_scene(asked.scene, asked.set, names, path.parent)
     fine = parse_tolerance(scene.get("tolerance", Scene.model_fields["tolerance"].default), "tolerance")
-    task = Task(
-        title=asked.title,
-        scene=scene,
-        objectives=(*asked.minimise, *asked.maximise),
-        signs=(*(1.0 for _ in asked.minimise), *(-1.0 for _ in asked.maximise)),
-        limits=tuple(
-            (name, sign, bound)
-            for name, limit in asked.limits.items()
-            for sign, bound in ((-1.0, limit.at_least), (1.0, limit.at_most))
-            if bound is not None
-        ),
-        ranges=asked.vary,
-        follow=asked.follow,
-        evaluations=asked.evaluations,
-        population=asked.population,
-        seed=asked.seed,
-        tolerances=(max(fine, min(COARSENING * fine, COARSEST)), fine)
-        if isinstance(fine, float)
-        else (COARSEST, fine),
-    )
+    # a tolerance that is no number is left for the scene's own check to refuse
+    first = max(fine, min(COARSENING * fine, COARSEST)) if isinstance(fine, float) else COARSEST
+    task = Task(asked, scene, (first, fine))
     for end in (0.0, 1.0):
-        validated(task.raw_scene(task.values([end] * len(task.ranges)), fine))
+        validated(task.raw_scene(task.values([end] * len(asked.vary)), fine))
     return task

@@ -6,81 +6,59 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, quantity, record
+from base import Array, Quantity
+from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
-    from fem.tooth_root import GearRootStress
+    from fem.tooth_root import GearRootStress, RootPeak
 
-__all__ = ["FilletStress", "Passage", "fillet_stress", "passage"]
+__all__ = ["fillet_stress", "passage"]
 
-
-@record
-class Passage:
-    """One tooth on its way through the mesh: an entry for each instant."""
-
-    travel: Array = quantity("1", "travel since the tooth's pair was at A, in base pitches", "instant")
-    tension: Array = quantity(
-        "Pa", "largest principal stress along the fillet under the loaded flank", "instant", shown="MPa"
-    )
-    tension_tangent: Array = quantity(
-        "rad", "where: angle of the fillet's tangent to the tooth's centre line", "instant", shown="deg"
-    )
-    compression: Array = quantity(
-        "Pa", "least principal stress along the other fillet", "instant", shown="MPa"
-    )
-    compression_tangent: Array = quantity(
-        "rad", "where: angle of the fillet's tangent to the tooth's centre line", "instant", shown="deg"
-    )
+TANGENT = "angle of the fillet's tangent to the tooth's centre line"
 
 
-@record
-class FilletStress:
-    """Along the fillets of a tooth: stress at the worst instants, amplitude and mean of a passage."""
-
-    arc: Array = quantity("m", "arc length from the middle of the gap", "arc", shown="mm")
-    tangent: Array = quantity(
-        "rad", "angle of the fillet's tangent to the tooth's centre line", "arc", shown="deg"
-    )
-    loaded_side: Array = quantity(
-        "Pa", "stress under the loaded flank at the instant of the greatest tension", "arc", shown="MPa"
-    )
-    other_side: Array = quantity(
-        "Pa", "stress on the other side at the instant of the greatest compression", "arc", shown="MPa"
-    )
-    loaded_side_amplitude: Array = quantity(
-        "Pa", "amplitude of the stress under the loaded flank over a passage", "arc", shown="MPa"
-    )
-    loaded_side_mean: Array = quantity(
-        "Pa", "mean of the stress under the loaded flank over a passage", "arc", shown="MPa"
-    )
-
-
-def passage(gear: GearRootStress) -> Passage:
-    """Follow one tooth through the mesh."""
+def passage(gear: GearRootStress) -> tuple[Quantity, ...]:
+    """Follow one tooth through the mesh: an entry for each instant."""
     order = np.argsort(gear.tooth_position, axis=None, kind="stable")
 
-    def tangent(arc: Array) -> Array:
-        return np.asarray(np.interp(arc.ravel()[order], gear.line.arc, gear.line.tangent_angle))
+    def stress(name: str, meaning: str, values: Array, arc: Array) -> tuple[Quantity, Quantity]:
+        tangent = np.interp(arc.ravel()[order], gear.line.arc, gear.line.tangent_angle)
+        return (
+            figure_of(name, "Pa", meaning, "instant", values.ravel()[order], shown="MPa"),
+            figure_of(f"{name}_tangent", "rad", f"where: {TANGENT}", "instant", tangent, shown="deg"),
+        )
 
-    return Passage(
-        travel=gear.tooth_position.ravel()[order],
-        tension=gear.tension_Pa.ravel()[order],
-        tension_tangent=tangent(gear.tension_arc),
-        compression=gear.compression_Pa.ravel()[order],
-        compression_tangent=tangent(gear.compression_arc),
+    travel = gear.tooth_position.ravel()[order]
+    tension = "largest principal stress along the fillet under the loaded flank"
+    compression = "least principal stress along the other fillet"
+    return (
+        figure_of(
+            "travel", "1", "travel since the tooth's pair was at A, in base pitches", "instant", travel
+        ),
+        *stress("tension", tension, gear.tension_Pa, gear.tension_arc),
+        *stress("compression", compression, gear.compression_Pa, gear.compression_arc),
     )
 
 
-def fillet_stress(gear: GearRootStress) -> FilletStress:
+def fillet_stress(gear: GearRootStress) -> tuple[Quantity, ...]:
     """Look along the fillets at the worst instants, and over a passage."""
-    tension, compression = gear.greatest_tension, gear.greatest_compression
-    at = {peak: int(np.flatnonzero(gear.tooth == peak.tooth)[0]) for peak in (tension, compression)}
+
+    def worst(peak: RootPeak, side: int) -> Array:
+        return np.asarray(gear.tangential_Pa[peak.row, np.flatnonzero(gear.tooth == peak.tooth)[0], side])
+
     amplitude, mean = gear.fatigue()
-    return FilletStress(
-        arc=gear.line.arc,
-        tangent=gear.line.tangent_angle,
-        loaded_side=gear.tangential_Pa[tension.row, at[tension], 0],
-        other_side=gear.tangential_Pa[compression.row, at[compression], 1],
-        loaded_side_amplitude=amplitude[0],
-        loaded_side_mean=mean[0],
+    loaded, other = "stress under the loaded flank", "stress on the other side"
+    stresses = {
+        "loaded_side": (f"{loaded} at the instant of the greatest tension", worst(gear.greatest_tension, 0)),
+        "other_side": (
+            f"{other} at the instant of the greatest compression",
+            worst(gear.greatest_compression, 1),
+        ),
+        "loaded_side_amplitude": (f"amplitude of the {loaded} over a passage", amplitude[0]),
+        "loaded_side_mean": (f"mean of the {loaded} over a passage", mean[0]),
+    }
+    return (
+        figure_of("arc", "m", "arc length from the middle of the gap", "arc", gear.line.arc, shown="mm"),
+        figure_of("tangent", "rad", TANGENT, "arc", gear.line.tangent_angle, shown="deg"),
+        *(figure_of(name, "Pa", text, "arc", curve, shown="MPa") for name, (text, curve) in stresses.items()),
     )

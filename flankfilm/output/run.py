@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, quantity, record
+from base import Quantity
 from flankfilm.build import pinion_speed
 from flankfilm.figures import drawn
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
-from flankfilm.output.variables import joined, merged, of_list, of_models, of_record
+from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
 from flankfilm.stages.decisions import decisions
 
 if TYPE_CHECKING:
@@ -45,6 +45,15 @@ class Table:
     names: tuple[str, ...] = ()
     axis: str = ""
 
+
+RECORDS = {
+    "single_pair": "closed forms",
+    "dry": "dry cycle",
+    "torque": "torques",
+    "pair": "pair",
+    "revolution": "revolution",
+}
+"""Prefix of the variables of each stage whose result is one record."""
 
 TABLES: Mapping[str, Table] = {
     "single_pair_stiffness": Table("single_pair", "rho1", axis="path"),
@@ -109,41 +118,21 @@ def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
     return files
 
 
-@record
-class Sliding:
-    """Sliding of loaded contacts; nan where nothing touches."""
-
-    specific_sliding: Array = quantity("1", "sliding over the flank's own speed", "gear position pair")
-    sliding: Array | None = quantity("m/s", "sliding speed u1 - u2, negative before C", "position pair")
-
-    @classmethod
-    def of(cls, contact: fem.MeshCycle, speed: float | None) -> Sliding:
-        """Sliding of a loaded contact at a speed of the pinion [rad/s], where there is one."""
-        touching = contact.forces > 0
-        return cls(
-            np.where(touching, contact.specific_sliding, np.nan),
-            None if speed is None else np.where(touching, contact.sliding(speed), np.nan),
-        )
-
-
 def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Dataset]:
     """Variables of all records that a run gave, in the order of the stages."""
-    for prefix, name in (("single_pair", "closed forms"), ("dry", "dry cycle"), ("torque", "torques")):
+    for prefix, name in RECORDS.items():
         if (found := values.get(name)) is not None:
             yield of_record(prefix, found)
     if (pair := values.get("pair")) is not None:
-        yield of_record("pair", pair)
-        yield of_record("outline", drawn.outlines(pair))
+        yield of_quantities("outline", drawn.outlines(pair))
         yield of_record("path", drawn.path(pair, speed))
     if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
         yield of_record("dry", dry.contact, CONTACTS)
-        yield of_record("dry", Sliding.of(dry.contact, speed))
+        yield of_quantities("dry", _sliding(dry.contact, speed))
     if others := values.get("other cycles"):
         yield of_models("other", {cycle.label: cycle for cycle in others}, "model of the mesh cycle")
     if (lubricated := values.get("film")) is not None:
         yield from _lubricated(lubricated)
-    if (whole := values.get("revolution")) is not None:
-        yield of_record("revolution", whole)
     if (roots := values.get("root stress")) is not None:
         yield from _roots(roots)
     if (series := values.get("fourier")) is not None:
@@ -151,9 +140,23 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
     if (sweep := values.get("sweep")) is not None:
         yield from _sweep(sweep)
     if (diagram := values.get("diagram")) is not None:
-        yield from (of_record(prefix, found) for prefix, found in branch_tables(diagram).items())
+        yield from branch_tables(diagram)
     if (fields := values.get("fields")) is not None and pair is not None:
-        yield of_record("field", drawn.near_mesh(pair, (fields.pinion, fields.wheel)))
+        yield of_quantities("field", drawn.near_mesh(pair, (fields.pinion, fields.wheel)))
+
+
+def _sliding(contact: fem.MeshCycle, speed: float | None) -> Iterator[Quantity]:
+    """Sliding of a loaded contact, at a speed of the pinion [rad/s] where there is one; nan where nothing touches."""
+    touching = contact.forces > 0
+    specific = np.where(touching, contact.specific_sliding, np.nan)
+    yield figure_of(
+        "specific_sliding", "1", "sliding over the flank's own speed", "gear position pair", specific
+    )
+    if speed is not None:
+        sliding = np.where(touching, contact.sliding(speed), np.nan)
+        yield figure_of(
+            "sliding", "m/s", "sliding speed u1 - u2, negative before C", "position pair", sliding
+        )
 
 
 def held_as_it_is(cycle: LubricatedCycle) -> str:
@@ -186,8 +189,8 @@ def _fourier(series: MeshSeries) -> xr.Dataset:
 def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
     """Root stress of a passing tooth and along the fillets of both gears, and nominal stress."""
     for name, gear in (("pinion", found.stress.pinion), ("wheel", found.stress.wheel)):
-        yield of_record(f"root_{name}", passage(gear))
-        yield of_record(f"fillet_{name}", fillet_stress(gear))
+        yield of_quantities(f"root_{name}", passage(gear))
+        yield of_quantities(f"fillet_{name}", fillet_stress(gear))
     if found.iso is not None:
         yield of_record("iso6336_3", found.iso)
         yield of_list("iso6336_3", "gear", found.iso.sections)
@@ -199,7 +202,7 @@ def _sweep(found: SpeedSweep) -> Iterator[xr.Dataset]:
     names |= {f"sweep_labels_{up}": f"sweep_{up}_label" for up in found.labels}
     yield of_record("sweep", found).rename(names)
     if found.portraits:
-        yield of_record("portrait", drawn.portraits(found.portraits))
+        yield of_quantities("portrait", drawn.portraits(found.portraits))
 
 
 def _speed(scene: Scene) -> float | None:

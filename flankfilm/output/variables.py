@@ -8,11 +8,12 @@ read another unit, ``error`` where the relative error is known.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base.results import Figure, figures, quantities
+from base.results import Figure, Quantity, figures, quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,9 +25,7 @@ COMMON: Mapping[str, tuple[str, ...]] = {
 }
 """Axes that mean the same in every record, with what their entries are."""
 
-PLACES = frozenset(
-    {"position", "travel", "rho1", "frequency", "speed", "torque", "face_position", "arc", "x"}
-)
+PLACES = ("position", "travel", "rho1", "frequency", "speed", "torque", "face_position", "arc", "x")
 """Figures that say where others hold: coordinates of the dataset."""
 
 
@@ -57,19 +56,38 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
     >>> data.dry_deflection.dims, data.dry_deflection.attrs
     (('dry_position',), {'units': 'm', 'long_name': 'deflection', 'display_units': 'um'})
     """
+    known = quantities(record).values()
+    return of_quantities(prefix, (q for q in known if names is None or q.name in names), _errors(record))
+
+
+def of_quantities(
+    prefix: str, quantities: Iterable[Quantity], errors: Mapping[str, float] | None = None
+) -> xr.Dataset:
+    """Variables of figures of a record, or of ones that stand in none.
+
+    Parameters
+    ----------
+    prefix : str
+    quantities : iterable of Quantity
+    errors : mapping, optional
+        Name to relative error, where it is known.
+    """
     import xarray as xr
 
-    known, errors = quantities(record), _errors(record)
-    found: dict[str, Any] = {}
-    for quantity in known.values():
-        if names is not None and quantity.name not in names:
-            continue
+    known, found = errors or {}, {}
+    for quantity in quantities:
         for name, figure, value in _entries(quantity.name, quantity.figure, quantity.value):
-            attributes = _attributes(figure)
-            if quantity.name in errors:
-                attributes["error"] = errors[quantity.name]
+            error = {"error": known[quantity.name]} if quantity.name in known else {}
+            attributes = {**_attributes(figure), **error}
             found[joined(prefix, name)] = (_dims(prefix, figure.dims), _plain(value), attributes)
-    return _with_places(xr.Dataset(found), prefix)
+    data = xr.Dataset(found)
+    places = {joined(prefix, place) for place in PLACES}
+    return data.set_coords([name for name in map(str, data.data_vars) if name in places])
+
+
+def figure_of(name: str, unit: str, meaning: str, dims: str, value: Any, *, shown: str = "") -> Quantity:
+    """Give a figure that stands in no record; arguments as of `base.quantity`."""
+    return Quantity(name, Figure(unit, meaning, tuple(dims.split()), shown), value)
 
 
 def of_list(prefix: str, axis: str, records: Sequence[object]) -> xr.Dataset:
@@ -81,14 +99,14 @@ def of_list(prefix: str, axis: str, records: Sequence[object]) -> xr.Dataset:
     records : sequence of object
         At least one.
     """
-    import xarray as xr
-
-    found: dict[str, Any] = {}
-    for name, figure in figures(type(records[0])).items():
-        if not figure.dims:
-            values = _plain([getattr(record, name) for record in records])
-            found[joined(prefix, name)] = (_dims(prefix, (axis,)), values, _attributes(figure))
-    return _with_places(xr.Dataset(found), prefix)
+    return of_quantities(
+        prefix,
+        (
+            Quantity(name, replace(figure, dims=(axis,)), [getattr(record, name) for record in records])
+            for name, figure in figures(type(records[0])).items()
+            if not figure.dims
+        ),
+    )
 
 
 def of_models(prefix: str, records: Mapping[str, object], meaning: str, axis: str = "model") -> xr.Dataset:
@@ -125,8 +143,7 @@ def merged(parts: Iterable[xr.Dataset], attributes: Mapping[str, str | float]) -
     whole = xr.merge(parts, join="exact", compat="no_conflicts", combine_attrs="override")
     for axis, labels in COMMON.items():
         if axis in whole.dims:
-            about = {"units": "", "long_name": axis}
-            whole = whole.assign_coords({axis: (axis, np.array(labels), about)})
+            whole = whole.assign_coords({axis: (axis, np.array(labels), {"units": "", "long_name": axis})})
     return whole.assign_attrs(attributes)
 
 
@@ -171,8 +188,7 @@ def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, Figur
         yield name, figure, value
         return
     for key, one in value.items():
-        about = Figure(figure.unit, f"{figure.meaning}: {key}", figure.dims, figure.shown)
-        yield f"{name}_{identifier(key)}", about, one
+        yield f"{name}_{identifier(key)}", replace(figure, meaning=f"{figure.meaning}: {key}"), one
 
 
 def _errors(record: object) -> dict[str, float]:
@@ -204,8 +220,3 @@ def _plain(value: Any) -> Any:
     if values.dtype == np.bool_:
         return values.astype(np.int8)
     return values.astype(str) if values.dtype == object else values
-
-
-def _with_places(data: xr.Dataset, prefix: str) -> xr.Dataset:
-    places = {joined(prefix, place) for place in PLACES}
-    return data.set_coords([name for name in map(str, data.data_vars) if name in places])

@@ -9,7 +9,7 @@ import numpy as np
 from flankfilm import figures
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.run import held_as_it_is
-from flankfilm.report.page import Drawing, Headline, Part, Table, picture
+from flankfilm.report.page import Captions, Headline, Part, Table, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -43,15 +43,16 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
         "film",
         "Oil film",
         (verdict, *_supply(stage), *_mixed(stage)),
-        tuple(_figures(cycle, results)),
+        pictures(_captions(cycle), results),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
     )
 
 
-def _figures(cycle: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
+def _captions(cycle: LubricatedCycle) -> Captions:
+    """Figures of a film, with what stands under them."""
     stage = cycle.film
-    captions = {
+    captions: Captions = {
         figures.film_along_path: "Film thickness and Hertz pressure along the path of contact; steps where the load "
         "share steps."
     }
@@ -69,50 +70,35 @@ def _figures(cycle: LubricatedCycle, results: xr.Dataset) -> list[Drawing]:
             "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
             "layer stayed when the load changes."
         )
-    return [picture(draw, results, caption) for draw, caption in captions.items()]
+    return captions
 
 
 def _definitions(stage: FilmAlongPath) -> Table:
     """Film stiffness by every definition: at C with what it costs, and its range along the path."""
     ends = {name: (number(k.min()), number(k.max())) for name, k in stage.stiffness.items()}
     if not stage.at_pitch:
-        heads: tuple[str, ...] = ("film stiffness by", "least [N/m]", "largest [N/m]")
+        heads = ("film stiffness by", "least [N/m]", "largest [N/m]")
         return Table(heads, tuple((name, *both) for name, both in ends.items()))
-    heads = (
-        "film stiffness by",
-        "what it is",
-        "at C [N/m]",
-        "error",
-        "loss of the pair's stiffness at C",
-        "least [N/m]",
-        "largest [N/m]",
+    return Table.of(
+        stage.at_pitch,
+        {
+            "film stiffness by": lambda row: row.definition,
+            "what it is": lambda row: row.meaning,
+            "at C [N/m]": lambda row: number(row.stiffness),
+            "error": lambda row: percent(row.error),
+            "loss of the pair's stiffness at C": lambda row: (
+                percent(row.loss) if np.isfinite(row.loss) else "-"
+            ),
+            "least [N/m]": lambda row: ends.get(row.definition, "--")[0],
+            "largest [N/m]": lambda row: ends.get(row.definition, "--")[1],
+        },
+        "Formulas are of flooded contacts." if stage.supply != "flooded" else "",
     )
-    rows = tuple(
-        (
-            row.definition,
-            row.meaning,
-            number(row.stiffness),
-            percent(row.error),
-            percent(row.loss) if np.isfinite(row.loss) else "-",
-            *ends.get(row.definition, ("-", "-")),
-        )
-        for row in stage.at_pitch
-    )
-    return Table(heads, rows, "Formulas are of flooded contacts." if stage.supply != "flooded" else "")
 
 
 def _otherwise(lubricated: LubricatedCycle) -> Table:
     """The mesh without film, flooded, and starved with either held."""
     dry = lubricated.dry
-    cycles = {"no film": dry, held_as_it_is(lubricated): lubricated, **lubricated.otherwise}
-    heads = (
-        "mesh stiffness with",
-        "mean secant",
-        "change",
-        "mean tangent",
-        "change",
-        "first harmonic of the tangent over its mean",
-    )
     rows = tuple(
         (
             name,
@@ -122,9 +108,14 @@ def _otherwise(lubricated: LubricatedCycle) -> Table:
             f"{100 * (cycle.mean_stiffness / dry.mean_stiffness - 1):+.3f} %",
             f"{2 * abs(np.fft.rfft(cycle.stiffness)[1]) / cycle.stiffness.sum():.4f}",
         )
-        for name, cycle in cycles.items()
+        for name, cycle in {
+            "no film": dry,
+            held_as_it_is(lubricated): lubricated,
+            **lubricated.otherwise,
+        }.items()
     )
-    return Table(heads, rows, "Stiffness in N/m at the whole face.")
+    means = ("mean secant", "change", "mean tangent", "change", "first harmonic of the tangent over its mean")
+    return Table(("mesh stiffness with", *means), rows, "Stiffness in N/m at the whole face.")
 
 
 def _supply(stage: FilmAlongPath) -> tuple[str, ...]:
@@ -154,14 +145,10 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     stage = cycle.film
     note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
+    changed = f"{float(change.values):+.2f}"
     shown = [
         Headline("least film on the path", f"{float(least.values):.3g}", note, least.unit),
-        Headline(
-            "what the film changes",
-            f"{float(change.values):+.2f}",
-            "of the mean secant stiffness",
-            change.unit,
-        ),
+        Headline("what the film changes", changed, "of the mean secant stiffness", change.unit),
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"

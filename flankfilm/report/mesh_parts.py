@@ -1,23 +1,27 @@
-"""Sections of the report about geometry, stiffness, load share and fields."""
+"""Sections of the report about geometry, stiffness, load share, torques, a revolution, fields and root stress."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flankfilm import figures
-from flankfilm.figures.reading import read_figure, travel
-from flankfilm.report.page import Headline, Part, Table, picture
+from flankfilm.figures.reading import read, read_figure, travel
+from flankfilm.report.page import Captions, Headline, Part, Table, picture, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     import xarray as xr
 
-    from flankfilm.coupling import LoadedFields, MeshCycle, SinglePairs
+    import fem
+    from fem.tooth_root import RootPeak
+    from flankfilm.coupling import LoadedFields, MeshCycle, RootStresses, SinglePairs, TorqueCurves
     from gears import GearPair
+    from gears.closed_form import Iso6336RootStress
 
 OF_EACH = ("reference_radii", "base_radii", "root_radii", "form_radii", "tip_radii", "bore_radii")
 """Figures of both gears."""
@@ -32,6 +36,10 @@ OF_THE_PAIR = {
     "backlash": 4,
 }
 """Figures of the pair, with their digits."""
+
+
+OF_EACH_SECTION = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F", "q_s")
+"""Figures of the root of either gear by ISO 6336-3."""
 
 
 def geometry(pair: GearPair, results: xr.Dataset) -> Part:
@@ -49,14 +57,14 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
         *((figure.label, number(float(figure.values), digits)) for figure, digits in known),
         ("path of contact A to E [mm]", number(float(travel(results, "path_point_rho1")[-1]), 5)),
     )
-    captions = {
+    captions: Captions = {
         figures.gears_in_mesh: "The pair in mesh at the pitch point, with the path of contact A to E.",
         figures.kinematics: "Curvature radii and velocities of the flanks along the path of contact; no sliding at C.",
     }
     return Part(
         "geometry",
         "Geometry",
-        figures=tuple(picture(draw, results, caption) for draw, caption in captions.items()),
+        figures=pictures(captions, results),
         tables=(Table(("", "pinion", "wheel"), rows), Table(("pair", ""), common)),
     )
 
@@ -81,7 +89,7 @@ def stiffness(
         [m]
     results : xarray.Dataset
     """
-    captions = {
+    captions: Captions = {
         figures.mesh_stiffness: "Mesh stiffness (secant) over two base pitches, all models on one axis.",
         figures.load_share: f"Load share of a pair: {cycles[0].label}.",
         figures.transmission_error: "Deflection along the line of action.",
@@ -98,31 +106,32 @@ def stiffness(
         "The error of a closed form against the real tooth is unknown until it is compared with finite "
         "elements; the column shows numerical error alone.",
     )
-    drawn = tuple(picture(draw, results, caption) for draw, caption in captions.items())
+    drawn = pictures(captions, results)
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
 
 def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
     """Means, range and error of each model's mesh cycle."""
-    rows = []
-    for cycle in cycles:
-        secant, tangent, curve = (
-            read_figure(cycle, name, face_width)
-            for name in ("mean_secant_stiffness", "mean_stiffness", "secant_stiffness")
-        )
-        error = read_figure(cycle, "transmission_error_range")
-        rows.append(
-            (
-                cycle.label,
-                number(float(secant.values), 5),
-                number(float(tangent.values), 5),
-                f"{curve.values.min():.4g} to {curve.values.max():.4g}",
-                number(float(error.values), 4),
-                percent(cycle.mean_error),
-            )
-        )
-    heads = ("model", secant.label, tangent.label, "range of secant", error.label, "numerical error")
-    return Table(heads, tuple(rows))
+
+    def shown(name: str, digits: int, width: float | None = None) -> dict[str, Callable[[MeshCycle], str]]:
+        head = read_figure(cycles[0], name, width).label
+        return {head: lambda cycle: number(float(read_figure(cycle, name, width).values), digits)}
+
+    def ends(cycle: MeshCycle) -> str:
+        secant = read_figure(cycle, "secant_stiffness", face_width).values
+        return f"{secant.min():.4g} to {secant.max():.4g}"
+
+    return Table.of(
+        cycles,
+        {
+            "model": lambda cycle: cycle.label,
+            **shown("mean_secant_stiffness", 5, face_width),
+            **shown("mean_stiffness", 5, face_width),
+            "range of secant": ends,
+            **shown("transmission_error_range", 4),
+            "numerical error": lambda cycle: percent(cycle.mean_error),
+        },
+    )
 
 
 def iso_table(iso: Any) -> Table:
@@ -152,16 +161,87 @@ def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
 
 def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
-    notes = {
-        "mean_secant_stiffness": f"error {percent(cycle.mean_error)}, {cycle.label}",
-        "mean_stiffness": "for small vibration",
-    }
-    found = []
-    for name, note in notes.items():
-        k = read_figure(cycle, name, face_width)
-        found.append(Headline(k.meaning, f"{float(k.values):.4g}", note, k.unit))
+    secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
+    numerical = f"error {percent(cycle.mean_error)}, {cycle.label}"
     return [
-        *found,
+        Headline(secant.meaning, f"{float(secant.values):.4g}", numerical, secant.unit),
+        Headline(tangent.meaning, f"{float(tangent.values):.4g}", "for small vibration", tangent.unit),
         Headline("loaded transmission error", f"{float(error.values):.3g}", "peak to peak", error.unit),
     ]
+
+
+def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
+    """Stress at the roots by finite elements, beside ISO 6336-3."""
+    peaks = [
+        (f"{name}, greatest {kind}", getattr(getattr(stage.stress, name), f"greatest_{kind}"))
+        for name in ("pinion", "wheel")
+        for kind in ("tension", "compression")
+    ]
+    columns: dict[str, Callable[[tuple[str, RootPeak]], str]] = {
+        "": lambda row: row[0],
+        "principal [MPa]": lambda row: number(1e-6 * row[1].stress_Pa),
+        "von Mises [MPa]": lambda row: number(1e-6 * row[1].von_mises_Pa),
+        "at [base pitches after A]": lambda row: f"{row[1].position:.3f}",
+        "tangent of the fillet [deg]": lambda row: f"{math.degrees(row[1].tangent_angle):.1f}",
+    }
+    tables = [Table.of(peaks, columns, f"Numerical error: {percent(stage.error)}.")]
+    note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
+    if stage.iso is not None:
+        tables.append(_iso(stage.iso))
+        note = (
+            "ISO 6336-3 puts the whole force on one pair at D and knows neither neighbours nor the bore; its error "
+            "is unknown."
+        )
+    caption = (
+        "Stress along the fillets of one tooth as it passes through the mesh: largest under the loaded flank, least "
+        "on the other side."
+    )
+    drawn = picture(figures.root_stress, results, caption)
+    return Part("roots", "Root stress", figures=(drawn,), tables=tuple(tables), notes=(note,))
+
+
+def root_headlines(stage: RootStresses) -> list[Headline]:
+    """Greatest stresses of both gears."""
+    largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
+    values = " and ".join(f"{float(one.values):.4g}" for one in largest)
+    note = f"error {percent(stage.error)}"
+    return [Headline("greatest root stress, pinion and wheel", values, note, largest[0].unit)]
+
+
+def _iso(iso: Iso6336RootStress) -> Table:
+    rows: dict[str, Sequence[float]] = {
+        name: [getattr(section, name) for section in iso.sections] for name in OF_EACH_SECTION
+    }
+    rows |= {"Y_B": iso.Y_B, "nominal root stress sigma_F0 [MPa]": [1e-6 * value for value in iso.stresses]}
+    cells = tuple((name, *(number(value, 5) for value in values)) for name, values in rows.items())
+    return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), cells)
+
+
+def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
+    """Stiffness and transmission error over torque."""
+    names = ("secant_stiffness", "stiffness", "transmission_error", "harmonic_1")
+    curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
+    shown = [read(results, "torque"), *curves]
+    cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)
+    table = Table(tuple(one.label for one in shown), tuple(cells))
+    caption = "Mean stiffness and transmission error over torque, without film."
+    drawn = picture(figures.over_torque, results, caption)
+    notes = (f"Left out: {stage.message}",) if stage.message else ()
+    return Part("torques", "Torque", figures=(drawn,), tables=(table,), notes=notes)
+
+
+def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
+    """Transmission error tooth by tooth."""
+    caption = (
+        "Transmission error tooth by tooth, with pitch deviations where the scene gives them, without film; positive "
+        "when the wheel lags."
+    )
+    drawn = picture(figures.revolution, results, caption)
+    curves = {
+        "under load": read(results, "revolution_transmission_error"),
+        "without load": read(results, "revolution_unloaded_transmission_error"),
+    }
+    rows = tuple((label, number(float(np.ptp(curve.values)))) for label, curve in curves.items())
+    table = Table(("transmission error", curves["under load"].named("peak to peak")), rows)
+    return Part("revolution", "Revolution", figures=(drawn,), tables=(table,), notes=(cycle.message,))

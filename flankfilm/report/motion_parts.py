@@ -1,20 +1,28 @@
-"""Sections of the report about the Fourier stiffness, the scaling and the motion."""
+"""Sections of the report about the Fourier stiffness, the scaling, the motion, and every branch of motions."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.units import factor
 from flankfilm import figures
 from flankfilm.figures.reading import read_figure, unit_text
-from flankfilm.report.page import Drawing, Headline, Part, Table, picture
+from flankfilm.report.page import Captions, Headline, Part, Table, picture, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.coupling import MeshSeries, PairOscillator, SpeedSweep
+    from dynamics.labelling import Stretch
+    from flankfilm.coupling import MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
+    from flankfilm.coupling.jumps import Jump
+
+LONGEST = 40
+"""Stable ranges listed; the data files hold all."""
 
 
 def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
@@ -25,84 +33,74 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
     )
-    drawn: tuple[Drawing, ...] = ()
-    notes: tuple[str, ...] = ("Phases refer to tau = 0, the instant when a pair is at A.",)
+    captions: Captions = {}
+    notes = ["Phases refer to tau = 0, the instant when a pair is at A."]
     if stage.fit is not None:
-        caption = (
+        captions[figures.fourier] = (
             f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples "
             "over the mean."
         )
-        drawn = (picture(figures.fourier, results, caption),)
-        notes = (
-            *notes,
+        notes += [
             f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the "
             f"mean (root mean square; at most {percent(stage.fit.remainder_max)}). A higher "
             "dynamics.fourier_order keeps more.",
             "The tangent stiffness belongs to small vibration about the load, the secant to motion with "
             "separation.",
-        )
-    heads = ("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]")
-    return Part(
-        "fourier",
-        "Fourier stiffness",
-        (f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}.",),
-        drawn,
-        (Table(heads, rows),),
-        notes,
-    )
+        ]
+    mean = f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}."
+    table = Table(("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]"), rows)
+    return Part("fourier", "Fourier stiffness", (mean,), pictures(captions, results), (table,), tuple(notes))
 
 
-def fourier_headline(stage: MeshSeries) -> Headline:
+def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     """First harmonic and what the series leaves out."""
     kappa = stage.amplitude[0] / stage.mean if stage.order else 0.0
     left = "given" if stage.remainder is None else f"remainder {100 * stage.remainder:.2g} % of the mean"
-    return Headline("first harmonic over the mean", f"{kappa:.4f}", left)
+    return [Headline("first harmonic over the mean", f"{kappa:.4f}", left)]
 
 
-def scaling(stage: PairOscillator) -> Part:
-    """Physical and dimensionless quantities side by side."""
+def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
+    """Physical and dimensionless quantities side by side; dimensionless ones alone where there are no scales."""
     if stage.scales is None:
-        rows = tuple((name, value) for name, _, value in stage.rows())
-        return Part("scaling", "Oscillator", tables=(Table(("quantity", "dimensionless"), rows),))
-    heads = ("quantity", "physical", "dimensionless")
-    return Part("scaling", "Physical and dimensionless", tables=(Table(heads, stage.rows()),))
+        table = Table(("quantity", "dimensionless"), tuple((name, value) for name, _, value in stage.rows()))
+        return Part("scaling", "Oscillator", tables=(table,))
+    table = Table(("quantity", "physical", "dimensionless"), stage.rows())
+    return Part("scaling", "Physical and dimensionless", tables=(table,))
 
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    caption = (
-        "States at tau = 0, swept up and down; where the two differ, motions coexist. "
+    captions: Captions = {
+        figures.sweep: "States at tau = 0, swept up and down; where the two differ, motions coexist. "
         "n-p-q: n mesh periods, p losses of contact, q back-flank contacts."
-    )
-    drawn = [picture(figures.sweep, results, caption)]
+    }
     if stage.portraits:
-        caption = "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash."
-        drawn.append(picture(figures.portraits, results, caption))
-    notes = [
+        captions[figures.portraits] = (
+            "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash."
+        )
+    notes = []
+    if stage.grazings.size:
+        at = ", ".join(f"{g:.6g}" for g in stage.grazings)
+        if (rpm := _speed(stage)) is not None:
+            at += " (" + ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + " rpm)"
+        notes.append(f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}.")
+    notes += [
         f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a "
         f"period; {stage.cost.periods:,} periods were followed.",
         "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
         *stage.messages,
     ]
-    if stage.grazings.size:
-        at = ", ".join(f"{g:.6g}" for g in stage.grazings)
-        if (rpm := _speed(stage)) is not None:
-            at += " (" + ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + " rpm)"
-        notes.insert(
-            0, f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}."
-        )
-    return Part("motion", "Motion", figures=tuple(drawn), notes=tuple(notes))
+    return Part("motion", "Motion", figures=pictures(captions, results), notes=tuple(notes))
 
 
-def headline(stage: SpeedSweep) -> Headline:
+def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
     """Lowest speed at which the orbit that keeps contact touches the edge of the backlash."""
     note = f"by the orbit that never leaves contact; error {stage.error:.0e} a period"
-    if not stage.grazings.size:
-        return Headline("edge of the backlash touched at", "none in range", note)
-    first = float(np.min(stage.grazings))
+    if stage.least_grazing is None:
+        return [Headline("edge of the backlash touched at", "none in range", note)]
     if (rpm := _speed(stage)) is None:
-        return Headline("edge of the backlash touched at ω", number(first, 6), note)
-    return Headline("edge of the backlash touched at", number(rpm * first, 5), note, "rpm")
+        return [Headline("edge of the backlash touched at ω", number(stage.least_grazing, 6), note)]
+    return [Headline("edge of the backlash touched at", number(rpm * stage.least_grazing, 5), note, "rpm")]
 
 
 def _speed(stage: SpeedSweep) -> float | None:
@@ -110,3 +108,102 @@ def _speed(stage: SpeedSweep) -> float | None:
     if stage.speed is None:
         return None
     return float(read_figure(stage, "speed").values[0] / stage.frequency[0])
+
+
+def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
+    """Jump speeds."""
+    if not stage.jumps:
+        return [Headline("jump speeds", "none in range")]
+    at = ", ".join(f"{_shown(stage, j.frequency)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
+    more = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
+    errors = [j.error for j in stage.jumps if j.budget]
+    note = f"error up to {percent(max(errors))}" if errors else ""
+    return [Headline("jump speeds", at + more, note, "rpm" if stage.speed_of_one else "")]
+
+
+def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
+    """Draw the diagram and list ranges, jumps and what they depend on."""
+    unit = "rpm" if stage.speed_of_one else "-"
+    ranges: dict[str, Callable[[Stretch], str]] = {
+        "stable motion": lambda s: s.label,
+        f"from [{unit}]": lambda s: _shown(stage, s.low),
+        f"to [{unit}]": lambda s: _shown(stage, s.high),
+        "begins": lambda s: _event(s, s.low),
+        "ends": lambda s: _event(s, s.high),
+    }
+    jumps: dict[str, Callable[[Jump], str]] = {
+        f"jump at [{unit}]": lambda j: _shown(stage, j.frequency),
+        "speed": lambda j: "up" if j.rising else "down",
+        "from": lambda j: j.label,
+        "error": lambda j: percent(j.error) if j.budget else "",
+        **{source: partial(_share, source) for source in ("stiffness", "series", "flow")},
+    }
+    variants: dict[str, Callable[[tuple[str, tuple[float, ...]]], str]] = {
+        "stiffness, mean over the scene's": lambda law: law[0],
+        f"jumps of period 1 at [{unit}]": lambda law: (
+            ", ".join(_shown(stage, f) for f in law[1]) or "none in range"
+        ),
+    }
+    tables = [Table.of(stage.stable[:LONGEST], ranges)]
+    tables += [Table.of(stage.jumps, jumps)] if stage.jumps else []
+    tables += [Table.of(stage.variants.items(), variants)] if stage.variants else []
+    caption = (
+        "Every branch of periodic motions found: stable solid, unstable dashed, special points marked; the "
+        "greatest force of stable motions of periods 1 and 2 over the mean force."
+    )
+    drawn, found = picture(figures.diagram, results, caption), stage.diagram
+    return Part(
+        "diagram", "Branches and jumps", (found.message,), (drawn,), tuple(tables), tuple(_notes(stage))
+    )
+
+
+def _share(source: str, jump: Jump) -> str:
+    """Part of the error of a jump's speed; empty where it has no budget."""
+    return percent(jump.budget[source]) if jump.budget else ""
+
+
+def _notes(stage: SpeedDiagram) -> list[str]:
+    notes = [
+        f"Contact is lost by a stable motion {_ranges(stage, stage.separated)}; the back flank is touched "
+        f"{_ranges(stage, stage.back_contact)}. {'' if stage.jumps else 'Jump speeds: none in range.'}"
+    ]
+    if stage.force_factor.size:
+        i = int(np.argmax(stage.force_factor))
+        curves = (stage.force_frequency, stage.force_factor, stage.force_factor_iso6336)
+        value, force, standard = (float(curve[i]) for curve in curves)
+        beside = (
+            f"; ISO 6336-1, method B, has K_v = {standard:.3g} there (pitch deviation: the error's peak-to-peak "
+            "value, profile deviation 0)"
+            if np.isfinite(standard)
+            else ""
+        )
+        notes.append(
+            f"Greatest force: {force:.3g} times the mean force at {_shown(stage, value)}{beside}. It holds the "
+            "variation of the stiffness under the mean load too, which K_v does not."
+        )
+    if any(j.budget for j in stage.jumps):
+        second = ", ".join(f"{100 * j.second:+.2g} %" for j in stage.jumps)
+        notes.append(
+            "The error budget carries the errors of the stages through the exact derivatives of the jump: mean "
+            "stiffness by finite elements and film, harmonics that the series leaves out, and the flow. The first "
+            f"of those harmonics alone would move the jumps by {second}, to first order."
+        )
+    notes += [f"Not followed: {text}." for text in stage.diagram.left_out[:8]]
+    branches = enumerate(stage.diagram.branches)
+    return notes + [f"Branch {i} of period {b.periods}: {b.message}." for i, b in branches if not b.converged]
+
+
+def _shown(stage: SpeedDiagram, frequency: float) -> str:
+    return number(frequency * (stage.speed_of_one / factor("rpm") if stage.speed_of_one else 1.0), 6)
+
+
+def _ranges(stage: SpeedDiagram, ranges: tuple[tuple[float, float], ...]) -> str:
+    if not ranges:
+        return "nowhere in range"
+    unit = " rpm" if stage.speed_of_one else ""
+    return "at " + ", ".join(f"{_shown(stage, a)} to {_shown(stage, b)}" for a, b in ranges) + unit
+
+
+def _event(stretch: Stretch, value: float) -> str:
+    """Kind of special point at one end of a stretch, empty at an end of the range."""
+    return next((p.kind for p in stretch.limits if p.parameter == value), "")

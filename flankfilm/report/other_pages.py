@@ -5,24 +5,24 @@ from __future__ import annotations
 import functools
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flankfilm import figures
+from flankfilm.coupling.verification import UNITS
 from flankfilm.figures.reading import titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
-from flankfilm.output.files import write_text
-from flankfilm.report.page import Fact, Headline, Part, Table, picture, render
+from flankfilm.report.page import Fact, Headline, Part, Table, picture, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import number, percent, seconds
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.coupling import Verification
+    from flankfilm.coupling.verification import Difference, Verification
     from flankfilm.optimisation.run import Optimum
     from flankfilm.optimisation.task import Task
     from flankfilm.studies.plan import Plan, Value
@@ -44,36 +44,28 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
     folder : Path
     """
     plan, rows = found.plan, len(found.rows)
-    headlines = [
-        Headline(words(data, name), *_range(data, name))
-        for name in plan.outputs
-        if np.isfinite(data[name]).any()
-    ]
+    headlines = [_range(data, name) for name in plan.outputs if np.isfinite(data[name]).any()]
     failed = Counter(row.fault for row in found.failures)
-    notes = [f"{count} rows failed: {fault}" for fault, count in failed.most_common(20)]
-    drawn = []
-    if varied_numbers(data, plan.keys[: plan.varied]):
+    notes = tuple(f"{count} rows failed: {fault}" for fault, count in failed.most_common(20))
+    varied, drawn = plan.keys[: plan.varied], []
+    if varied_numbers(data, varied):
         draw = functools.wraps(figures.study)(
-            functools.partial(figures.study, keys=plan.keys[: plan.varied], outputs=plan.outputs)
+            functools.partial(figures.study, keys=varied, outputs=plan.outputs)
         )
-        drawn.append(
-            picture(draw, data, f"Every output against {plan.keys[0]}; the other keys make families.")
-        )
+        caption = f"Every output against {plan.keys[0]}; the other keys make families."
+        drawn.append(picture(draw, data, caption))
     left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
-    shown = found.rows[:MOST_ROWS]
-    table = _rows(data, plan, [(plan.rows[row.index], row) for row in shown], left)
-    facts = [
-        Fact(f"{rows} rows, {plan.design}", "rows"),
-        Fact(f"{seconds(float(data['seconds'].sum()))} of work"),
-        *([Fact(f"{len(found.failures)} failed", "faults")] if found.failures else []),
-    ]
+    table = _rows(data, plan, [(plan.rows[row.index], row) for row in found.rows[:MOST_ROWS]], left)
+    facts = [Fact(f"{rows} rows, {plan.design}", "rows"), _work(data)]
     parts = [
         Part("study", "Outputs", figures=tuple(drawn)),
-        *([Part("faults", "Rows that failed", notes=tuple(notes))] if notes else []),
         Part("rows", "Rows", tables=(table,)),
         _inputs(data),
     ]
-    return _write(folder, plan.title or "Study", facts, headlines, parts)
+    if notes:
+        facts.append(Fact(f"{len(found.failures)} failed", "faults"))
+        parts.insert(1, Part("faults", "Rows that failed", notes=notes))
+    return write_page(folder, plan.title or "Study", facts, headlines, parts)
 
 
 def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
@@ -88,19 +80,15 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     """
     task, points = found.task, found.evaluations
     chosen = [points[place] for place in found.best]
-    first = dict(zip(task.outputs, chosen[0].result.values, strict=True))
+    first, one = chosen[0], len(task.objectives) == 1
     which = "" if len(chosen) == 1 else "where the first objective is best"
     headlines = [
-        Headline(words(data, name), number(first[name], 5), which, unit_of(data, name, ""))
-        for name in task.outputs
+        Headline(words(data, name), number(value, 5), which, unit_of(data, name, ""))
+        for name, value in zip(task.outputs, first.result.values, strict=True)
     ]
     if len(chosen) == 1:
-        headlines += [
-            Headline(key, _cell(value), "at the optimum")
-            for key, value in zip(task.keys, chosen[0].values, strict=True)
-        ]
-    table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
-    one = len(task.objectives) == 1
+        keys = zip(task.keys, first.values, strict=True)
+        headlines += [Headline(key, _cell(value), "at the optimum") for key, value in keys]
     caption = (
         "The objective of every point, in the order in which they were computed."
         if one
@@ -112,15 +100,16 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     )
     facts = [
         Fact(f"{len(points)} points", "points"),
-        Fact(f"{seconds(float(data['seconds'].sum()))} of work"),
+        _work(data),
         Fact("one optimum" if one else f"{len(chosen)} points on the front", "best"),
     ]
+    table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
     parts = [
         Part("points", "Points", figures=(picture(figures.optimum, data, caption),)),
         Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,)),
         _inputs(data),
     ]
-    return _write(folder, task.title or "Optimisation", facts, headlines, parts)
+    return write_page(folder, task.asked.title or "Optimisation", facts, headlines, parts)
 
 
 def write_verification_page(found: Verification, data: xr.Dataset, folder: Path) -> Path:
@@ -133,22 +122,18 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
         What ``verify.nc`` holds.
     folder : Path
     """
-    like, whole = found.like_for_like, found.references[0]
-    headlines = []
-    for model in found.models:
-        by_figure = {
-            d.figure: d for d in found.differences if (d.model, d.reference) == (model.label, whole.label)
-        }
-        if (mean := by_figure.get("mesh, mean")) is not None:
-            headlines.append(
-                Headline(
-                    f"{model.label}: mean mesh stiffness",
-                    f"{100 * mean.difference:+.1f}",
-                    f"against finite elements, whose error is {percent(mean.reference_error)}",
-                    "%",
-                )
-            )
-    tables = tuple(_differences(found, reference.label) for reference in (whole, like))
+    whole, pair = found.references[0], found.pair
+    headlines = [
+        Headline(
+            f"{d.model}: mean mesh stiffness",
+            f"{100 * d.difference:+.1f}",
+            f"against finite elements, whose error is {percent(d.reference_error)}",
+            "%",
+        )
+        for d in found.differences
+        if (d.figure, d.reference) == ("mesh, mean", whole.label)
+    ]
+    tables = tuple(_differences(found, reference.label) for reference in (whole, found.like_for_like))
     cost = "; ".join(f"{c.label} {seconds(c.cost.seconds)}" for c in (*found.references, *found.models))
     shared = f"Finite elements {seconds(found.cost.seconds)} once; then each model: {cost}."
     work = found.cost.seconds + sum(c.cost.seconds for c in found.references)
@@ -157,9 +142,7 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
         "the numerical error of the latter."
     )
     facts = [
-        Fact(
-            f"{found.pair.pinion.teeth}/{found.pair.wheel.teeth} teeth, module {1e3 * found.pair.module:g} mm"
-        ),
+        Fact(f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth, module {1e3 * pair.module:g} mm"),
         Fact(f"pinion: {found.torque:g} N m"),
         Fact(f"{seconds(work)} of work", "costs"),
     ]
@@ -169,37 +152,47 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
         Part("costs", "Cost", (shared,)),
         _inputs(data),
     ]
-    return _write(folder, str(data.attrs["title"]) or "Closed forms", facts, headlines, parts)
+    return write_page(folder, str(data.attrs["title"]) or "Closed forms", facts, headlines, parts)
 
 
 def _differences(found: Verification, reference: str) -> Table:
     """Every figure of every model against one reference."""
-    models = [model.label for model in found.models]
-    mine = {(d.figure, d.model): d for d in found.differences if d.reference == reference}
-    rows = []
-    for figure in dict.fromkeys(name for name, _ in mine):
-        first = next(d for (name, _), d in mine.items() if name == figure)
-        own = f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %"
-        cells = [mine.get((figure, model)) for model in models]
-        values = ["" if d is None else f"{d.value:.4g} ({100 * d.difference:+.1f} %)" for d in cells]
-        rows.append((f"{figure} [{unit_text(first.unit)}]", own, *values))
+    rows = tuple((f"{name} [{unit_text(unit)}]", *cells) for name, unit, *cells in compared(found, reference))
     against = reference if reference == "finite elements" else f"finite elements {reference}"
-    return Table(("figure", "finite elements", *models), tuple(rows), f"Against {against}")
+    heads = ("figure", "finite elements", *(model.label for model in found.models))
+    return Table(heads, rows, f"Against {against}")
+
+
+def compared(found: Verification, reference: str) -> Iterator[tuple[str, ...]]:
+    """Cells of every figure against one reference: name, unit, by finite elements with its error, by each model."""
+    for figure, unit in UNITS.items():
+        by_model = {d.model: d for d in found.differences if (d.figure, d.reference) == (figure, reference)}
+        if by_model:
+            first = next(iter(by_model.values()))
+            whole = f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %"
+            yield figure, unit, whole, *(_against(by_model.get(model.label)) for model in found.models)
+
+
+def _against(difference: Difference | None) -> str:
+    if difference is None:
+        return ""
+    return f"{difference.value:.4g} ({100 * difference.difference:+.1f} %)"
 
 
 def _inputs(data: xr.Dataset) -> Part:
-    scene = json.dumps(json.loads(data.attrs["scene_json"]), indent=2, ensure_ascii=False)
-    return inputs(scene, json.loads(data.attrs["versions_json"]))
+    return inputs(json.loads(data.attrs["scene_json"]), data.attrs["versions_json"])
 
 
-def _range(data: xr.Dataset, name: str) -> tuple[str, str, str]:
-    """Least and greatest value, what it is, and the unit."""
+def _work(data: xr.Dataset) -> Fact:
+    return Fact(f"{seconds(float(data['seconds'].sum()))} of work")
+
+
+def _range(data: xr.Dataset, name: str) -> Headline:
+    """Least and greatest value of an output."""
     values = data[name].values
-    low, high = number(float(np.nanmin(values))), number(float(np.nanmax(values)))
-    return (
-        low if low == high else f"{low} to {high}",
-        str(data[name].attrs["long_name"]),
-        unit_of(data, name, ""),
+    ends = dict.fromkeys(number(float(end(values))) for end in (np.nanmin, np.nanmax))
+    return Headline(
+        words(data, name), " to ".join(ends), data[name].attrs["long_name"], unit_of(data, name, "")
     )
 
 
@@ -220,11 +213,3 @@ def _rows(
 
 def _cell(value: Value) -> str:
     return number(value, 6) if isinstance(value, float | int) else value
-
-
-def _write(
-    folder: Path, title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]
-) -> Path:
-    path = folder / "report.html"
-    write_text(path, render(title, facts, headlines, parts))
-    return path

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
-from flankfilm.figures.reading import Reading
 from flankfilm.figures.style import to_svg
-from flankfilm.report.text import number
+from flankfilm.output.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+
+T = TypeVar("T")
+
+Captions = dict[Callable[["xr.Dataset"], "Figure"], str]
+"""Functions of `flankfilm.figures`, each with what stands under its picture."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,12 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
 
+    @classmethod
+    def of(cls, rows: Iterable[T], columns: Mapping[str, Callable[[T], str]], caption: str = "") -> Table:
+        """Lay out equal things, one a row; `columns` are the head of each to the text of its cell."""
+        cells = tuple(tuple(text(row) for text in columns.values()) for row in rows)
+        return cls(tuple(columns), cells, caption)
+
     @property
     def sides(self) -> tuple[str, ...]:
         """Class of each column: "f" for the first, "t" for words, "n" for numbers."""
@@ -46,12 +57,6 @@ def _side(column: Sequence[str]) -> str:
     filled = [cell for cell in column if cell not in ("", "-", "unknown")]
     words = sum(not re.match(r"[-+±.]?\d", cell) for cell in filled)
     return "t" if 2 * words > len(filled) else "n"
-
-
-def table_of(readings: Sequence[Reading], digits: int = 4, caption: str = "") -> Table:
-    """Table of curves beside each other, each headed by its meaning and unit."""
-    cells = zip(*([number(value, digits) for value in one.values.tolist()] for one in readings), strict=True)
-    return Table(tuple(one.label for one in readings), tuple(cells), caption)
 
 
 @dataclass(frozen=True)
@@ -107,14 +112,26 @@ def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: 
     return Drawing(to_svg(draw(results), draw.__name__), caption, f"flankfilm.figures.{draw.__name__}")
 
 
+def pictures(captions: Captions, results: xr.Dataset) -> tuple[Drawing, ...]:
+    """Draw results with several of `flankfilm.figures`, each with its caption."""
+    return tuple(picture(draw, results, caption) for draw, caption in captions.items())
+
+
 def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
     """Return the page's HTML."""
     import jinja2
 
     source = resources.files("flankfilm.report").joinpath("report.html.j2").read_text(encoding="utf-8")
-    environment = jinja2.Environment(
-        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+    page = jinja2.Template(
+        source, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
     )
-    return environment.from_string(source).render(
-        title=title, facts=facts, headlines=headlines, sections=parts
-    )
+    return str(page.render(title=title, facts=facts, headlines=headlines, sections=parts))
+
+
+def write_page(
+    folder: Path, title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]
+) -> Path:
+    """Write ``report.html`` into a folder and return its path."""
+    path = folder / "report.html"
+    write_text(path, render(title, facts, headlines, parts))
+    return path

@@ -2,106 +2,123 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from flankfilm.coupling.cycle import sampling_error
 from flankfilm.report.page import Part, Table
 from flankfilm.report.text import percent, seconds
-from flankfilm.stages.engine import StageRun
 
 if TYPE_CHECKING:
+    from flankfilm.results import Results
     from flankfilm.stages.decide import Plan
     from flankfilm.stages.decisions import Decision
 
-
-@dataclass(frozen=True)
-class CostRow:
-    """Error and cost of one stage.
-
-    Attributes
-    ----------
-    stage : str
-        Its title.
-    figure : str
-        Which figure the error belongs to.
-    allowed, error : float or None
-        Share of the tolerance, and the estimate; None where there is none.
-    note : str
-        Unknowns, iterations, and the like.
-    seconds : float
-        [s]
-    cached : bool
-        Whether the result came from the cache.
-    """
-
-    stage: str
-    figure: str
-    allowed: float | None
-    error: float | None
-    note: str
-    seconds: float
-    cached: bool
+LEAST_SECONDS = 0.005
+"""Time of a stage that is listed although it has no error of its own [s]."""
 
 
-def costs(rows: Sequence[CostRow], total: float, tolerance: float) -> Part:
-    """Error against cost for each stage."""
-    heads = ("stage", "figure", "allowed", "estimated error", "work", "time")
-    cells = tuple(
-        (
-            row.stage,
-            row.figure,
-            "" if row.allowed is None else percent(row.allowed),
-            "" if row.error is None else percent(row.error),
-            row.note,
-            "kept from an earlier run" if row.cached else seconds(row.seconds),
-        )
-        for row in rows
+class Work(NamedTuple):
+    """Figure that a stage's error belongs to, share of the tolerance, error, and what was done for it."""
+
+    figure: str = ""
+    allowed: float | None = None
+    error: float | None = None
+    note: str = ""
+
+
+def costs(results: Results) -> Part:
+    """Error against cost for each stage that ran, in the order of the house."""
+    listed = [(run, _work(name, results)) for name, run in results.runs.items()]
+    listed = [(run, work) for run, work in listed if work != Work() or run.seconds >= LEAST_SECONDS]
+    table = Table.of(
+        listed,
+        {
+            "stage": lambda row: row[0].title,
+            "figure": lambda row: row[1].figure,
+            "allowed": lambda row: _known(percent, row[1].allowed),
+            "estimated error": lambda row: _known(percent, row[1].error),
+            "work": lambda row: row[1].note,
+            "time": lambda row: "kept from an earlier run" if row[0].cached else seconds(row[0].seconds),
+        },
     )
     text = (
-        f"The scene's tolerance is {percent(tolerance)} on the wanted figures. The run took {seconds(total)}, "
-        f"of which {seconds(sum(r.seconds for r in rows))} in the stages listed."
+        f"The scene's tolerance is {percent(results.scene.tolerance)} on the wanted figures. The run took "
+        f"{seconds(results.seconds)}, of which {seconds(sum(run.seconds for run, _ in listed))} in the stages listed."
     )
-    return Part("costs", "Error and cost", (text,), tables=(Table(heads, cells),))
+    return Part("costs", "Error and cost", (text,), tables=(table,))
 
 
-def decisions(decided: Sequence[Decision], plan: Plan | None, runs: Mapping[str, StageRun]) -> Part | None:
-    """What was decided, how the tolerance was split, and what was warned of."""
-    warned = tuple(f"{run.title}: {text}" for run in runs.values() for text in run.warnings)
-    tables = (_decided(decided),) if decided else ()
-    if plan is not None and len(plan.shares):
-        tables = (*tables, _shares(plan))
-    lines = (*(d.line for d in decided), *((plan.line,) if plan is not None else ()), *warned)
+def _work(name: str, results: Results) -> Work:
+    """Which figure a stage's error belongs to, what was allowed, the error, and what was done for it."""
+    value: Any = results.values.get(name)
+    plan, tolerance = results.plan, results.scene.tolerance
+    if name == "bodies" and plan is not None:
+        unknowns = f"{value.cost.unknowns:,} unknowns"
+        return Work("tooth compliance", plan.resolution.compliance, value.error, unknowns)
+    if name == "dry cycle" and plan is not None:
+        sampled, positions = sampling_error(value.secant_stiffness), f"{value.position.size} positions"
+        return Work("mean stiffness, from sampling", plan.resolution.sampling, sampled, positions)
+    if name == "fillets":
+        unknowns = f"{value.cost.unknowns:,} unknowns"
+        return Work("greatest root stress per load", tolerance, value.error, unknowns)
+    if name == "film" and plan is not None and value.film.model == "ehl":
+        film = value.film
+        note = f"{film.rho1.size} films of up to {film.cost.unknowns} unknowns, {value.rounds} rounds"
+        return Work("film thickness", plan.film_tolerance, film.error, note)
+    if name == "fourier" and value.fit is not None:
+        allowed = None if plan is None else plan.series
+        return Work("what the series leaves out", allowed, value.remainder, f"order {value.order}")
+    if name == "sweep":
+        return Work("settled motions", None, value.error, f"{value.cost.periods:,} periods")
+    if name == "diagram":
+        return Work("special points", None, value.error, f"{value.branches} branches")
+    return Work()
+
+
+def _known(text: Callable[[float], str], value: float | None) -> str:
+    """Text of a number; empty where there is none."""
+    return "" if value is None else text(value)
+
+
+def decisions(results: Results) -> list[Part]:
+    """What was decided, how the tolerance was split, and what was warned of; no section without any of it."""
+    plan, decided = results.plan, results.decisions
+    warned = [f"{run.title}: {text}" for run in results.runs.values() for text in run.warnings]
+    lines = (*(d.line for d in decided), *([] if plan is None else [plan.line]), *warned)
     if not lines:
-        return None
-    return Part("decisions", "Decisions and warnings", tables=tables, notes=lines)
+        return []
+    tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])
+    return [Part("decisions", "Decisions and warnings", tables=tuple(tables), notes=lines)]
 
 
 def _decided(decided: Sequence[Decision]) -> Table:
-    heads = ("decision", "choice", "effect, at most", "allowed", "cost of all stages, foreseen")
-    rows = tuple(
-        (
-            d.subject,
-            d.choice,
-            "" if d.effect is None else percent(d.effect),
-            "" if d.share is None else percent(d.share),
-            "" if d.seconds is None else seconds(d.seconds),
-        )
-        for d in decided
+    return Table.of(
+        decided,
+        {
+            "decision": lambda d: d.subject,
+            "choice": lambda d: d.choice,
+            "effect, at most": lambda d: _known(percent, d.effect),
+            "allowed": lambda d: _known(percent, d.share),
+            "cost of all stages, foreseen": lambda d: _known(seconds, d.seconds),
+        },
     )
-    return Table(heads, rows)
 
 
 def _shares(plan: Plan) -> Table:
-    heads = ("share of the tolerance", "error allowed in the mean stiffness", "cost foreseen")
-    rows = tuple(
-        (law.name, percent(error), seconds(law.cost(error)))
-        for law, error in zip(plan.shares.laws, plan.shares.errors, strict=True)
+    return Table.of(
+        zip(plan.shares.laws, plan.shares.errors, strict=True),
+        {
+            "share of the tolerance": lambda share: share[0].name,
+            "error allowed in the mean stiffness": lambda share: percent(share[1]),
+            "cost foreseen": lambda share: seconds(share[0].cost(share[1])),
+        },
     )
-    return Table(heads, rows)
 
 
-def inputs(scene_text: str, versions: Mapping[str, str]) -> Part:
-    """Show the scene with all defaults, and the versions."""
-    libraries = ", ".join(f"{name} {version}" for name, version in versions.items())
-    return Part("inputs", "Inputs", (f"Made with {libraries}.",), code=scene_text)
+def inputs(scene: Mapping[str, Any], versions_json: str) -> Part:
+    """Show a scene, and the versions as a file of data holds them."""
+    libraries = ", ".join(f"{name} {version}" for name, version in json.loads(versions_json).items())
+    code = json.dumps(scene, indent=2, ensure_ascii=False)
+    return Part("inputs", "Inputs", (f"Made with {libraries}.",), code=code)

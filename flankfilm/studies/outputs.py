@@ -21,7 +21,6 @@ from flankfilm.coupling.lubricated import FilmAlongPath, LubricatedCycle
 from flankfilm.coupling.single_pairs import CLOSED_FORMS
 from flankfilm.figures.drawn import Path
 from flankfilm.figures.reading import PER_FACE
-from flankfilm.output.passages import Passage
 from flankfilm.output.tables import spelt
 from flankfilm.output.variables import sentence
 from flankfilm.stages.catalogue import FILM, MESH, PAIR, ROOT_STRESS, VERIFICATION
@@ -154,11 +153,7 @@ def _roots() -> Iterator[Named]:
         for kind in ("tension", "compression"):
             yield _output(
                 f"root_{kind}_{gear}",
-                Figure(
-                    "Pa",
-                    f"greatest {kind} along the fillets of the {gear}",
-                    shown=figures(Passage)[kind].shown,
-                ),
+                Figure("Pa", f"greatest {kind} along the fillets of the {gear}", shown="MPa"),
                 "root-stress",
                 lambda engine, gear=gear, kind=kind: (
                     getattr(  # type: ignore[misc]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.coupling.verification import UNITS, Curves, Difference, Verification
+from flankfilm.coupling.verification import Curves, Verification
 from flankfilm.figures.drawn import outlines, path
 from flankfilm.output.files import provenance, write_csv, write_netcdf
-from flankfilm.output.variables import identifier, merged, of_models, of_record
+from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,8 @@ def table(found: Verification, reference: Curves) -> Table:
     from rich import box
     from rich.table import Table
 
-    models = [model.label for model in found.models]
+    from flankfilm.report.other_pages import compared
+
     name = reference.label
     shown = Table(
         title=f"against finite elements, {name}" if reference.left_out else f"against {name}",
@@ -31,27 +32,11 @@ def table(found: Verification, reference: Curves) -> Table:
     )
     shown.add_column("figure", no_wrap=True)
     shown.add_column("unit")
-    shown.add_column("finite elements", justify="right")
-    for label in models:
+    for label in ("finite elements", *(model.label for model in found.models)):
         shown.add_column(label, justify="right")
-    for figure, unit in UNITS.items():
-        by_model = {d.model: d for d in found.differences if (d.figure, d.reference) == (figure, name)}
-        if not by_model:
-            continue
-        first = next(iter(by_model.values()))
-        shown.add_row(
-            figure,
-            unit,
-            f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %",
-            *(_cell(by_model.get(label)) for label in models),
-        )
+    for row in compared(found, name):
+        shown.add_row(*row)
     return shown
-
-
-def _cell(difference: Difference | None) -> str:
-    if difference is None:
-        return ""
-    return f"{difference.value:.4g} ({100 * difference.difference:+.1f} %)"
 
 
 def costs(found: Verification) -> str:
@@ -78,7 +63,7 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     like = {"units": "1", "long_name": "reference without what closed forms lack"}
     parts = (
         of_record("pair", found.pair),
-        of_record("outline", outlines(found.pair)),
+        of_quantities("outline", outlines(found.pair)),
         of_record("path", path(found.pair), ("point", "point_rho1", "point_place")),
         of_record("path", found, ("rho1",)),
         of_record("mesh", found, ("position",)),

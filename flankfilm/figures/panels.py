@@ -1,0 +1,60 @@
+"""Panels that several figures share: a family of curves, over the path of contact, over two base pitches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from base import Array
+from flankfilm.figures.reading import Reading, travel
+from flankfilm.figures.style import MARK, looks
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+PATH_LABEL = "travel along the path of contact from A [mm]"
+
+
+def curves(axes: Axes, x: Array, family: Mapping[str, Reading], meaning: str = "", **options: Any) -> None:
+    """Draw curves by their labels in the style's colours and dashes, and title the vertical axis.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    x : ndarray
+    family : mapping
+        Label to curve, all in one unit.
+    meaning : str
+        What the curves have in common; that of the last one unless given.
+    options
+        Of ``Axes.plot``, which go before the style's.
+    """
+    for (label, curve), look in zip(family.items(), looks(len(family)), strict=True):
+        axes.plot(x, curve.values, label=label, **{**look, **options})
+        axes.set(ylabel=curve.named(meaning or curve.meaning))
+
+
+def over_two_pitches(
+    axes: Axes, position: Reading, family: Mapping[str, Reading], meaning: str = "", **options: Any
+) -> None:
+    """Draw curves of the mesh cycle, repeated over a second base pitch; arguments as of `curves`."""
+    twice = {label: replace(curve, values=np.tile(curve.values, 2)) for label, curve in family.items()}
+    curves(axes, np.concatenate([position.values, position.values + 1]), twice, meaning, **options)
+    axes.set(xlabel=position.label)
+
+
+def over_path(results: xr.Dataset, *panels: Axes) -> None:
+    """Mark A to E in panels over the travel along the path, name them above the first, and title the last."""
+    places = travel(results, "path_point_rho1").tolist()
+    for name, at in zip(results["path_point"].values, places, strict=True):
+        for axes in panels:
+            axes.axvline(at, color=MARK, linewidth=0.8)
+        panels[0].annotate(
+            str(name), (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
+            ha="center", va="bottom", color="#000000",
+        )  # fmt: skip
+    panels[-1].set(xlabel=PATH_LABEL)
