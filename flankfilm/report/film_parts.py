@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm import figures
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.run import held_as_it_is
-from flankfilm.report.page import Captions, Headline, Part, Table, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -43,34 +43,22 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
         "film",
         "Oil film",
         (verdict, *_supply(stage), *_mixed(stage)),
-        pictures(_captions(cycle), results),
+        pictures(results, *_pictured(cycle)),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
     )
 
 
-def _captions(cycle: LubricatedCycle) -> Captions:
-    """Figures of a film, with what stands under them."""
+def _pictured(cycle: LubricatedCycle) -> Iterator[str]:
+    """Names of the figures of a film."""
     stage = cycle.film
-    captions: Captions = {
-        figures.film_along_path: "Film thickness and Hertz pressure along the path of contact; steps where the load "
-        "share steps."
-    }
+    yield "film_along_path"
     if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
-        captions[figures.film_shares] = (
-            "How far the contact is starved and how much its asperities carry, along the path of contact."
-        )
+        yield "film_shares"
     if stage.profiles:
-        captions[figures.film_profiles] = (
-            "Pressure and film thickness through the contact at points of the path; oil enters at the left. "
-            "The grids resolve the pressure spike to 1 %, except where it is narrower than grids would."
-        )
+        yield "film_profiles"
     if cycle.otherwise:
-        captions[figures.film_changes] = (
-            "What the film changes the tangent stiffness by, as it is, and if the other of meniscus and oil "
-            "layer stayed when the load changes."
-        )
-    return captions
+        yield "film_changes"
 
 
 def _definitions(stage: FilmAlongPath) -> Table:

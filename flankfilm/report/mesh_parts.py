@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm import figures
 from flankfilm.figures.reading import read, read_figure, travel
-from flankfilm.report.page import Captions, Headline, Part, Table, picture, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -57,16 +56,9 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
         *((figure.label, number(float(figure.values), digits)) for figure, digits in known),
         ("path of contact A to E [mm]", number(float(travel(results, "path_point_rho1")[-1]), 5)),
     )
-    captions: Captions = {
-        figures.gears_in_mesh: "The pair in mesh at the pitch point, with the path of contact A to E.",
-        figures.kinematics: "Curvature radii and velocities of the flanks along the path of contact; no sliding at C.",
-    }
-    return Part(
-        "geometry",
-        "Geometry",
-        figures=pictures(captions, results),
-        tables=(Table(("", "pinion", "wheel"), rows), Table(("pair", ""), common)),
-    )
+    drawn = pictures(results, "gears_in_mesh", "kinematics")
+    tables = Table(("", "pinion", "wheel"), rows), Table(("pair", ""), common)
+    return Part("geometry", "Geometry", figures=drawn, tables=tables)
 
 
 def stiffness(
@@ -89,24 +81,16 @@ def stiffness(
         [m]
     results : xarray.Dataset
     """
-    captions: Captions = {
-        figures.mesh_stiffness: "Mesh stiffness (secant) over two base pitches, all models on one axis.",
-        figures.load_share: f"Load share of a pair: {cycles[0].label}.",
-        figures.transmission_error: "Deflection along the line of action.",
-    }
-    tables = [_cycles(cycles, face_width)]
+    shown, tables = ["mesh_stiffness", "load_share", "transmission_error"], [_cycles(cycles, face_width)]
     if single is not None:
-        caption = (
-            "Stiffness of one pair of teeth along the path of contact. Closed forms have no hub wind-up."
-        )
-        captions = {figures.single_pairs: caption, **captions}
+        shown.insert(0, "single_pairs")
         tables.append(iso_table(single.iso))
     notes = (
         *changes,
         "The error of a closed form against the real tooth is unknown until it is compared with finite "
         "elements; the column shows numerical error alone.",
     )
-    drawn = pictures(captions, results)
+    drawn = pictures(results, *shown, model=cycles[0].label)
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
 
@@ -147,16 +131,12 @@ def iso_table(iso: Any) -> Table:
 def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
-    caption = (
-        "Von Mises stress with a pair at the pitch point. The scale leaves out the highest 0.3 % of the pictured "
-        "area, which lies under the contacts."
-    )
     note = (
         f"Largest von Mises stress, under the contact: {number(1e-6 * peak)} MPa. The file mesh_cycle.pvd holds the "
         "mesh cycle for ParaView; colour by von_mises_Pa."
     )
-    drawn = picture(figures.tooth_stress, results, caption)
-    return Part("fields", "Loaded teeth", figures=(drawn,), notes=(note,))
+    drawn = pictures(results, "tooth_stress")
+    return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
 
 
 def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
@@ -193,12 +173,8 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
             "ISO 6336-3 puts the whole force on one pair at D and knows neither neighbours nor the bore; its error "
             "is unknown."
         )
-    caption = (
-        "Stress along the fillets of one tooth as it passes through the mesh: largest under the loaded flank, least "
-        "on the other side."
-    )
-    drawn = picture(figures.root_stress, results, caption)
-    return Part("roots", "Root stress", figures=(drawn,), tables=tuple(tables), notes=(note,))
+    drawn = pictures(results, "root_stress")
+    return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=(note,))
 
 
 def root_headlines(stage: RootStresses) -> list[Headline]:
@@ -225,23 +201,18 @@ def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     shown = [read(results, "torque"), *curves]
     cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)
     table = Table(tuple(one.label for one in shown), tuple(cells))
-    caption = "Mean stiffness and transmission error over torque, without film."
-    drawn = picture(figures.over_torque, results, caption)
+    drawn = pictures(results, "over_torque")
     notes = (f"Left out: {stage.message}",) if stage.message else ()
-    return Part("torques", "Torque", figures=(drawn,), tables=(table,), notes=notes)
+    return Part("torques", "Torque", figures=drawn, tables=(table,), notes=notes)
 
 
 def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
     """Transmission error tooth by tooth."""
-    caption = (
-        "Transmission error tooth by tooth, with pitch deviations where the scene gives them, without film; positive "
-        "when the wheel lags."
-    )
-    drawn = picture(figures.revolution, results, caption)
+    drawn = pictures(results, "revolution")
     curves = {
         "under load": read(results, "revolution_transmission_error"),
         "without load": read(results, "revolution_unloaded_transmission_error"),
     }
     rows = tuple((label, number(float(np.ptp(curve.values)))) for label, curve in curves.items())
     table = Table(("transmission error", curves["under load"].named("peak to peak")), rows)
-    return Part("revolution", "Revolution", figures=(drawn,), tables=(table,), notes=(cycle.message,))
+    return Part("revolution", "Revolution", figures=drawn, tables=(table,), notes=(cycle.message,))

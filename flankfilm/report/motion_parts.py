@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base.units import factor
-from flankfilm import figures
 from flankfilm.figures.reading import read_figure, unit_text
-from flankfilm.report.page import Captions, Headline, Part, Table, picture, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -33,13 +32,8 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
     )
-    captions: Captions = {}
     notes = ["Phases refer to tau = 0, the instant when a pair is at A."]
     if stage.fit is not None:
-        captions[figures.fourier] = (
-            f"Mesh stiffness ({stage.source}) and its Fourier series; right, the harmonics of the samples "
-            "over the mean."
-        )
         notes += [
             f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the "
             f"mean (root mean square; at most {percent(stage.fit.remainder_max)}). A higher "
@@ -47,9 +41,10 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
             "The tangent stiffness belongs to small vibration about the load, the secant to motion with "
             "separation.",
         ]
+    drawn = pictures(results, *(["fourier"] if stage.fit else []), source=stage.source)
     mean = f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}."
     table = Table(("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]"), rows)
-    return Part("fourier", "Fourier stiffness", (mean,), pictures(captions, results), (table,), tuple(notes))
+    return Part("fourier", "Fourier stiffness", (mean,), drawn, (table,), tuple(notes))
 
 
 def fourier_headlines(stage: MeshSeries) -> list[Headline]:
@@ -70,14 +65,7 @@ def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    captions: Captions = {
-        figures.sweep: "States at tau = 0, swept up and down; where the two differ, motions coexist. "
-        "n-p-q: n mesh periods, p losses of contact, q back-flank contacts."
-    }
-    if stage.portraits:
-        captions[figures.portraits] = (
-            "Phase portraits with Poincaré points at tau = 0; dotted, the edges of the backlash."
-        )
+    drawn = pictures(results, "sweep", *(["portraits"] if stage.portraits else []))
     notes = []
     if stage.grazings.size:
         at = ", ".join(f"{g:.6g}" for g in stage.grazings)
@@ -90,7 +78,7 @@ def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
         "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
         *stage.messages,
     ]
-    return Part("motion", "Motion", figures=pictures(captions, results), notes=tuple(notes))
+    return Part("motion", "Motion", figures=drawn, notes=tuple(notes))
 
 
 def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
@@ -147,14 +135,8 @@ def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
     tables = [Table.of(stage.stable[:LONGEST], ranges)]
     tables += [Table.of(stage.jumps, jumps)] if stage.jumps else []
     tables += [Table.of(stage.variants.items(), variants)] if stage.variants else []
-    caption = (
-        "Every branch of periodic motions found: stable solid, unstable dashed, special points marked; the "
-        "greatest force of stable motions of periods 1 and 2 over the mean force."
-    )
-    drawn, found = picture(figures.diagram, results, caption), stage.diagram
-    return Part(
-        "diagram", "Branches and jumps", (found.message,), (drawn,), tuple(tables), tuple(_notes(stage))
-    )
+    drawn, message = pictures(results, "diagram"), stage.diagram.message
+    return Part("diagram", "Branches and jumps", (message,), drawn, tuple(tables), tuple(_notes(stage)))
 
 
 def _share(source: str, jump: Jump) -> str:

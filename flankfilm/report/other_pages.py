@@ -15,7 +15,7 @@ from flankfilm import figures
 from flankfilm.coupling.verification import UNITS
 from flankfilm.figures.reading import titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
-from flankfilm.report.page import Fact, Headline, Part, Table, picture, write_page
+from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import number, percent, seconds
 
@@ -137,17 +137,13 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
     cost = "; ".join(f"{c.label} {seconds(c.cost.seconds)}" for c in (*found.references, *found.models))
     shared = f"Finite elements {seconds(found.cost.seconds)} once; then each model: {cost}."
     work = found.cost.seconds + sum(c.cost.seconds for c in found.references)
-    caption = (
-        "Closed forms beside finite elements (black: with all parts; dashed: without what closed forms lack). Grey: "
-        "the numerical error of the latter."
-    )
     facts = [
         Fact(f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth, module {1e3 * pair.module:g} mm"),
         Fact(f"pinion: {found.torque:g} N m"),
         Fact(f"{seconds(work)} of work", "costs"),
     ]
     parts = [
-        Part("curves", "Curves", figures=(picture(figures.verification, data, caption),)),
+        Part("curves", "Curves", figures=pictures(data, "verification")),
         Part("differences", "Differences", tables=tables),
         Part("costs", "Cost", (shared,)),
         _inputs(data),

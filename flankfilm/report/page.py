@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from flankfilm import figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
 
@@ -17,9 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 T = TypeVar("T")
-
-Captions = dict[Callable[["xr.Dataset"], "Figure"], str]
-"""Functions of `flankfilm.figures`, each with what stands under its picture."""
 
 
 @dataclass(frozen=True)
@@ -112,18 +111,26 @@ def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: 
     return Drawing(to_svg(draw(results), draw.__name__), caption, f"flankfilm.figures.{draw.__name__}")
 
 
-def pictures(captions: Captions, results: xr.Dataset) -> tuple[Drawing, ...]:
-    """Draw results with several of `flankfilm.figures`, each with its caption."""
-    return tuple(picture(draw, results, caption) for draw, caption in captions.items())
+def pictures(results: xr.Dataset, *names: str, **words: str) -> tuple[Drawing, ...]:
+    """Draw results with several of `flankfilm.figures`, each with its caption, into which `words` are filled."""
+    captions = tomllib.loads(_text("captions.toml"))
+    return tuple(picture(getattr(figures, name), results, captions[name].format(**words)) for name in names)
+
+
+def _text(name: str) -> str:
+    return resources.files("flankfilm.report").joinpath(name).read_text(encoding="utf-8")
 
 
 def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
     """Return the page's HTML."""
     import jinja2
 
-    source = resources.files("flankfilm.report").joinpath("report.html.j2").read_text(encoding="utf-8")
     page = jinja2.Template(
-        source, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+        _text("report.html.j2"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
     )
     return str(page.render(title=title, facts=facts, headlines=headlines, sections=parts))
 
