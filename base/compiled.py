@@ -9,8 +9,6 @@ from typing import Any
 
 from base.cost import unclocked
 
-__all__ = ["hide_compilation"]
-
 
 @cache
 def hide_compilation() -> None:

@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from time import perf_counter
 
-__all__ = ["Cost", "Stopwatch", "unclocked"]
-
 
 @dataclass(frozen=True)
 class Cost:

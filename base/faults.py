@@ -4,16 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-
-__all__ = [
-    "Fault",
-    "FlankfilmError",
-    "FlankfilmWarning",
-    "InputError",
-    "RangeWarning",
-    "SolverError",
-    "shorten",
-]
+from pathlib import Path
+from typing import Self
 
 
 @dataclass(frozen=True)
@@ -36,6 +28,11 @@ class Fault:
     value: str
     allowed: str
     remedy: str = ""
+
+    @classmethod
+    def of(cls, where: str | Path, value: object, allowed: str, remedy: str = "") -> Fault:
+        """Fault of a value as it was given: a text is shown as it is, anything else by its representation."""
+        return cls(str(where), value if isinstance(value, str) else shorten(value), allowed, remedy)
 
     def __str__(self) -> str:
         """One line: where, value, what must hold, remedy."""
@@ -60,6 +57,18 @@ class InputError(FlankfilmError, ValueError):
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults: tuple[Fault, ...] = tuple(faults)
         super().__init__(self.faults)  # what pickle hands back, so that the error survives a worker's end
+
+    @classmethod
+    def at(cls, where: str | Path, value: object, allowed: str, remedy: str = "") -> Self:
+        """Error of a single fault, whose arguments are those of `Fault.of`.
+
+        Examples
+        --------
+        >>> raise InputError.at("tolerance", 2.0, "must be at most 0.2", "0.005 is usual")
+        Traceback (most recent call last):
+        base.faults.InputError: tolerance = 2.0: must be at most 0.2. 0.005 is usual
+        """
+        return cls([Fault.of(where, value, allowed, remedy)])
 
     def __str__(self) -> str:
         """Each fault on a line of its own."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Integral, Real
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
 from base.faults import Fault, InputError, shorten
-
-__all__ = ["Faults", "Limit"]
 
 T = TypeVar("T")
 
@@ -85,34 +83,47 @@ class Limit:
 
     def in_unit(self, factor: float, unit: str) -> Limit:
         """The same limit for numbers in another unit, `factor` of this one's."""
-        return Limit(
-            self.low / factor,
-            self.high / factor,
-            unit,
-            self.remedy,
-            self.low_open,
-            self.high_open,
-            self.whole,
-        )
+        return replace(self, low=self.low / factor, high=self.high / factor, unit=unit)
 
 
 class Faults:
-    """Collects the faults of one input, to raise them together.
+    """Collects the faults of one input, to raise them together: at the end of a ``with`` block, or when asked.
+
+    Parameters
+    ----------
+    kind : type of InputError
+        What is raised.
 
     Examples
     --------
-    >>> found = Faults()
-    >>> found.number("tolerance", 0.005, Limit(0.0, 0.2, low_open=True))
+    >>> with Faults() as found:
+    ...     found.number("tolerance", 0.005, Limit(0.0, 0.2, low_open=True))
     0.005
-    >>> found.raise_if_any()
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kind: type[InputError] = InputError) -> None:
+        self.kind = kind
         self.found: list[Fault] = []
 
+    @classmethod
+    def of(cls, record: Any, limits: Mapping[str, Limit], path: str = "") -> Self:
+        """Collector with the faults of a record's numbers; arguments as of `fields`."""
+        found = cls()
+        found.fields(record, limits, path)
+        return found
+
+    def __enter__(self) -> Self:
+        """Collect until the block ends."""
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        """Raise all faults noted, unless the block itself has raised."""
+        if kind is None:
+            self.raise_if_any()
+
     def add(self, where: str, value: object, allowed: str, remedy: str = "") -> None:
-        """Note a fault; a text is shown as it is, anything else by its representation."""
-        self.found.append(Fault(where, value if isinstance(value, str) else shorten(value), allowed, remedy))
+        """Note a fault; arguments as of `Fault.of`."""
+        self.found.append(Fault.of(where, value, allowed, remedy))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Note faults that were found elsewhere."""
@@ -123,6 +134,11 @@ class Faults:
         faults = limit.faults(where, value)
         self.found.extend(faults)
         return math.nan if faults else float(value)  # type: ignore[arg-type]
+
+    def numbers(self, limits: Mapping[str, Limit], values: Iterable[object]) -> None:
+        """Note the faults of several numbers, given in the order of their limits; the last ones may be left out."""
+        for (name, limit), value in zip(limits.items(), values, strict=False):
+            self.number(name, value, limit)
 
     def fields(self, record: Any, limits: Mapping[str, Limit], path: str = "") -> None:
         """Note the faults of a dataclass's numbers; fields whose default is None may be None.
@@ -155,7 +171,7 @@ class Faults:
             self.add(where, shorten(value), f"must be {' or '.join(map(repr, options))}", remedy)
         return value
 
-    def raise_if_any(self, kind: type[InputError] = InputError) -> None:
+    def raise_if_any(self) -> None:
         """Raise all faults noted, if there are any."""
         if self.found:
-            raise kind(self.found)
+            raise self.kind(self.found)

@@ -9,27 +9,14 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from importlib import import_module
-from typing import Any, Protocol, TypeVar, dataclass_transform, runtime_checkable
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, dataclass_transform, runtime_checkable
 
 import numpy as np
 
 from base.cost import Cost
 from base.units import factor
-
-__all__ = [
-    "Figure",
-    "Quantity",
-    "Result",
-    "described",
-    "headline",
-    "part",
-    "quantities",
-    "quantity",
-    "record",
-    "show_with",
-    "view",
-]
 
 T = TypeVar("T")
 LONGEST_LINE = 200
@@ -138,10 +125,8 @@ def quantity(
     >>> Film(0.5e-6)
     Film(minimum 5e-07 m)
     """
-    about = {"figure": Figure(unit, meaning, tuple(dims.split()), shown, error)}
-    if default_factory is not dataclasses.MISSING:
-        return field(default_factory=default_factory, metadata=about)
-    return field(default=default, metadata=about)
+    figure = Figure(unit, meaning, tuple(dims.split()), shown, error)
+    return _field({"figure": figure}, default=default, default_factory=default_factory)
 
 
 def part(
@@ -166,17 +151,34 @@ def part(
     >>> "the tool that cuts it." in Gear.__doc__
     True
     """
-    about = {"meaning": meaning}
-    if default_factory is not dataclasses.MISSING:
-        return field(default_factory=default_factory, metadata=about)
-    return field(default=default, metadata=about)
+    return _field({"meaning": meaning}, default=default, default_factory=default_factory)
 
 
-F = TypeVar("F", bound=Callable[..., Any])
+def _field(about: dict[str, Any], **defaults: Any) -> Any:
+    """Field with what it is; defaults that are missing are as if they were not given."""
+    return field(metadata=about, **defaults)
 
 
-def described(unit: str, dims: str = "", *, shown: str = "", error: str = "") -> Callable[[F], F]:
-    """Mark the function of a property as a figure; its docstring's first line is the meaning.
+class Described(property, Generic[T]):
+    """Property that is a figure."""
+
+    if TYPE_CHECKING:
+
+        def __get__(self, instance: Any, owner: type | None = None, /) -> T:  # type: ignore[override]
+            """Value of the figure."""
+
+
+def described(
+    unit: str, dims: str = "", *, shown: str = "", error: str = "", kept: bool = False
+) -> Callable[[Callable[[Any], T]], Described[T]]:
+    """Make a function a property that is a figure; its docstring's first line is the meaning.
+
+    Parameters
+    ----------
+    unit, dims, shown, error : str
+        As of `quantity`.
+    kept : bool
+        Whether the value is kept once it has been computed.
 
     Examples
     --------
@@ -185,7 +187,6 @@ def described(unit: str, dims: str = "", *, shown: str = "", error: str = "") ->
     ...     load: float = quantity("N/m", "force per length of face")
     ...     radius: float = quantity("m", "radius of relative curvature", shown="mm")
     ...
-    ...     @property
     ...     @described("N/m2", shown="")
     ...     def stress(self) -> float:
     ...         '''Load over radius.'''
@@ -194,12 +195,12 @@ def described(unit: str, dims: str = "", *, shown: str = "", error: str = "") ->
     20.0
     """
 
-    def mark(function: F) -> F:
+    def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
         function.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error)  # type: ignore[attr-defined]
-        return function
+        return cached_property(function) if kept else Described(function)
 
-    return mark
+    return made
 
 
 @dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(quantity, part, field))
@@ -281,8 +282,8 @@ def _text(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float | np.floating) else str(value)[:60]
 
 
-def _unit(figure: Figure | None) -> str:
-    return f" {figure.unit}" if figure is not None and figure.unit not in ("", "1") else ""
+def _unit(figure: Figure | None, form: str = " {}") -> str:
+    return form.format(figure.unit) if figure is not None and figure.unit not in ("", "1") else ""
 
 
 def _documented(cls: type) -> str:
@@ -295,7 +296,7 @@ def _documented(cls: type) -> str:
     for one, meaning in about:
         figure: Figure | None = one.metadata.get("figure")
         shape = f", ({', '.join(figure.dims)})" if figure is not None and figure.dims else ""
-        lines += [f"    {one.name} : {one.type}{shape}", f"        {meaning}{_in_brackets(figure)}."]
+        lines += [f"    {one.name} : {one.type}{shape}", f"        {meaning}{_unit(figure, ' [{}]')}."]
     return text + "\n".join(lines) + "\n    "
 
 
@@ -307,10 +308,6 @@ def meaning_of(one: dataclasses.Field[Any]) -> str:
         return str(one.metadata["meaning"])
     common = getattr(Result, one.name, None)
     return (common.__doc__ or "").rstrip(".") if isinstance(common, property) else ""
-
-
-def _in_brackets(figure: Figure | None) -> str:
-    return f" [{figure.unit}]" if figure is not None and figure.unit not in ("", "1") else ""
 
 
 _VIEWS: dict[str, str] = {}

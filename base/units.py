@@ -8,40 +8,19 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["FACTORS", "factor", "suffix", "unit_of"]
+_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|Pa s|m2/s|m/s|W|Hz|rad|rad/s"
 
-FACTORS = {
-    "1": 1.0,
+FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "%": 1e-2,
-    "m": 1.0,
     "mm": 1e-3,
     "um": 1e-6,
-    "s": 1.0,
-    "K": 1.0,
-    "kg": 1.0,
-    "kg m2": 1.0,
-    "kg/m3": 1.0,
-    "N": 1.0,
-    "N m": 1.0,
-    "N/m": 1.0,
     "N/mm": 1e3,
     "N/(mm um)": 1e9,
-    "N m/rad": 1.0,
-    "N s/m": 1.0,
-    "Pa": 1.0,
     "MPa": 1e6,
     "GPa": 1e9,
-    "1/Pa": 1.0,
     "1/GPa": 1e-9,
-    "Pa s": 1.0,
-    "m2/s": 1.0,
     "mm2/s": 1e-6,
     "1/mm2": 1e6,
-    "m/s": 1.0,
-    "W": 1.0,
-    "Hz": 1.0,
-    "rad": 1.0,
-    "rad/s": 1.0,
     "deg": math.pi / 180.0,
     "rpm": math.pi / 30.0,
 }

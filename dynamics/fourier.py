@@ -34,13 +34,11 @@ class FourierFit:
     converged: bool = True
     message: str = ""
 
-    @property
     @described("1")
     def order(self) -> int:
         """Highest harmonic of the series."""
         return self.stiffness.order
 
-    @property
     @described("1")
     def error(self) -> float:
         """Relative error of the series as a description of the samples (its relative root mean square)."""

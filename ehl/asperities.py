@@ -44,14 +44,6 @@ def height_integral(n: float, x: ArrayLike) -> Array:
     return np.where(x < _FAR, value, 0.0)
 
 
-def zhao_fit(x: ArrayLike) -> Array:
-    """F_5/2 by the usual fit ``4.4086e-5 (4 - x)^6.804`` for x < 4, else 0.
-
-    Good to some per cent between 0 and 3; kept for comparison, since published studies use it.
-    """
-    return np.asarray(4.4086e-5 * np.maximum(4.0 - np.asarray(x, dtype=float), 0.0) ** 6.804)
-
-
 @dataclass(frozen=True)
 class Roughness:
     """Both surfaces together, as statistical asperity models see them.
@@ -99,10 +91,8 @@ class Roughness:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        found = Faults()
-        found.fields(self, LIMITS, "roughness.")
-        found.choice("roughness.law", self.law, LAWS)
-        found.raise_if_any()
+        with Faults.of(self, LIMITS, "roughness.") as found:
+            found.choice("roughness.law", self.law, LAWS)
 
     def pressure(self, separation: ArrayLike, reduced_modulus: float) -> tuple[Array, Array]:
         """Pressure of the asperities [Pa] and its derivative by the separation [Pa/m].

@@ -85,11 +85,9 @@ class LineContact:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        found = Faults()
-        found.fields(self, LIMITS)
-        if not isinstance(self.lubricant, Lubricant):
-            found.add("lubricant", self.lubricant, "must be a Lubricant", "build one with ehl.Lubricant")
-        found.raise_if_any()
+        with Faults.of(self, LIMITS) as found:
+            if not isinstance(self.lubricant, Lubricant):
+                found.add("lubricant", self.lubricant, "must be a Lubricant", "build one with ehl.Lubricant")
 
     @classmethod
     def from_moes(
@@ -121,13 +119,10 @@ class LineContact:
         reduced_modulus, radius : float
             E' [Pa] and R [m].
         """
-        found = Faults()
-        values = (M, L, roelands_z, pressure_viscosity, reduced_modulus, radius)
-        for (name, limit), value in zip(_MOES_LIMITS.items(), values, strict=True):
-            found.number(name, value, limit)
-        if not found.found and 0.0 < L < 1e-6:
-            found.add("L", L, "must be 0 or at least 1e-6", "give L = 0 for a constant viscosity")
-        found.raise_if_any()
+        with Faults() as found:
+            found.numbers(_MOES_LIMITS, (M, L, roelands_z, pressure_viscosity, reduced_modulus, radius))
+            if not found.found and 0.0 < L < 1e-6:
+                found.add("L", L, "must be 0 or at least 1e-6", "give L = 0 for a constant viscosity")
         alpha = pressure_viscosity if L > 0 else 0.0
         speed = (L / (alpha * reduced_modulus)) ** 4 if L > 0 else _SPEED_PARAMETER
         viscosity = math.exp(pressure_viscosity * ROELANDS_PRESSURE / roelands_z + ROELANDS_LN_VISCOSITY)
@@ -140,7 +135,6 @@ class LineContact:
             lubricant=oil,
         )
 
-    @property
     @described("m", shown="um")
     def half_width(self) -> float:
         """Half-width of the dry contact, b = sqrt(8 w R/(pi E'))."""

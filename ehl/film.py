@@ -109,19 +109,16 @@ class Film:
     )
     state: State | None = part("what a next solution starts from", default=None)
 
-    @property
     @described("1")
     def error(self) -> float:
         """Estimated relative error of central and minimum thickness, the larger."""
         return self.errors.film
 
-    @property
     @described("1", error="error")
     def central_moes(self) -> float:
         """Central film in Moes units, h_cen/(R sqrt(U2))."""
         return self.central_thickness / self.contact.moes_film
 
-    @property
     @described("1", error="error")
     def minimum_moes(self) -> float:
         """Minimum film in Moes units, h_min/(R sqrt(U2))."""
@@ -132,7 +129,6 @@ class Film:
         """Whether a supply holds the inlet; False for a layer thicker than what the inlet takes."""
         return self.supply is not None and self.errors.inlet == 0.0
 
-    @property
     @described("1", "node")
     def fill(self) -> Array:
         """Share of the gap that oil fills, 1 - theta: 1 where p > 0, less in cavitation."""
@@ -141,7 +137,6 @@ class Film:
         full[0] = True
         return np.where(full, 1.0, np.minimum(1.0, self.flow / (density * self.thickness)))
 
-    @property
     @described("m", shown="um")
     def approach(self) -> float:
         """Approach of the two bodies with the film between them, on the datum of :func:`hertz_approach`.
@@ -175,9 +170,8 @@ class Film:
         InputError
             For any other name.
         """
-        found = Faults()
-        found.choice("definition", definition, DEFINITIONS)
-        found.raise_if_any()
+        with Faults() as found:
+            found.choice("definition", definition, DEFINITIONS)
         without_formula = definition.startswith("dowson") and (self.contact.G == 0.0 or self.starved)
         if not self.converged or without_formula:
             return math.nan

@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 
-from base import Faults, Limit, RangeWarning, quantity, record
+from base import Faults, InputError, Limit, RangeWarning, quantity, record
 
 GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000, 1500, 2200, 3200)
 """Grades of ISO 3448: mid-point kinematic viscosity at 40 degC [mm^2/s]."""
@@ -183,19 +183,14 @@ def graded_oil(
     RangeWarning
         Where ``vg`` is no grade of ISO 3448.
     """
-    found = Faults()
-    found.number("vg", vg, LIMITS["vg"])
-    found.number("temperature", temperature, LIMITS["temperature"])
-    found.number("viscosity_index", index, LIMITS["viscosity_index"])
-    found.choice("base", base, BASES, "choose the nearest")
-    if density_15 is not None:
-        found.number("density_15", density_15, LIMITS["density_15"])
-    nu_100 = math.nan if found.found else _nu_100(vg, index)
-    if not found.found and math.isnan(nu_100):
+    with Faults() as found:
+        found.numbers(LIMITS, (vg, temperature, index, *(() if density_15 is None else (density_15,))))
+        found.choice("base", base, BASES, "choose the nearest")
+    nu_100 = _nu_100(vg, index)
+    if math.isnan(nu_100):
         allowed = f"must be at least {viscosity_index(vg, 2.0):.0f} for VG {vg:g}"
         remedy = "below that the viscosity at 100 degC leaves the standard's range; give a higher index"
-        found.add("viscosity_index", index, allowed, remedy)
-    found.raise_if_any()
+        raise InputError.at("viscosity_index", index, allowed, remedy)
     if vg not in GRADES:
         warnings.warn(f"VG {vg:g} is no grade of ISO 3448", RangeWarning, stacklevel=3)
     nu = walther(temperature, vg, nu_100)

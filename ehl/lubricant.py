@@ -90,19 +90,14 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        found = Faults()
-        found.fields(self, LIMITS)
-        if not isinstance(self.compressible, bool | np.bool_):
-            found.add("compressible", self.compressible, "must be True or False")
-        self._check_laws(found)
-        if not found.found and self._needs_index() and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
-            found.add(
-                "viscosity",
-                self.viscosity,
-                "must be more than 6.3e-5 Pa s where Roelands' index is derived from it",
-                "give roelands_z",
-            )
-        found.raise_if_any()
+        with Faults.of(self, LIMITS) as found:
+            if not isinstance(self.compressible, bool | np.bool_):
+                found.add("compressible", self.compressible, "must be True or False")
+            self._check_laws(found)
+            derived = not found.found and self.viscosity_law is None and self.roelands_z is None
+            if derived and self.pressure_viscosity > 0 and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
+                allowed = "must be more than 6.3e-5 Pa s where Roelands' index is derived from it"
+                found.add("viscosity", self.viscosity, allowed, "give roelands_z")
         if isinstance(self.law, Roelands) and not 0.2 <= self.z <= 1.0:
             warnings.warn(
                 f"Roelands index z = {self.z:.3g} lies outside 0.2 to 1, where oils are found; "
@@ -110,10 +105,6 @@ class Lubricant:
                 RangeWarning,
                 stacklevel=3,
             )
-
-    def _needs_index(self) -> bool:
-        """Whether Roelands' index has to be derived."""
-        return self.viscosity_law is None and self.roelands_z is None and self.pressure_viscosity > 0
 
     def _check_laws(self, found: Faults) -> None:
         """Note the faults of given laws."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from base import Cost, Fault, InputError, described, part, quantity, record, shorten
+from base import Cost, InputError, described, part, quantity, record, shorten
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film
@@ -60,37 +60,31 @@ class MixedFilm:
         default=math.nan,
     )
 
-    @property
     @described("1")
     def error(self) -> float:
         """Estimated relative error of the film."""
         return self.film.error if self.converged else math.nan
 
-    @property
     @described("m", shown="um", error="error")
     def central_thickness(self) -> float:
         """Distance of the mean planes at x = 0."""
         return self.film.central_thickness
 
-    @property
     @described("m", shown="um", error="error")
     def minimum_thickness(self) -> float:
         """Least distance of the mean planes."""
         return self.film.minimum_thickness
 
-    @property
     @described("m", shown="um")
     def separation(self) -> float:
         """Approach of the dry contact less that with film and asperities."""
         return self.film.separation
 
-    @property
     @described("1", error="error")
     def film_ratio(self) -> float:
         """Lambda, least distance of the mean planes over the standard deviation of heights."""
         return self.film.minimum_thickness / self.roughness.deviation
 
-    @property
     @described("N/m")
     def asperity_load(self) -> float:
         """Load on the asperities per length of face."""
@@ -181,8 +175,8 @@ def solve_mixed(
     'film ratio 2.43, asperities carry 1.0 %'
     """
     if not isinstance(roughness, Roughness):
-        raise InputError(
-            [Fault("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")]
+        raise InputError.at(
+            "roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness"
         )
     search = _Search(contact, roughness, tolerance, supply, start)
     try:

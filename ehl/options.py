@@ -37,9 +37,8 @@ class Options:
 
     def checked(self, contact: object) -> Options:
         """Raise every fault at once; otherwise return the options with the article's grid spelt out."""
-        found = Faults()
-        self._check(contact, found)
-        found.raise_if_any()
+        with Faults.of(self, _LIMITS) as found:
+            self._check(contact, found)
         if self.grid == "article":
             return replace(self, grid="uniform", nodes=_ARTICLE_NODES, domain=_ARTICLE_DOMAIN)
         return self
@@ -53,7 +52,6 @@ class Options:
     def _check(self, contact: object, found: Faults) -> None:
         if not isinstance(contact, LineContact):
             found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
-        found.fields(self, _LIMITS)
         if self.nodes is not None:
             found.whole("nodes", self.nodes, *_NODES)
         found.choice("grid", self.grid, GRIDS, "'graded' resolves inlet and pressure spike")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 
-from base import Cost, Fault, Faults, InputError, RangeWarning, described, part, quantity, record
+from base import Cost, Faults, InputError, RangeWarning, described, part, quantity, record
 from ehl.contact import LineContact
 
 _DEFINITIONS = ("dowson-central", "dowson-minimum")
@@ -183,7 +183,6 @@ class FormulaFilm:
     converged: bool = True
     message: str = "by formula"
 
-    @property
     @described("m", shown="um")
     def separation(self) -> float:
         """Film separation, taken as the central film; -1/(d separation/dw) is ``stiffness()``."""
@@ -194,9 +193,8 @@ class FormulaFilm:
 
         ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise InputError.
         """
-        found = Faults()
-        found.choice("definition", definition, _DEFINITIONS, "solve the contact for the others")
-        found.raise_if_any()
+        with Faults() as found:
+            found.choice("definition", definition, _DEFINITIONS, "solve the contact for the others")
         return formula_stiffness(self.contact, definition)
 
 
@@ -221,7 +219,7 @@ def dowson(contact: LineContact) -> FormulaFilm:
     """
     if contact.G == 0.0:
         allowed = "must be more than 0 for Dowson's film formulas"
-        raise InputError([Fault("pressure_viscosity", "0", allowed, "solve the contact with ehl.solve")])
+        raise InputError.at("pressure_viscosity", "0", allowed, "solve the contact with ehl.solve")
     if contact.lubricant.pressure_viscosity * contact.peak_pressure < 1.0:
         warnings.warn(
             f"Dowson's film formulas at alpha p_H = "

@@ -16,11 +16,8 @@ import numpy as np
 from base import Array, Faults, Limit
 
 _FLOODED = "leave the supply out for a flooded inlet"
-LIMITS = {
-    "position": Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True),
-    "thickness": Limit(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}", low_open=True),
-}
-"""What the numbers of a supply may be."""
+_AHEAD = Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True)
+_LAYER = Limit(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}", low_open=True)
 
 
 @dataclass(frozen=True)
@@ -42,9 +39,7 @@ class Meniscus:
 
     def __post_init__(self) -> None:
         """Check the position."""
-        found = Faults()
-        found.number("supply.position", self.position, LIMITS["position"])
-        found.raise_if_any()
+        Faults.of(self, {"position": _AHEAD}, "supply.").raise_if_any()
 
 
 @dataclass(frozen=True)
@@ -67,9 +62,7 @@ class OilLayer:
 
     def __post_init__(self) -> None:
         """Check the thickness."""
-        found = Faults()
-        found.number("supply.thickness", self.thickness, LIMITS["thickness"])
-        found.raise_if_any()
+        Faults.of(self, {"thickness": _LAYER}, "supply.").raise_if_any()
 
 
 Supply = Meniscus | OilLayer

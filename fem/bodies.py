@@ -87,21 +87,18 @@ class Compliance:
         found.raise_if_any()
         return replace(self, left_out=self.left_out | set(parts))
 
-    @property
     @described("m/N", "gear")
     def hub_windup(self) -> tuple[float, float]:
         """Turn of pinion's and wheel's body on its hub, along the line of action, at the pair's face width."""
         width = self.pair.face_width
         return self.pinion.hub_windup / width, self.wheel.hub_windup / width
 
-    @property
     @described("m/N", "gear")
     def support(self) -> tuple[float, float]:
         """Compliance of pinion's and wheel's rigid hubs along the line of action."""
         first, second = (s.compliance(r) for s, r in zip(self.supports, self.pair.base_radii, strict=True))
         return first, second
 
-    @property
     @described("m", "gear", shown="mm")
     def rim_thickness(self) -> tuple[float, float]:
         """Thickness from the radius at which pinion and wheel are held to the root circle."""
@@ -114,7 +111,6 @@ class Compliance:
         support = 0.0 if "support" in self.left_out else sum(self.support)
         return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
 
-    @property
     @described("m/N")
     def turning(self) -> float:
         """What hubs and supports move all teeth by alike, which closes no gap, unless it is left out."""

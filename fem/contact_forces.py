@@ -11,7 +11,7 @@ from base import Array, Integers, quantity, record
 from fem.cycle import MeshCycle, require_row
 from fem.elasticity import MIRROR
 from fem.fields import contact_half_width, of_axis
-from meshes.annulus import turned
+from gears.plane import turned
 
 if TYPE_CHECKING:
     from gears import GearPair

@@ -135,19 +135,16 @@ class MeshCycle:
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
         )
 
-    @property
     @described("N/m", error="error")
     def mean_stiffness(self) -> float:
         """Mean of the tangent stiffness over the positions."""
         return float(self.stiffness.mean())
 
-    @property
     @described("N/m", error="error")
     def mean_secant_stiffness(self) -> float:
         """Mean of the secant stiffness over the positions."""
         return float(self.secant_stiffness.mean())
 
-    @property
     @described("m", "position", shown="um")
     def unloaded_transmission_error(self) -> Array:
         """D at which the gears touch without load: the smallest gap."""
@@ -158,7 +155,6 @@ class MeshCycle:
         """Numbers of the teeth of pinion and wheel in each pair (2, n, pairs)."""
         return self.candidates.teeth
 
-    @property
     @described("m", "position", shown="um")
     def back_gap(self) -> Array:
         """Smallest gap between back flanks without load: below zero the teeth jam."""
@@ -171,7 +167,6 @@ class MeshCycle:
         load = np.where(touching, self.forces / self.pair.face_width, np.nan)
         return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
 
-    @property
     @described("Pa", "position pair", shown="MPa")
     def hertz_pressure(self) -> Array:
         """Greatest Hertz pressure; nan where two flanks do not touch.
@@ -180,7 +175,6 @@ class MeshCycle:
         """
         return peak_pressure(*self._loaded_radius())
 
-    @property
     @described("m", "position pair", shown="um")
     def half_width(self) -> Array:
         """Half-width of the Hertz contact; nan where two flanks do not touch."""
@@ -206,7 +200,6 @@ class MeshCycle:
         first, second = self.surface_speeds(speed)
         return np.asarray(first - second)
 
-    @property
     @described("1", "gear position pair")
     def specific_sliding(self) -> Array:
         """Sliding over the surface's own speed, (u1 - u2)/u1 and (u2 - u1)/u2.
@@ -217,7 +210,6 @@ class MeshCycle:
         with np.errstate(divide="ignore"):
             return np.asarray((speeds - speeds[::-1]) / speeds)
 
-    @property
     @described("N m", "position")
     def wheel_torque(self) -> Array:
         """Torque on the wheel of the normal forces, tilted by friction if there is any.
@@ -235,7 +227,6 @@ class MeshCycle:
         slip = np.abs(self.sliding(speed))
         return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
 
-    @property
     @described("1")
     def efficiency(self) -> float:
         """Power put in less the mean power lost by sliding, over the power put in; 1 without friction."""

@@ -63,7 +63,6 @@ class GearField:
     principal_direction: Array = quantity("1", "unit vector along the larger one", "point axis")
     energy_density_J_per_m3: Array = quantity("J/m3", "strain energy per volume", "point")
 
-    @property
     @described("Pa", shown="MPa")
     def greatest_von_mises_Pa(self) -> float:
         """Greatest von Mises stress."""

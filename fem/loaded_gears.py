@@ -20,8 +20,8 @@ from fem.elasticity import MIRROR, PlaneElasticity, reduced_modulus
 from fem.flamant import hertz_half_width
 from fem.gear_compliance import CORNER_CLEARANCE
 from fem.line_load import flank_points
+from gears.plane import turned
 from meshes import GearMesh, SectorMesh, Sizes, gear_mesh, mesh_sector
-from meshes.annulus import turned
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile

@@ -70,31 +70,26 @@ class GearRootStress:
         shown="MPa",
     )
 
-    @property
     @described("1", "position tooth")
     def tooth_position(self) -> Array:
         """Base pitches since each tooth's pair passed A."""
         return np.asarray(self.position[:, None] + self.tooth)
 
-    @property
     @described("Pa", "position tooth", shown="MPa")
     def tension_Pa(self) -> Array:
         """Greatest principal stress along the fillet under the loaded flank."""
         return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
 
-    @property
     @described("m", "position tooth", shown="mm")
     def tension_arc(self) -> Array:
         """Place of the greatest stress: arc length from the middle of the gap."""
         return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
 
-    @property
     @described("Pa", "position tooth", shown="MPa")
     def compression_Pa(self) -> Array:
         """Least principal stress along the other fillet, negative in compression."""
         return -_extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
 
-    @property
     @described("m", "position tooth", shown="mm")
     def compression_arc(self) -> Array:
         """Place of the least stress: arc length from the middle of the gap."""
@@ -115,13 +110,11 @@ class GearRootStress:
         """Greatest compression of all teeth and positions, and where it acts."""
         return self._peak(self.compression_Pa, self.compression_arc, OTHER)
 
-    @property
     @described("Pa", shown="MPa")
     def greatest_tension_Pa(self) -> float:
         """Greatest tension under a loaded flank, of all teeth and positions."""
         return self.greatest_tension.stress_Pa
 
-    @property
     @described("Pa", shown="MPa")
     def greatest_compression_Pa(self) -> float:
         """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
@@ -184,13 +177,11 @@ class RootStress:
     converged: bool
     message: str
 
-    @property
     @described("Pa", shown="MPa", error="error")
     def pinion_tension_Pa(self) -> float:
         """Greatest tension on the pinion's fillets."""
         return self.pinion.greatest_tension_Pa
 
-    @property
     @described("Pa", shown="MPa", error="error")
     def wheel_tension_Pa(self) -> float:
         """Greatest tension on the wheel's fillets."""

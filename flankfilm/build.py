@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.scene.gears import DeviationsSection, GearSection, PairSection, RackSection
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
@@ -32,7 +32,7 @@ def gear_pair(scene: Scene) -> GearPair:
 
     section = scene.pair
     if section is None:
-        raise InputError([Fault("[pair]", "", "is required", "Add the section [pair]")])
+        raise InputError.at("[pair]", "", "is required", "Add the section [pair]")
     with under_keys(section, "pair"):
         first, second = (
             (STEEL, STEEL)
@@ -80,7 +80,7 @@ def _operating(scene: Scene, key: str, remedy: str) -> float:
     """Value of a key of [operating], in SI."""
     found = scene.operating.value(key) if scene.operating else None
     if found is None:
-        raise InputError([Fault(f"operating.{key}", "", "is required", remedy)])
+        raise InputError.at(f"operating.{key}", "", "is required", remedy)
     return float(found)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, LubricantSection
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
@@ -25,7 +25,7 @@ def lubricant(scene: Scene) -> Lubricant:
     """
     oil = scene.lubricant
     if oil is None:
-        raise InputError([Fault("[lubricant]", "", "is required by the film", "Add the section [lubricant]")])
+        raise InputError.at("[lubricant]", "", "is required by the film", "Add the section [lubricant]")
     with under_keys(oil, "lubricant"):
         return _graded(oil) if oil.graded else _by_numbers(oil)
 

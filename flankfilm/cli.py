@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
-from base import Fault, InputError, SolverError
+from base import InputError, SolverError
 from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
@@ -257,16 +257,12 @@ def new(scene: Path, /) -> int:
     from flankfilm.scene import template
 
     if scene.suffix != ".toml":
-        raise InputError(
-            [Fault(str(scene), "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")]
-        )
+        raise InputError.at(scene, "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")
     try:
         with scene.open("x", encoding="utf-8") as file:
             file.write(template())
     except FileExistsError as fault:
-        raise InputError(
-            [Fault(str(scene), "", "exists already and is kept", "Name another file")]
-        ) from fault
+        raise InputError.at(scene, "", "exists already and is kept", "Name another file") from fault
     print(f"{scene} is written. Next: flankfilm run {scene}")
     return 0
 

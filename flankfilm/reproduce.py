@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from base import Fault, InputError, shorten
+from base import InputError, shorten
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import LARGEST_FILE, bounded, validated
 
@@ -36,11 +36,10 @@ def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
         return read_scene(path), ()
     held = _attributes(path)
     if "design" in held:
-        allowed = "holds a study"
-        raise InputError([Fault(str(path), "", allowed, "Run its study file, or a results.nc")])
+        raise InputError.at(path, "", "holds a study", "Run its study file, or a results.nc")
     text = held.get("scene_json", "")
     if not text:
-        raise InputError([Fault(str(path), "", "holds no scene", "Name a results.nc that flankfilm wrote")])
+        raise InputError.at(path, "", "holds no scene", "Name a results.nc that flankfilm wrote")
     return _scene(text, str(path)), _differences(held)
 
 
@@ -48,7 +47,7 @@ def _attributes(path: Path) -> dict[str, str]:
     """Text attributes of a netCDF file."""
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
-        raise InputError([Fault(str(path), "", what, "Name a scene or a results.nc")])
+        raise InputError.at(path, "", what, "Name a scene or a results.nc")
     import h5py
 
     try:
@@ -57,16 +56,16 @@ def _attributes(path: Path) -> dict[str, str]:
             return {name: str(file.attrs[name])[: LARGEST_FILE + 1] for name in names if name in file.attrs}
     except (OSError, UnicodeDecodeError) as fault:
         allowed = f"cannot be read as netCDF: {shorten(str(fault))}"
-        raise InputError([Fault(str(path), "", allowed, "Name a scene or a results.nc")]) from fault
+        raise InputError.at(path, "", allowed, "Name a scene or a results.nc") from fault
 
 
 def _scene(text: str, name: str) -> Scene:
     try:
         raw = json.loads(text)
     except (ValueError, RecursionError) as fault:
-        raise InputError([Fault(name, "", "holds a damaged scene", "Name the scene file")]) from fault
+        raise InputError.at(name, "", "holds a damaged scene", "Name the scene file") from fault
     if not isinstance(raw, dict):
-        raise InputError([Fault(name, shorten(raw), "holds a damaged scene", "Name the scene file")])
+        raise InputError.at(name, shorten(raw), "holds a damaged scene", "Name the scene file")
     bounded(raw, name)
     return validated(_without_none(raw))
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from base import Array, Booleans
 
-__all__ = ["bisect"]
-
 
 def bisect(short: Callable[[Array], Booleans], low: Array, high: Array) -> Array:
     """Where a rising function reaches its target, between bounds.

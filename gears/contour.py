@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from base import Array, Fault, Faults
+from base import Array, Faults
 from gears.errors import GeometryError
-from gears.placement import mirrored, turned
+from gears.plane import mirrored, polar, turned
 from gears.profile import ToothProfile
 
 FINEST = 1e-10
@@ -132,10 +132,8 @@ def contour(
     gap = pitch - 2.0 * profile.root_half_angle
     count = profile.teeth if teeth is None else teeth
     if count * sum(len(segment.points) for segment in tooth) > MOST_POINTS:
-        fault = Fault(
-            "tolerance", f"{tolerance:g}", "must give at most 5 million points", "take a coarser tolerance"
-        )
-        raise GeometryError([fault])
+        allowed = "must give at most 5 million points"
+        raise GeometryError.at("tolerance", f"{tolerance:g}", allowed, "take a coarser tolerance")
     whole = count == profile.teeth
     first = 0.0 if whole else -0.5 * (count - 1) * pitch
     segments: list[Segment] = []
@@ -150,15 +148,15 @@ def contour(
 
 
 def _check(profile: ToothProfile, teeth: int | None, tolerance: float) -> None:
-    found = Faults()
-    if teeth is not None and not 1 <= teeth <= profile.teeth:
-        allowed = f"must be 1 to {profile.teeth}, or None"
-        found.add("teeth", str(teeth), allowed, "take teeth that the gear has")
     coarsest = 0.1 * profile.module
-    if not FINEST <= tolerance <= coarsest:
-        allowed = f"must be at least {FINEST:g} and at most {coarsest:g} m"
-        found.add("tolerance", repr(tolerance), allowed, "give it in metres (1 um is 1e-6)")
-    found.raise_if_any(GeometryError)
+    with Faults(GeometryError) as found:
+        if teeth is not None and not 1 <= teeth <= profile.teeth:
+            found.add(
+                "teeth", teeth, f"must be 1 to {profile.teeth}, or None", "take teeth that the gear has"
+            )
+        if not FINEST <= tolerance <= coarsest:
+            allowed = f"must be at least {FINEST:g} and at most {coarsest:g} m"
+            found.add("tolerance", tolerance, allowed, "give it in metres (1 um is 1e-6)")
 
 
 def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segment]:
@@ -171,10 +169,9 @@ def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segmen
         # the chamfer keeps its 45 deg: it turns with the end of the flank that the relief moves
         moved = float(profile.half_angle(profile.flank_end_radius)) - land
         land = profile.tip_half_angle - moved
-        right.append(Segment("chamfer", np.stack((end, _polar(profile.tip_radius, land)))))
+        right.append(Segment("chamfer", np.stack((end, polar(profile.tip_radius, land)))))
     if land <= 0.0:
-        fault = Fault("tip_relief.amount", "", "must leave a top land", "relieve less")
-        raise GeometryError([fault])
+        raise GeometryError.at("tip_relief.amount", "", "must leave a top land", "relieve less")
     top = _arc("land", profile.tip_radius, land, 2.0 * land)
     return [*right, top, *(segment.opposite() for segment in reversed(right))]
 
@@ -188,7 +185,7 @@ def _flank(profile: ToothProfile, tolerance: float, relief: bool) -> list[Array]
     steepest = given.amount / given.length * (2.0 if given.form == "parabolic" else 1.0)
     if steepest >= 0.5:
         allowed = "must be less than half the length of the relief (a quarter if parabolic)"
-        raise GeometryError([Fault("tip_relief.amount", f"{given.amount:g}", allowed, "relieve less")])
+        raise GeometryError.at("tip_relief.amount", f"{given.amount:g}", allowed, "relieve less")
 
     def relieved(rho: float | Array) -> Array:
         depth = np.asarray(profile.relief(rho))
@@ -255,8 +252,8 @@ def _body(profile: ToothProfile, half: float, gap: float) -> list[Segment]:
     closing = []
     if gap > 1e-12:
         closing.append(_arc("root", profile.root_radius, -half + gap, gap))
-    inner = _polar(profile.bore_radius, -half), _polar(profile.bore_radius, half)
-    outer = _polar(profile.root_radius, -half), _polar(profile.root_radius, half)
+    inner = polar(profile.bore_radius, -half), polar(profile.bore_radius, half)
+    outer = polar(profile.root_radius, -half), polar(profile.root_radius, half)
     closing.append(Segment("side", np.stack((outer[0], inner[0]))))
     closing.append(Segment("bore", np.stack(inner), angle=-2.0 * half))
     closing.append(Segment("side", np.stack((inner[1], outer[1]))))
@@ -277,10 +274,5 @@ def _closed(segments: list[Segment]) -> tuple[Segment, ...]:
 
 def _arc(part: str, radius: float, start: float, angle: float) -> Segment:
     """Anticlockwise arc from the polar angle `start`, which is measured from +y towards +x."""
-    ends = np.stack((_polar(radius, start), _polar(radius, start - angle)))
+    ends = np.stack((polar(radius, start), polar(radius, start - angle)))
     return Segment(part, ends, angle)
-
-
-def _polar(radius: float, angle: float) -> Array:
-    """Point at a polar angle from +y towards +x."""
-    return radius * np.array([math.sin(angle), math.cos(angle)])

@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 
 from base import Array, Fault, Faults
 
-__all__ = ["GearDeviations", "PitchDeviations", "ProfileDeviation"]
-
 
 def _numbers(values: ArrayLike) -> tuple[float, ...]:
     return tuple(float(value) for value in np.atleast_1d(np.asarray(values, dtype=float)).ravel())

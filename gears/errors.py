@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from base import FlankfilmWarning, InputError
 
-__all__ = ["GeometryError", "GeometryWarning", "LoadSharingError"]
-
 
 class GeometryError(InputError):
     """Gears that cannot exist or cannot run together, or values that no gear has."""

@@ -6,8 +6,6 @@ from dataclasses import dataclass, fields
 
 from base import Fault, Faults, Limit, shorten
 
-__all__ = ["LIMITS", "RELIEF_LIMITS", "Gear", "TipRelief"]
-
 RELIEF_LIMITS = {
     "amount": Limit(0.0, 1.0, "m", "give the material removed at the tip in metres"),
     "length": Limit(0.0, 1e3, "m", "give the length along the path of contact in metres", low_open=True),
@@ -51,8 +49,7 @@ class TipRelief:
 
     def faults(self, where: str) -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = Faults()
-        found.fields(self, RELIEF_LIMITS, f"{where}.")
+        found = Faults.of(self, RELIEF_LIMITS, f"{where}.")
         found.choice(f"{where}.form", self.form, ("linear", "parabolic"), "choose one of them")
         return tuple(found.found)
 
@@ -105,8 +102,7 @@ class Gear:
 
     def faults(self, where: str = "gear") -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
-        found = Faults()
-        found.fields(self, LIMITS, f"{where}.")
+        found = Faults.of(self, LIMITS, f"{where}.")
         if self.tip_relief is not None:
             found.extend(self.tip_relief.faults(f"{where}.tip_relief"))
         return tuple(found.found)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Faults
+from gears.errors import GeometryError
 from gears.gear import Gear
 from gears.involute import tangent_from_involute
 from gears.profile import ToothProfile, generate
@@ -33,7 +34,7 @@ class Findings(Faults):
     """Collects faults and warnings of a pair, in the order in which they are found."""
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__(GeometryError)
         self.warnings: list[str] = []
 
 

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Booleans, Fault, Faults, quantity, record
+from base import Array, Booleans, Faults, quantity, record
 from gears.errors import LoadSharingError
 
 _ITERATIONS = 200
@@ -144,7 +144,7 @@ def share_load(
             return LoadShare(loads, approach, tangent, slopes, iteration)
     remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
     allowed = "must have deflections that grow with the force"
-    raise LoadSharingError([Fault("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)])
+    raise LoadSharingError.at("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)
 
 
 def _coupled(bulk: Array, loads: Array) -> Array:
@@ -202,9 +202,7 @@ def _finite(prop: Array) -> Array:
     """Refuse a film that grows without bound as the force falls; every pair would carry on it."""
     if not np.all(np.isfinite(prop)):
         remedy = "bound the film's thickness as the force goes to zero"
-        raise LoadSharingError(
-            [Fault("film", "not finite at zero force", "must have a finite thickness", remedy)]
-        )
+        raise LoadSharingError.at("film", "not finite at zero force", "must have a finite thickness", remedy)
     return prop
 
 
@@ -219,28 +217,27 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
 
 def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
-    found = Faults()
-    if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
-        allowed = "must be finite, all above 0 N or all 0 N"
-        found.add("force", str(force), allowed, "give the forces' sizes")
     pairs = gaps.shape[-1:]
-    if not (
-        gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
-    ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
-        shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
-        allowed = "must be (..., pairs, pairs) and (..., pairs)"
-        found.add("bulk, gaps", shapes, allowed, "give one row for each pair")
-    if not np.all(gaps >= 0.0):
-        remedy = "measure from the pair that touches"
-        found.add("gaps", "negative or not a number", "must be at least 0 m, or inf", remedy)
-    elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
-        found.add("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
-    if not np.all((levers > 0.0) & np.isfinite(levers)):
-        remedy = "reduce the friction, which tilts a force past the axis"
-        found.add("levers", "not above 0", "must be finite and more than 0", remedy)
-    if not np.all(np.isfinite(bulk)):
-        found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
-    found.raise_if_any(LoadSharingError)
+    with Faults(LoadSharingError) as found:
+        if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
+            allowed = "must be finite, all above 0 N or all 0 N"
+            found.add("force", str(force), allowed, "give the forces' sizes")
+        if not (
+            gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
+        ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
+            shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
+            allowed = "must be (..., pairs, pairs) and (..., pairs)"
+            found.add("bulk, gaps", shapes, allowed, "give one row for each pair")
+        if not np.all(gaps >= 0.0):
+            remedy = "measure from the pair that touches"
+            found.add("gaps", "negative or not a number", "must be at least 0 m, or inf", remedy)
+        elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
+            found.add("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
+        if not np.all((levers > 0.0) & np.isfinite(levers)):
+            remedy = "reduce the friction, which tilts a force past the axis"
+            found.add("levers", "not above 0", "must be finite and more than 0", remedy)
+        if not np.all(np.isfinite(bulk)):
+            found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
 
 
 def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None = None) -> LoadShare:
@@ -275,16 +272,15 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     """
     teeth = np.asarray(stiffness, dtype=float)
     films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
-    found = Faults()
     sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
-    if not (sound and np.isfinite(force) and force >= 0.0):
-        allowed = "must be finite and at least 0 (a film may be inf)"
-        found.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
     carries = (teeth > 0.0) & (films > 0.0)
-    if not np.all(carries.any(axis=-1)):
-        allowed = "must have a pair that carries at each position"
-        found.add("stiffness", "zero for every pair", allowed, "add pairs")
-    found.raise_if_any(LoadSharingError)
+    with Faults(LoadSharingError) as found:
+        if not (sound and np.isfinite(force) and force >= 0.0):
+            allowed = "must be finite and at least 0 (a film may be inf)"
+            found.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
+        if not np.all(carries.any(axis=-1)):
+            allowed = "must have a pair that carries at each position"
+            found.add("stiffness", "zero for every pair", allowed, "add pairs")
     compliance = 1.0 / np.where(carries, teeth, 1.0) + 1.0 / np.where(carries, films, 1.0)
     series = np.where(carries, 1.0 / compliance, 0.0)
     total = series.sum(axis=-1)

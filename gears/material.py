@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from base import Fault, Faults, Limit
 
-__all__ = ["LIMITS", "STEEL", "Material", "reduced_modulus"]
-
 LIMITS = {
     "youngs_modulus": Limit(1e6, 1e13, "Pa", "give the modulus in pascals (steel 206e9)"),
     "poisson_ratio": Limit(0.0, 0.4999, remedy="give Poisson's ratio of a compressible solid (steel 0.3)"),
@@ -55,9 +53,7 @@ class Material:
 
     def faults(self, where: str = "material") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = Faults()
-        found.fields(self, LIMITS, f"{where}.")
-        return tuple(found.found)
+        return tuple(Faults.of(self, LIMITS, f"{where}.").found)
 
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from base import Array, Fault, quantity, record
+from base import Array, quantity, record
 from gears.errors import GeometryError
 from gears.pair import GearPair
-from gears.placement import mirrored, turned
+from gears.plane import mirrored, turned
 from gears.polygon import tooth_side
 from gears.profile import ToothProfile
 
@@ -75,7 +75,7 @@ def check_meshing(pair: GearPair, positions: int = 21) -> MeshingCheck:
     True
     """
     if positions < 2:
-        raise GeometryError([Fault("positions", str(positions), "must be at least 2", "raise it")])
+        raise GeometryError.at("positions", positions, "must be at least 2", "raise it")
     points, (first, second) = pair.points, pair.teeth_profiles
     middle = pair.placement(points.C).pinion_angle
     start, end = (points.A - points.C) / first.base_radius, (points.E - points.C) / first.base_radius

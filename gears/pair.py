@@ -7,7 +7,7 @@ import math
 import warnings
 from dataclasses import dataclass
 
-from base import Fault, Limit, view
+from base import Faults, Limit, view
 from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
 from gears.guards import Findings, check_gear, check_mesh
@@ -87,7 +87,7 @@ class GearPair(PairGeometry):
                     check_gear(found, name, gear, self.module, self.rack)
         if not found.found:
             check_mesh(found, self)
-        found.raise_if_any(GeometryError)
+        found.raise_if_any()
         for message in found.warnings:
             warnings.warn(message, GeometryWarning, stacklevel=3)
 
@@ -132,13 +132,11 @@ class GearPair(PairGeometry):
             The same pair with new thickness allowances (those it had are replaced).
         """
         least = self._nominal_backlash
-        found = BACKLASH.faults("backlash", normal_backlash)
-        if not found and normal_backlash < least:
-            allowed = f"must be at least {least:.6g} m, which the centre distance gives"
-            remedy = "ask for more, or reduce the centre distance"
-            found = (Fault("backlash", f"{normal_backlash!r}", allowed, remedy),)
-        if found:
-            raise GeometryError(found)
+        with Faults(GeometryError) as found:
+            if found.number("backlash", normal_backlash, BACKLASH) < least:
+                allowed = f"must be at least {least:.6g} m, which the centre distance gives"
+                remedy = "ask for more, or reduce the centre distance"
+                found.add("backlash", normal_backlash, allowed, remedy)
         allowance = 0.5 * (normal_backlash - least) / math.cos(self.rack.alpha)
         return dataclasses.replace(
             self,

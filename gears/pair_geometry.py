@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from base import Array, Fault, Figure, described
+from base import Array, Figure, described
 from gears.errors import GeometryError
 from gears.gear import Gear
 from gears.involute import involute_function, tangent_from_involute
@@ -48,43 +48,36 @@ class PairGeometry:
         first, second = (getattr(tooth, name) for tooth in self.teeth_profiles)
         return first, second
 
-    @property
     @described("m", "gear", shown="mm")
     def reference_radii(self) -> tuple[float, float]:
         """Reference radius, r = m z / 2."""
         return self._of_both("reference_radius")
 
-    @property
     @described("m", "gear", shown="mm")
     def base_radii(self) -> tuple[float, float]:
         """Base radius, r_b = r cos alpha."""
         return self._of_both("base_radius")
 
-    @property
     @described("m", "gear", shown="mm")
     def root_radii(self) -> tuple[float, float]:
         """Root radius, r_f = r - m (h_fP - x)."""
         return self._of_both("root_radius")
 
-    @property
     @described("m", "gear", shown="mm")
     def tip_radii(self) -> tuple[float, float]:
         """Tip radius, r_a = r + m (h_aP + x + k)."""
         return self._of_both("tip_radius")
 
-    @property
     @described("m", "gear", shown="mm")
     def form_radii(self) -> tuple[float, float]:
         """Form radius, at which the involute starts."""
         return self._of_both("form_radius")
 
-    @property
     @described("m", "gear", shown="mm")
     def bore_radii(self) -> tuple[float, float]:
         """Bore radius, half the root radius where none was given."""
         return self._of_both("bore_radius")
 
-    @property
     @described("1")
     def ratio(self) -> float:
         """Gear ratio, z2 / z1."""
@@ -107,27 +100,23 @@ class PairGeometry:
         teeth = self.pinion.teeth + self.wheel.teeth
         return 2.0 * shifts / teeth * tangent + float(involute_function(tangent))
 
-    @property
     @described("rad", shown="deg")
     def working_pressure_angle(self) -> float:
         """Working pressure angle, alpha_w."""
         return math.atan(self._working_tangent)
 
-    @cached_property
-    @described("m", shown="mm")
+    @described("m", shown="mm", kept=True)
     def working_centre_distance(self) -> float:
         """Centre distance, a = (r_b1 + r_b2) / cos alpha_w."""
         if self.centre_distance is not None:
             return float(self.centre_distance)
         return sum(self.base_radii) * math.hypot(1.0, self._working_tangent)
 
-    @property
     @described("m", shown="mm")
     def line_of_action(self) -> float:
         """Line of action, between the base circles' tangent points: rho1 + rho2 = a sin alpha_w."""
         return sum(self.base_radii) * self._working_tangent
 
-    @property
     @described("m", "gear", shown="mm")
     def pitch_radii(self) -> tuple[float, float]:
         """Working pitch radius, r_b / cos alpha_w."""
@@ -135,7 +124,6 @@ class PairGeometry:
         scale = math.hypot(1.0, self._working_tangent)
         return first * scale, second * scale
 
-    @property
     @described("m", shown="mm")
     def base_pitch(self) -> float:
         """Base pitch, p_b = pi m cos alpha."""
@@ -150,14 +138,12 @@ class PairGeometry:
         pitch = self.base_radii[0] * self._working_tangent
         return PathPoints(A=start, B=end - self.base_pitch, C=pitch, D=start + self.base_pitch, E=end)
 
-    @property
     @described("1")
     def contact_ratio(self) -> float:
         """Transverse contact ratio, length of the path over the base pitch."""
         return (self.points.E - self.points.A) / self.base_pitch
 
-    @cached_property
-    @described("m", shown="um")
+    @described("m", shown="um", kept=True)
     def backlash(self) -> float:
         """Normal backlash, along the line of action.
 
@@ -219,16 +205,12 @@ class PairGeometry:
         total = self.line_of_action
         if not np.all((first >= 0.0) & (first <= total)):
             allowed = f"must be finite, at least 0 and at most {total:.6g} m (the line of action)"
-            fault = Fault(
-                "rho1", f"{np.min(first):g} .. {np.max(first):g}", allowed, "stay on the line of action"
-            )
-            raise GeometryError([fault])
+            span = f"{np.min(first):g} .. {np.max(first):g}"
+            raise GeometryError.at("rho1", span, allowed, "stay on the line of action")
         return PathOfContact(first, total - first, self.points.A, self.base_radii)
 
     def path_of_contact(self, n: int = 9) -> PathOfContact:
         """Path of contact at `n` equally spaced points from A to E, both included."""
         if n < 2:
-            raise GeometryError(
-                [Fault("n", str(n), "must be at least 2 points", "A and E are both included")]
-            )
+            raise GeometryError.at("n", n, "must be at least 2 points", "A and E are both included")
         return self.path_at(np.linspace(self.points.A, self.points.E, n))

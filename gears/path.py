@@ -56,13 +56,11 @@ class PathOfContact:
         ends = f"{1e3 * self.rho1.min():.4g} to {1e3 * self.rho1.max():.4g}"
         return f"PathOfContact({self.rho1.size} points, rho1 {ends} mm)"
 
-    @property
     @described("m", "point", shown="mm")
     def position(self) -> Array:
         """Distance from A along the line of action."""
         return np.asarray(self.rho1 - self.start)
 
-    @property
     @described("m", "point", shown="mm")
     def radius(self) -> Array:
         """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2)."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, quantity, record
+from gears.plane import turned
 
 if TYPE_CHECKING:
     from gears.pair_geometry import PairGeometry
@@ -47,18 +48,6 @@ class Placement:
     def wheel_direction(self, vectors: Array) -> Array:
         """Vectors (n, 2) of the wheel's tooth frame, such as normals, in the common frame."""
         return turned(vectors, self.wheel_angle)
-
-
-def turned(points: Array, angle: float) -> Array:
-    """Points or vectors (n, 2) turned anticlockwise about the origin by `angle` [rad]."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    x, y = points[..., 0], points[..., 1]
-    return np.stack((cosine * x - sine * y, sine * x + cosine * y), axis=-1)
-
-
-def mirrored(points: Array) -> Array:
-    """Left-hand counterpart of points or vectors (n, 2) of the right-hand side of a tooth."""
-    return np.asarray(points * np.array([-1.0, 1.0]))
 
 
 def place(pair: PairGeometry, rho1: float) -> Placement:

@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Faults
 from gears.errors import GeometryError
-from gears.placement import mirrored, turned
+from gears.plane import mirrored, polar, turned
 from gears.profile import ToothProfile
 
 
@@ -81,13 +81,13 @@ def outline(
     (66, 2)
     """
     count = profile.teeth if teeth is None else teeth
-    found = Faults()
-    if not 1 <= count <= profile.teeth:
-        allowed = f"must be 1 to {profile.teeth}, or None"
-        found.add("teeth", str(count), allowed, "draw teeth that the gear has")
-    if points_per_part < 2:
-        found.add("points_per_part", str(points_per_part), "must be at least 2", "raise it")
-    found.raise_if_any(GeometryError)
+    with Faults(GeometryError) as found:
+        if not 1 <= count <= profile.teeth:
+            found.add(
+                "teeth", count, f"must be 1 to {profile.teeth}, or None", "draw teeth that the gear has"
+            )
+        if points_per_part < 2:
+            found.add("points_per_part", points_per_part, "must be at least 2", "raise it")
     right = tooth_side(profile, points_per_part, relief_scale)
     # the middle of the land and one of the two gap middles belong to both sides or to the next tooth
     tooth = np.concatenate((right, mirrored(right[-2:0:-1])))
@@ -103,5 +103,4 @@ def outline(
 
 def _arc(radius: float, start: float, end: float, points: int) -> Array:
     """Points of an arc between polar angles measured from +y towards +x."""
-    angle = np.linspace(start, end, points)
-    return radius * np.stack((np.sin(angle), np.cos(angle)), axis=-1)
+    return polar(radius, np.linspace(start, end, points))

@@ -10,6 +10,7 @@ import numpy as np
 from base import Array
 from gears.gear import Gear, TipRelief
 from gears.involute import involute_function
+from gears.plane import polar
 from gears.rack import BasicRack
 from gears.trochoid import Trochoid, form_point
 
@@ -165,7 +166,7 @@ class ToothProfile:
         start = self.involute(self.flank_rho[1])
         if self.flank_end_radius == self.tip_radius:
             return np.asarray(np.broadcast_to(start, (*along.shape[:-1], 2)).copy())
-        end = self.tip_radius * np.array([math.sin(self.tip_half_angle), math.cos(self.tip_half_angle)])
+        end = polar(self.tip_radius, self.tip_half_angle)
         return np.asarray((1.0 - along) * start + along * end)
 
     def relief(self, rho: float | Array) -> Array:

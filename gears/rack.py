@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from base import Fault, Faults, Limit
 
-__all__ = ["ISO_53_A", "LIMITS", "BasicRack"]
-
 LIMITS = {
     "h_aP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.0", low_open=True),
     "h_fP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.25", low_open=True),
@@ -79,8 +77,7 @@ class BasicRack:
 
     def faults(self, where: str = "rack") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = Faults()
-        found.fields(self, LIMITS, f"{where}.")
+        found = Faults.of(self, LIMITS, f"{where}.")
         if not found.found and self.largest_fillet_radius <= 0.0:
             deepest = math.pi / 4.0 / math.tan(self.alpha)
             allowed = f"must be less than {deepest:.6g} modules at this pressure angle"

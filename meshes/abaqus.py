@@ -15,8 +15,6 @@ import numpy as np
 from base import Integers
 from meshes.annulus import GearMesh
 
-__all__ = ["mesh_text", "number", "set_names"]
-
 DIGITS = ".13e"
 
 

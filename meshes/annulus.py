@@ -7,10 +7,9 @@ from types import MappingProxyType
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers, record
+from base import Array, InputError, Integers, record
+from gears.plane import turned
 from meshes.sector import SectorMesh
-
-__all__ = ["GearMesh", "gear_mesh"]
 
 
 @record
@@ -45,12 +44,6 @@ class GearMesh:
         """Numbers of the teeth, growing."""
         found: list[int] = np.unique(self.tooth).tolist()
         return found
-
-
-def turned(points: Array, angle: float) -> Array:
-    """Points (n, 2) turned anticlockwise about the origin by an angle [rad]."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.asarray(points @ np.array([[c, s], [-s, c]]))
 
 
 def gear_mesh(
@@ -105,8 +98,8 @@ def gear_mesh(
             side = mesh.side_nodes(mine)
             already = np.concatenate(points)[theirs] if len(side) == len(theirs) else np.empty((0, 2))
             if len(already) == 0 or not np.allclose(place[side], already, rtol=0, atol=1e-9 * mesh.module):
-                raise InputError(
-                    [Fault(f"tooth {k}", "cut of other nodes", "must have matching cuts", "use equal sizes")]
+                raise InputError.at(
+                    f"tooth {k}", "cut of other nodes", "must have matching cuts", "use equal sizes"
                 )
             number[side] = theirs
         fresh = np.flatnonzero(number < 0)

@@ -20,8 +20,6 @@ from meshes.annulus import GearMesh
 if TYPE_CHECKING:
     import meshio
 
-__all__ = ["FORMATS", "Format", "as_meshio", "write_blocks", "write_by_meshio"]
-
 
 @dataclass(frozen=True)
 class Format:

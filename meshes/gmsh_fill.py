@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers
+from base import Array, InputError, Integers
 from meshes.gmsh_session import gmsh_session
 from meshes.outline import crossing
-
-__all__ = ["triangulate"]
 
 
 def triangulate(polygon: Array) -> tuple[Array, Integers]:
@@ -35,20 +33,20 @@ def triangulate(polygon: Array) -> tuple[Array, Integers]:
     """
     if not np.all(np.isfinite(polygon)):
         remedy = "check the tooth's profile"
-        raise InputError([Fault("outline", "nan or inf", "must have finite coordinates", remedy)])
+        raise InputError.at("outline", "nan or inf", "must have finite coordinates", remedy)
     cut = crossing(polygon)
     if cut is not None:
         where = polygon[cut[0]]
         crossed = f"edges {cut[0]} and {cut[1]} cross near ({where[0]:g}, {where[1]:g})"
         remedy = "use smaller elements, or check the tooth's profile and the bore"
-        raise InputError([Fault("outline", crossed, "must not cut itself", remedy)])
+        raise InputError.at("outline", crossed, "must not cut itself", remedy)
     scale = float(np.max(np.ptp(polygon, axis=0)))
     # rounded, so that gears which differ in size alone get the same triangles whatever the last bit is
     shape = np.round(polygon / scale, 9)
     points, triangles = _fill(shape)
     if not np.allclose(points[: len(polygon)], shape, rtol=0, atol=1e-13):
         allowed = "must keep its nodes in place"
-        raise InputError([Fault("outline", "moved by gmsh", allowed, "use smaller elements")])
+        raise InputError.at("outline", "moved by gmsh", allowed, "use smaller elements")
     points *= scale
     points[: len(polygon)] = polygon
     a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]

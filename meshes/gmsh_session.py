@@ -9,9 +9,7 @@ from contextlib import contextmanager
 from itertools import count
 from typing import Any
 
-from base import Fault, InputError, unclocked
-
-__all__ = ["gmsh_session"]
+from base import InputError, unclocked
 
 _one_at_a_time = threading.Lock()  # gmsh keeps one state per process
 _names = count()
@@ -62,5 +60,5 @@ def _load_gmsh() -> Any:
     except OSError as fault:
         packages = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
         remedy = f"on Debian or Ubuntu: sudo apt-get install --no-install-recommends {packages}"
-        raise InputError([Fault("gmsh", str(fault), "requires shared libraries", remedy)]) from fault
+        raise InputError.at("gmsh", str(fault), "requires shared libraries", remedy) from fault
     return gmsh

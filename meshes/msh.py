@@ -10,8 +10,6 @@ from base import replacing
 from meshes.annulus import GearMesh
 from meshes.gmsh_session import gmsh_session
 
-__all__ = ["write_msh"]
-
 LINE3, TRIANGLE6 = 8, 9
 """gmsh's numbers of second-order lines (first, last, middle) and triangles (corners, middles of 01, 12, 20)."""
 

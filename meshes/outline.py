@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Faults, Limit
+from gears.plane import polar
 
 if TYPE_CHECKING:
     from gears import ToothProfile
 
-__all__ = ["Curve", "Sizes", "cut", "sector_curves"]
 
-
-LENGTH = Limit(0.0, unit="modules", low_open=True, remedy="give a positive edge length")
-LAYER_GROWTH = Limit(1.0, remedy="layers grow towards the bore")
+_LENGTH = Limit(0.0, unit="modules", low_open=True, remedy="give a positive edge length")
+_LIMITS = dict.fromkeys(("flank", "fillet", "root", "top", "corner", "rim", "growth"), _LENGTH) | {
+    "layer_growth": Limit(1.0, remedy="layers grow towards the bore")
+}
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,7 @@ class Sizes:
 
     def __post_init__(self) -> None:
         """Refuse lengths that are not positive."""
-        found = Faults()
-        for name, value in vars(self).items():
-            found.number(f"sizes.{name}", value, LAYER_GROWTH if name == "layer_growth" else LENGTH)
-        found.raise_if_any()
+        Faults.of(self, _LIMITS, "sizes.").raise_if_any()
 
     def scaled(self, factor: float) -> Sizes:
         """Sizes of a similar mesh with all edges longer by a factor."""
@@ -92,11 +90,6 @@ class Curve:
     end: float
     at: Callable[[Array], Array]
     size: Callable[[Array], Array]
-
-
-def polar(radius: float | Array, angle: float | Array) -> Array:
-    """Point(s) at a polar angle from the tooth's centre line, positive to the right (x > 0)."""
-    return np.stack(np.broadcast_arrays(radius * np.sin(angle), radius * np.cos(angle)), axis=-1)
 
 
 def cut(curve: Curve, samples: int = 400) -> Array:

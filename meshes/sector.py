@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Fault, InputError, Integers, record
+from base import Array, InputError, Integers, record
+from gears.plane import polar
 from meshes.gmsh_fill import triangulate
-from meshes.outline import Curve, Sizes, cut, polar, sector_curves
+from meshes.outline import Curve, Sizes, cut, sector_curves
 from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
     from gears import ToothProfile
-
-__all__ = ["SectorMesh", "mesh_sector", "refined"]
 
 
 @record
@@ -204,7 +203,7 @@ def _second_order(
         found = np.searchsorted(unique, low * len(corners) + high)
         if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
             allowed = "must keep every edge of the outline"
-            raise InputError([Fault(name, "edges lost", allowed, "use smaller elements")])
+            raise InputError.at(name, "edges lost", allowed, "use smaller elements")
         points[len(corners) + found] = curves[name].at(t.mean(axis=1))
         facets[name] = np.column_stack([nodes, len(corners) + found])
         parameters[name] = t
@@ -229,7 +228,7 @@ def _refuse_inverted(points: Array, triangles: Integers) -> None:
         x, y = points[triangles[bad[0], :3]].mean(axis=0)
         found = f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})"
         remedy = "use smaller elements on curved boundaries"
-        raise InputError([Fault("elements", found, "must have positive Jacobians", remedy)])
+        raise InputError.at("elements", found, "must have positive Jacobians", remedy)
 
 
 def refined(mesh: SectorMesh) -> SectorMesh:

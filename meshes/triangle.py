@@ -6,8 +6,6 @@ import numpy as np
 
 from base import Array
 
-__all__ = ["NODES", "shape", "shape_gradients"]
-
 NODES: Array = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
 """Reference coordinates of the six nodes."""
 

@@ -11,8 +11,6 @@ from pathlib import Path
 
 from flankfilm.bench.case import Levels, case, work
 
-__all__ = ["work_application"]
-
 STUDY = """
 title = "Geometry"
 scene = "scene.toml"

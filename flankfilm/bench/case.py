@@ -13,24 +13,6 @@ from numpy.typing import ArrayLike
 
 from base import Array
 
-__all__ = [
-    "Answer",
-    "Case",
-    "Level",
-    "Levels",
-    "PeerWork",
-    "Series",
-    "Value",
-    "answer",
-    "case",
-    "level",
-    "over",
-    "percent",
-    "true_error",
-    "value",
-    "work",
-]
-
 P = ParamSpec("P")
 
 

@@ -12,8 +12,6 @@ from flankfilm.bench.gear_cases import gears, mesh
 from flankfilm.bench.motion_cases import motions
 from flankfilm.bench.stiffness_cases import compliances, contacts, root_stress
 
-__all__ = ["SOLVERS", "Builder"]
-
 Builder = Callable[[bool], tuple[Case, ...]]
 """Gives a solver's cases; true asks for few and coarse levels."""
 

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from base import Array, Integers
     from meshes import SectorMesh
 
-__all__ = ["elements"]
 
 ORDERS = {"P1": 1.0, "P2 straight": 1.0, "P2 curved": 2.0, "P3 curved": 3.0}
 """Of the error, by the kind of element; the finest solution is of the last."""

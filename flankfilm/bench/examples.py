@@ -12,16 +12,6 @@ if TYPE_CHECKING:
     from ehl import LineContact
     from gears import GearPair
 
-__all__ = [
-    "DOMAIN",
-    "PERIODS",
-    "START",
-    "TORQUE",
-    "contacts_along_path",
-    "example_pair",
-    "oscillator",
-    "pitch_point",
-]
 
 TORQUE = 600.0
 START = (0.5, 0.2)

@@ -25,7 +25,6 @@ from flankfilm.bench.work_cases import work_film
 if TYPE_CHECKING:
     from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer
 
-__all__ = ["films"]
 
 THICKNESS, STIFFNESS = "central and least film", "film stiffness (approach)"
 ORDERS = {THICKNESS: 2.0, STIFFNESS: 2.0}

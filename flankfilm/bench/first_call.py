@@ -15,8 +15,6 @@ from time import process_time
 
 from flankfilm.bench.process import output_of
 
-__all__ = ["FirstCall", "first_call"]
-
 
 @dataclass(frozen=True)
 class FirstCall:

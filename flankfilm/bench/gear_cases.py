@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from gears import GearPair
     from meshes import SectorMesh
 
-__all__ = ["FORMS", "gears", "independent_pairs", "mesh"]
 
 FORMS = {
     "ishikawa": "Ishikawa",

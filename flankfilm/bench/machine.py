@@ -9,8 +9,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Machine", "busy", "load", "this_machine"]
-
 LIBRARIES = ("flankfilm", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 

@@ -16,8 +16,6 @@ import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Level, true_error
 
-__all__ = ["CaseResult", "Row", "Timing", "gain", "measure", "quiet", "steps", "timed"]
-
 LEAST_TOTAL = 0.02
 """Work is repeated until this many seconds have passed: short work needs more repeats for its minimum."""
 

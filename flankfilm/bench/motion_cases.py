@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from dynamics.exponents import LyapunovResult
     from dynamics.sweeps import SweepResult
 
-__all__ = ["motions"]
 
 MANY = 1000
 STATE = "state"

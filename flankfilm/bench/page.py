@@ -18,8 +18,6 @@ from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
 from flankfilm.report.page import Drawing, Fact, Headline, Part, Table, render
 
-__all__ = ["write_page"]
-
 LEAD = (
     "Processor time and relative error of every solver on this machine: true errors against the finest solution, "
     "beside the solvers' own estimates."

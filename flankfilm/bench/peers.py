@@ -17,8 +17,6 @@ from typing import Any
 from flankfilm.bench.case import Case, PeerWork, Value, true_error, value
 from flankfilm.bench.process import LONGEST, output_of
 
-__all__ = ["PeerRow", "ask"]
-
 MAIN = Path(__file__).with_name("peer_scripts") / "main.py"
 
 

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-__all__ = ["LONGEST", "output_of"]
-
 LONGEST = 300.0
 """Seconds after which a process is stopped."""
 

@@ -24,7 +24,6 @@ from flankfilm.bench.examples import DOMAIN
 if TYPE_CHECKING:
     from ehl import LineContact
 
-__all__ = ["LADDER", "fastest_factors", "relaxed"]
 
 LADDER = ((0.8, 0.2), (0.6, 0.1), (0.6, 0.05), (0.4, 0.02), (0.2, 0.02), (0.1, 0.005), (0.05, 0.001))
 """Factors of the pressure's and of the separation's changes."""

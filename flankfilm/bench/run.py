@@ -18,8 +18,6 @@ from flankfilm.bench.peers import PeerRow, ask
 from flankfilm.folder import claim
 from flankfilm.progress import Progress, in_steps, silent
 
-__all__ = ["COMPILED", "REPEAT", "Bench", "bench"]
-
 REPEAT = {False: 3, True: 2}
 """Timed runs of each level, in full and quick."""
 

@@ -9,8 +9,6 @@ import numpy as np
 from flankfilm.bench.case import Answer, Case, Levels, Series, case, level, value
 from flankfilm.bench.examples import PERIODS, START, oscillator
 
-__all__ = ["laws", "stepwise"]
-
 MANY = 200
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14)
 

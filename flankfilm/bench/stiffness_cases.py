@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from fem import Compliance, Fillets, MeshCycle, RootStress
     from gears import GearPair
 
-__all__ = ["compliances", "contacts", "root_stress"]
 
 POSITIONS = 40
 MEAN, SPREAD, SINGLE = "mean mesh stiffness", "transmission error, peak to peak", "one pair, 39 places"

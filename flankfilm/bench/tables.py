@@ -18,17 +18,6 @@ from flankfilm.output.files import write_csv, write_text
 if TYPE_CHECKING:
     from rich.table import Table
 
-__all__ = [
-    "Summary",
-    "clock",
-    "number",
-    "read_bench",
-    "remarks",
-    "summaries",
-    "summary_cells",
-    "terminal",
-    "write_tables",
-]
 
 ROUNDING = 1e-14
 """True errors below this are rounding, which no estimate is about."""

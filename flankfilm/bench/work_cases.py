@@ -15,8 +15,6 @@ from flankfilm.bench.examples import TORQUE, contacts_along_path, example_pair, 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["work_contact", "work_film", "work_geometry", "work_motion"]
-
 
 @case("Pair and load sharing", "positions")
 def work_geometry() -> Levels:

@@ -57,25 +57,21 @@ class MeshCycle:
     converged: bool = True
     message: str = ""
 
-    @property
     @described("N/m", error="mean_error")
     def mean_secant_stiffness(self) -> float:
         """Mean mesh stiffness (secant)."""
         return float(self.secant_stiffness.mean())
 
-    @property
     @described("N/m", error="mean_error")
     def mean_stiffness(self) -> float:
         """Mean mesh stiffness (tangent)."""
         return float(self.stiffness.mean())
 
-    @property
     @described("m", shown="um")
     def transmission_error_range(self) -> float:
         """Transmission error, peak to peak."""
         return float(np.ptp(self.transmission_error))
 
-    @property
     @described("1")
     def mean_error(self) -> float | None:
         """Estimated relative numerical error of the mean secant stiffness: of the positions and of their number."""

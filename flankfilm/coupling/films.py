@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from base import Array, Fault, Faults, InputError, SolverError
+from base import Array, Faults, InputError, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 
@@ -62,13 +62,11 @@ class FilmModel:
 
     def __post_init__(self) -> None:
         """Check that the parts go together."""
-        faults = Faults()
-        faults.choice("film.name", self.name, ("ehl", "dowson"))
-        if self.name == "dowson":
+        with Faults() as faults:
+            faults.choice("film.name", self.name, ("ehl", "dowson"))
             for part, allowed in (("supply", "flooded contacts"), ("roughness", "smooth flanks")):
-                if getattr(self, part) is not None:
+                if self.name == "dowson" and getattr(self, part) is not None:
                     faults.add(f"film.{part}", "", f"requires solved films; formulas are of {allowed}")
-        faults.raise_if_any()
 
     @property
     def stiffness(self) -> str:
@@ -98,7 +96,7 @@ class FilmModel:
         if isinstance(held, Meniscus) and -held.position <= contact.half_width:
             allowed = f"must be more than {contact.half_width:.4g} m, the half-width of a contact on the path"
             remedy = "nearer in no film forms; move it out, or give its place in half-widths"
-            raise InputError([Fault("meniscus", f"{-held.position:g}", allowed, remedy)])
+            raise InputError.at("meniscus", f"{-held.position:g}", allowed, remedy)
         return held
 
 

@@ -82,19 +82,16 @@ class SpeedDiagram:
     converged: bool
     message: str
 
-    @property
     @described("1", "jump")
     def jump_frequency(self) -> Array:
         """Frequencies at which a stable motion ends in a saddle node."""
         return np.array([jump.frequency for jump in self.jumps])
 
-    @property
     @described("1", "jump")
     def jump_error(self) -> Array:
         """Relative errors of the jump speeds; nan for an oscillator in its own units."""
         return np.array([jump.error if jump.budget else np.nan for jump in self.jumps])
 
-    @property
     @described("rad/s", "jump", shown="rpm", error="jump_error")
     def jump_speed(self) -> Array | None:
         """Pinion speeds at which a stable motion ends; None for an oscillator in its own units."""

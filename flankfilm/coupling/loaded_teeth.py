@@ -85,10 +85,9 @@ class LoadedTeeth:
 
     def __post_init__(self) -> None:
         """Check the names of the models."""
-        faults = Faults()
-        faults.choice("model", self.model, tuple(MODELS))
-        faults.choice("pairs", self.pairs, ("coupled", "independent"))
-        faults.raise_if_any()
+        with Faults() as faults:
+            faults.choice("model", self.model, tuple(MODELS))
+            faults.choice("pairs", self.pairs, ("coupled", "independent"))
 
     @property
     def force(self) -> float:

@@ -82,13 +82,11 @@ class FilmAlongPath:
     converged: bool = True
     message: str = ""
 
-    @property
     @described("m", shown="um", error="error")
     def least_film(self) -> float:
         """Least film along the path."""
         return float(self.minimum_thickness.min())
 
-    @property
     @described("Pa", shown="GPa")
     def greatest_pressure(self) -> float:
         """Largest Hertz pressure along the path."""
@@ -117,19 +115,16 @@ class LubricatedCycle(MeshCycle):
         "the mesh with other films, by name; empty unless films are starved"
     )
 
-    @property
     @described("m", shown="um")
     def thinnest_film(self) -> float:
         """Least film of all pairs and positions."""
         return float(np.nanmin(self.least_film))
 
-    @property
     @described("1", shown="%")
     def secant_stiffness_change(self) -> float:
         """What the film changes the mean secant stiffness by, relative."""
         return float(self.secant_stiffness.mean() / self.dry.secant_stiffness.mean() - 1)
 
-    @property
     @described("1", shown="%")
     def stiffness_change(self) -> float:
         """What the film changes the mean tangent stiffness by, relative."""

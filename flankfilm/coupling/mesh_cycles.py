@@ -96,9 +96,8 @@ def checked(tolerance: float, **positive: float) -> float:
     InputError
         With every fault.
     """
-    faults = Faults()
-    faults.number("tolerance", tolerance, Limit(0.0, 0.4, low_open=True, remedy="such as 0.005"))
-    for name, value in positive.items():
-        faults.number(name, value, Limit(0.0, low_open=True))
-    faults.raise_if_any()
+    with Faults() as faults:
+        faults.number("tolerance", tolerance, Limit(0.0, 0.4, low_open=True, remedy="such as 0.005"))
+        for name, value in positive.items():
+            faults.number(name, value, Limit(0.0, low_open=True))
     return tolerance

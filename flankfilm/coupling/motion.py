@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Cost, Fault, InputError, Stopwatch, part, quantity, record, unclocked
+from base import Array, Cost, InputError, Stopwatch, part, quantity, record, unclocked
 from flankfilm.coupling.oscillator import PairOscillator
 
 if TYPE_CHECKING:
@@ -154,13 +154,11 @@ def frequencies_of(
         Where both are given, or neither; for speeds of an oscillator in its own units.
     """
     if (speed is None) == (frequency is None):
-        raise InputError([Fault("speed", "", "or frequency must be given, one of both")])
+        raise InputError.at("speed", "", "or frequency must be given, one of both")
     if frequency is not None:
         return np.asarray(frequency, dtype=np.float64), None
     if motion.scales is None:
-        raise InputError(
-            [Fault("speed", "", "requires an oscillator with physical scales", "give frequency")]
-        )
+        raise InputError.at("speed", "", "requires an oscillator with physical scales", "give frequency")
     speeds = np.asarray(speed, dtype=np.float64)
     return np.array([motion.scales.frequency(one) for one in speeds.tolist()]), speeds
 

@@ -47,25 +47,21 @@ class PairOscillator:
         """Relative error of the mean stiffness; None where it is unknown."""
         return None if self.series.cycle is None else self.series.cycle.mean_error
 
-    @property
     @described("1")
     def mean_force(self) -> float:
         """Mean force F_m."""
         return self.oscillator.mean_force
 
-    @property
     @described("1")
     def half_backlash(self) -> float:
         """Half the backlash D."""
         return self.oscillator.half_backlash
 
-    @property
     @described("1")
     def frequency(self) -> float:
         """Mesh frequency omega over the natural one."""
         return self.oscillator.frequency
 
-    @property
     @described("Hz")
     def natural_frequency(self) -> float | None:
         """Natural frequency; None for an oscillator in its own units."""

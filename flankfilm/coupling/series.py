@@ -48,55 +48,46 @@ class MeshSeries:
     converged: bool = True
     message: str = ""
 
-    @property
     @described("N/m")
     def mean(self) -> float:
         """Mean of the stiffness."""
         return self.stiffness.mean
 
-    @property
     @described("N/m", "harmonic")
     def amplitude(self) -> Array:
         """Amplitude of cos(j omega tau + phase)."""
         return np.array(self.stiffness.amplitudes)
 
-    @property
     @described("rad", "harmonic")
     def phase(self) -> Array:
         """Phase; tau = 0 when a pair is at A."""
         return np.array(self.stiffness.phases)
 
-    @property
     @described("N/m")
     def other_mean(self) -> float | None:
         """Mean of the stiffness of the other kind."""
         return None if self.other is None else self.other.stiffness.mean
 
-    @property
     @described("N/m", "harmonic")
     def other_amplitude(self) -> Array | None:
         """Amplitude of the stiffness of the other kind."""
         return None if self.other is None else np.array(self.other.stiffness.amplitudes)
 
-    @property
     @described("rad", "harmonic")
     def other_phase(self) -> Array | None:
         """Phase of the stiffness of the other kind; tau = 0 when a pair is at A."""
         return None if self.other is None else np.array(self.other.stiffness.phases)
 
-    @property
     @described("1", "sampled")
     def harmonics(self) -> Array | None:
         """Amplitude over the mean of the harmonics 1, 2, ... of the samples."""
         return None if self.fit is None else np.array(self.fit.harmonics)
 
-    @property
     @described("1")
     def order(self) -> int:
         """Highest harmonic of the series."""
         return len(self.stiffness.amplitudes)
 
-    @property
     @described("1")
     def remainder(self) -> float | None:
         """Root mean square of samples less series, over the mean."""

@@ -92,9 +92,8 @@ def single_pair_stiffness(
     >>> [round(float(value) / 40e6, 1) for value in k]  # N/(mm um)
     [9.4, 16.6]
     """
-    faults = Faults()
-    faults.choice("model", model, tuple(MODELS))
-    faults.raise_if_any()
+    with Faults() as faults:
+        faults.choice("model", model, tuple(MODELS))
     places = np.asarray(rho1, dtype=np.float64)
     known = np.isfinite(places)
     k = np.full_like(places, np.nan)

@@ -72,9 +72,9 @@ def _name_rack(draft: Draft, name: str) -> None:
     h, rho, alpha = (own[key] for key in ("h_fP", "rho_fP", "alpha_deg"))
     if not math.isnan(h) or not math.isnan(rho):
         allowed = f"the file has its own: h_fP = {h:g}, rho_fP = {rho:g}"
-        raise InputError([Fault("--rack", name, allowed, "Leave it out, and change the scene")])
+        raise InputError.at("--rack", name, allowed, "Leave it out, and change the scene")
     if not math.isnan(alpha) and abs(alpha - 20.0) > 1e-9:
         allowed = f"has 20 deg, but the file {alpha:g} deg"
-        raise InputError([Fault("--rack", name, allowed, "Give h_fP and rho_fP in the scene")])
+        raise InputError.at("--rack", name, allowed, "Give h_fP and rho_fP in the scene")
     own |= {"h_fP": h_fP, "rho_fP": rho_fP}
     draft.notes.append(f"Basic rack: ISO 53 {name}, named by --rack.")

@@ -105,7 +105,7 @@ def export_profile(
     from gears.contour import contour
 
     if teeth != "all" and not (teeth.isdecimal() and len(teeth) < 6):
-        raise InputError([Fault("--teeth", teeth, "must be a whole number, or all", "Such as --teeth 3")])
+        raise InputError.at("--teeth", teeth, "must be a whole number, or all", "Such as --teeth 3")
     pair = gear_pair(read_scene(scene))
     profile = pair.teeth_profiles[("pinion", "wheel").index(gear)]
     drawn = contour(profile, None if teeth == "all" else int(teeth), 1e-6 * tolerance_um)
@@ -155,7 +155,7 @@ def export_mesh(
     wanted, _ = scene_in(scene)
     claim(out)
     if not 0 <= refinements <= 4:
-        raise InputError([Fault("--refinements", str(refinements), "must be 0 to 4", "1 suits most checks")])
+        raise InputError.at("--refinements", refinements, "must be 0 to 4", "1 suits most checks")
     engine = Engine(wanted, results_cache())
     files = export_position(
         out,
@@ -192,6 +192,4 @@ def _write_new(path: Path, text: str) -> None:
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError as fault:
-        raise InputError(
-            [Fault(str(path), "", "exists already and is kept", "Name another: --out")]
-        ) from fault
+        raise InputError.at(path, "", "exists already and is kept", "Name another: --out") from fault

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers import expat
 
-from base import Fault, InputError, shorten
+from base import InputError, shorten
 
 LARGEST_FILE = 50_000_000
 """Bytes; a gear unit with all its bearings and results is a few megabytes."""
@@ -114,7 +114,7 @@ def parse_model(content: bytes, name: str) -> Model:
         if isinstance(fault, InputError):
             raise
         allowed = f"must be XML: {shorten(str(fault))}"
-        raise InputError([Fault(name, "", allowed, "Export the model again as REXS (XML)")]) from fault
+        raise InputError.at(name, "", allowed, "Export the model again as REXS (XML)") from fault
     return reader.model()
 
 
@@ -122,17 +122,17 @@ def _bytes_of(path: Path) -> bytes:
     try:
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "does not exist"
-            raise InputError([Fault(str(path), "", what, "Name a REXS file")])
+            raise InputError.at(path, "", what, "Name a REXS file")
         if path.stat().st_size > LARGEST_FILE:
             allowed = f"is larger than {LARGEST_FILE:,} bytes"
-            raise InputError([Fault(str(path), "", allowed, "Export the stage alone, without results")])
+            raise InputError.at(path, "", allowed, "Export the stage alone, without results")
         content = path.read_bytes()
     except OSError as fault:
-        raise InputError([Fault(str(path), "", f"cannot be read: {fault.strerror}")]) from fault
+        raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
     for start, kind in ((b"PK", "a ZIP archive (.rexsz)"), (b"{", "JSON (.rexsj)")):
         if content.lstrip()[:2].startswith(start):
             remedy = "Unpack it, or export the model as XML (.rexs)"
-            raise InputError([Fault(str(path), "", f"is {kind}; REXS is read as XML alone", remedy)])
+            raise InputError.at(path, "", f"is {kind}; REXS is read as XML alone", remedy)
     return content
 
 
@@ -154,12 +154,12 @@ class _Reader:
 
     def doctype(self, *_: object) -> None:
         remedy = "REXS files have none; remove it if you trust the file"
-        raise InputError([Fault(self._name, "", "has a document type declaration, which is refused", remedy)])
+        raise InputError.at(self._name, "", "has a document type declaration, which is refused", remedy)
 
     def start(self, tag: str, marks: dict[str, str]) -> None:
         self._path.append(tag.rpartition("}")[2])
         if len(self._path) > DEEPEST:
-            raise InputError([Fault(self._name, "", f"is nested deeper than {DEEPEST} elements", "")])
+            raise InputError.at(self._name, "", f"is nested deeper than {DEEPEST} elements")
         match self._path:
             case ["model"]:
                 self._head = marks
@@ -197,17 +197,17 @@ class _Reader:
         key = marks.get("id", "")
         if key in self._components:
             allowed = "stands twice; ids must differ"
-            raise InputError([Fault(self._name, f"component id {shorten(key)}", allowed, "Export it again")])
+            raise InputError.at(self._name, f"component id {shorten(key)}", allowed, "Export it again")
         kind, name = marks.get("type", ""), marks.get("name", "")
         self._components[key] = Component(key, kind, name, self._attributes)
 
     def model(self) -> Model:
         if self._head is None:
             allowed = "is XML but no REXS model (its outermost element is not model)"
-            raise InputError([Fault(self._name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")])
+            raise InputError.at(self._name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")
         version = self._head.get("version", "")
         if not version.startswith(VERSIONS):
             allowed = "is not a REXS version that is known here"
-            raise InputError([Fault(f"{self._name}: version", repr(version), allowed, "Versions 1.0 to 2.0")])
+            raise InputError.at(f"{self._name}: version", repr(version), allowed, "Versions 1.0 to 2.0")
         made_by = self._head.get("applicationId", ""), self._head.get("applicationVersion", "")
         return Model(version, " ".join(made_by).strip(), self._components, tuple(self._relations))

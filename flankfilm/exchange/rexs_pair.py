@@ -80,11 +80,11 @@ def _chosen(model: Model, source: str, stage: str | None) -> Relation:
     if not found:
         kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
         allowed = "holds no stage of cylindrical gears" + (f", but {', '.join(kinds)}" if kinds else "")
-        raise InputError([Fault(source, "", allowed, "Pairs of external spur gears are read alone")])
+        raise InputError.at(source, "", allowed, "Pairs of external spur gears are read alone")
     if stage is None and len(found) > 1:
-        raise InputError([Fault(source, f"{len(found)} stages", "choose one", listed)])
+        raise InputError.at(source, f"{len(found)} stages", "choose one", listed)
     if stage is not None and stage not in found:
-        raise InputError([Fault("--stage", shorten(stage), f"is no stage of {source}", listed)])
+        raise InputError.at("--stage", shorten(stage), f"is no stage of {source}", listed)
     return found[stage] if stage is not None else next(iter(found.values()))
 
 

@@ -209,7 +209,7 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str) -> tuple[fl
         grids = [pv.read(files[gear]) for gear in ("pinion", "wheel")]
         if missing := [grid for grid in grids if field not in grid.point_data]:
             held = ", ".join(missing[0].point_data.keys())
-            raise InputError([Fault("field", field, "must be a field of the files", f"Such as {held}")])
+            raise InputError.at("field", field, "must be a field of the files", f"Such as {held}")
         values = [np.asarray(grid[field]) for grid in grids]
         sizes = [v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]
         top = float(np.quantile(np.abs(np.concatenate(sizes)), 0.997))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.optimisation.task import Task
 
 Array = NDArray[np.float64]
@@ -83,7 +83,7 @@ def _several(
         from pymoo.optimize import minimize
     except ImportError as fault:
         remedy = "Install it: python -m pip install 'flankfilm[optimise]'; or minimise one output"
-        raise InputError([Fault("minimise", "several outputs", "needs the library pymoo", remedy)]) from fault
+        raise InputError.at("minimise", "several outputs", "needs the library pymoo", remedy) from fault
 
     class Pair(Problem):
         def __init__(self) -> None:

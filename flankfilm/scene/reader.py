@@ -71,14 +71,12 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
     # the parser keeps every beginning of a dotted key, and looks each up from its first part
     if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_SQUARED_DOTS:
         allowed = "has a line with thousands of dots"
-        raise InputError(
-            [Fault(name, "", allowed, "Break long lists into lines; no key has that many parts")]
-        )
+        raise InputError.at(name, "", allowed, "Break long lists into lines; no key has that many parts")
     try:
         raw = tomllib.loads(text)
     except ValueError as fault:  # also a number of more digits than Python reads
-        raise InputError(
-            [Fault(name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from")]
+        raise InputError.at(
+            name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from"
         ) from fault
     except RecursionError as fault:
         raise InputError([_too_deep(name)]) from fault
@@ -93,7 +91,7 @@ def bounded(raw: dict[str, Any], name: str) -> None:
         inside = [v for table in level for v in (table.values() if isinstance(table, dict) else table)]
         for value in inside:
             if isinstance(value, int) and not -(2**63) <= value < 2**63:
-                raise InputError([Fault(name, "", "holds a whole number of more than 64 bits", "Check it")])
+                raise InputError.at(name, "", "holds a whole number of more than 64 bits", "Check it")
         level = [value for value in inside if isinstance(value, dict | list)]
         if not level:
             return
@@ -109,18 +107,14 @@ def read_text(path: Path) -> str:
     try:
         if not path.is_file():
             what = "is a folder" if path.is_dir() else "does not exist"
-            raise InputError(
-                [Fault(str(path), "", what, "name a scene file, or write one: flankfilm new FILE")]
-            )
+            raise InputError.at(path, "", what, "name a scene file, or write one: flankfilm new FILE")
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(
-                [Fault(str(path), "", f"is larger than {LARGEST_FILE:,} bytes, so no scene or study")]
-            )
+            raise InputError.at(path, "", f"is larger than {LARGEST_FILE:,} bytes, so no scene or study")
         return path.read_bytes().decode("utf-8")
     except UnicodeDecodeError as fault:
-        raise InputError([Fault(str(path), "", "is not a text file (TOML in UTF-8)")]) from fault
+        raise InputError.at(path, "", "is not a text file (TOML in UTF-8)") from fault
     except OSError as fault:
-        raise InputError([Fault(str(path), "", f"cannot be read: {fault.strerror}")]) from fault
+        raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
 
 
 def validated(raw: dict[str, Any]) -> Scene:
@@ -140,7 +134,7 @@ def refuse_long_lists(raw: Any, where: str = "") -> None:
     """Refuse lists of thousands before each of their entries is judged."""
     if isinstance(raw, list) and len(raw) > LONGEST_LIST:
         allowed = f"must have at most {LONGEST_LIST} entries"
-        raise InputError([Fault(where or "the scene", f"{len(raw):,} entries", allowed, "Shorten it")])
+        raise InputError.at(where or "the scene", f"{len(raw):,} entries", allowed, "Shorten it")
     if isinstance(raw, dict):
         for key, value in raw.items():
             refuse_long_lists(value, f"{where}.{key}"[:200] if where else str(key)[:200])

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from base import Fault, InputError, Limit
+from base import InputError, Limit
 from flankfilm.scene.dynamics import DynamicsSection
 from flankfilm.scene.film import FilmSection, LubricantSection, RoughnessSection
 from flankfilm.scene.gears import MaterialSection, PairSection
@@ -67,7 +67,7 @@ def parse_tolerance(value: Any, where: str = "") -> Any:
         share = float("nan")
     if rest or not TOLERANCE.holds(share):
         allowed = f"must be from {TOLERANCE.low:g} to {TOLERANCE.high:g}, or the same in per cent"
-        raise InputError([Fault(where, value, allowed, "Such as 0.5%")])
+        raise InputError.at(where, value, allowed, "Such as 0.5%")
     return share
 
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict
 
-from base import Fault, InputError, Limit
+from base import InputError, Limit
 from flankfilm.scene.key import key_of
 
 __all__ = ["Limits", "Section", "refused"]
@@ -55,4 +55,4 @@ def refused(allowed: str, remedy: str = "", *, key: str = "", value: str = "") -
     key : str
         The key at fault; empty for the section.
     """
-    return InputError([Fault(key, value, allowed, remedy)])
+    return InputError.at(key, value, allowed, remedy)

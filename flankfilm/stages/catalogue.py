@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Fault, InputError, SolverError
+from base import InputError, SolverError
 from flankfilm import coupling
 from flankfilm.build import deviations, gear_pair, pinion_speed, pinion_torque, supports, tip_roundings
 from flankfilm.build_film import film_model, lubricant
@@ -360,7 +360,7 @@ def SCALING(run: Engine) -> PairOscillator:
 def _dynamics(run: Engine) -> DynamicsSection:
     section = run.scene.dynamics
     if section is None:
-        raise InputError([Fault("[dynamics]", "", "is required by the motion", "add the section")])
+        raise InputError.at("[dynamics]", "", "is required by the motion", "add the section")
     return section
 
 
@@ -378,7 +378,7 @@ def SWEEP(run: Engine) -> SpeedSweep:
     section, motion = _dynamics(run), run[SCALING]
     asked = section.sweep
     if asked is None:
-        raise InputError([Fault("dynamics.sweep", "", "is required by the sweep", "add the range")])
+        raise InputError.at("dynamics.sweep", "", "is required by the sweep", "add the range")
     wanted = list(section.portraits_frequency)
     if motion.scales is not None:
         wanted += [motion.scales.frequency_from_rpm(rpm) for rpm in section.portraits_rpm]
@@ -403,7 +403,7 @@ def DIAGRAM(run: Engine) -> SpeedDiagram:
     """Every branch of motions over the scene's range, with the jumps."""
     asked = _dynamics(run).diagram
     if asked is None:
-        raise InputError([Fault("dynamics.diagram", "", "is required by the diagram", "add the range")])
+        raise InputError.at("dynamics.diagram", "", "is required by the diagram", "add the range")
     speed = asked.speed_rpm and (asked.speed_rpm[0] * math.pi / 30.0, asked.speed_rpm[1] * math.pi / 30.0)
     return coupling.jump_speeds(
         run[SCALING], speed, frequency=asked.frequency, searches=asked.searches, max_period=asked.max_period

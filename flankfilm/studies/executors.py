@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
-from base import Fault, InputError
+from base import InputError
 
 Kind = Literal["processes", "dask", "mpi"]
 
@@ -95,7 +95,7 @@ def _mpi() -> Iterator[Pool]:
 
 def _missing(kind: str, library: str) -> InputError:
     remedy = f"Install it: python -m pip install 'flankfilm[{kind}]'; or leave --executor out"
-    return InputError([Fault("--executor", kind, f"needs the library {library}", remedy)])
+    return InputError.at("--executor", kind, f"needs the library {library}", remedy)
 
 
 def _leave_interrupts() -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.cache import code_digest
 from flankfilm.folder import claim
 from flankfilm.output.files import write_text
@@ -98,17 +98,17 @@ def _rows_there(folder: Path, work: Work, resume: bool, digest: str) -> list[Lin
     note, another = _note(folder, work), "Name another folder with --out"
     if not note.exists():
         if (folder / ROWS).exists():
-            raise InputError([Fault(str(folder), "", f"holds {ROWS} without its {note.name}", another)])
+            raise InputError.at(folder, "", f"holds {ROWS} without its {note.name}", another)
         return []
     held = json.loads(note.read_text(encoding="utf-8"))
     if held.get(work.kind) != json.loads(json.dumps(work.identity)):
         allowed = f"holds another {work.kind}, or this one with other keys, rows or outputs"
-        raise InputError([Fault(str(folder), "", allowed, another)])
+        raise InputError.at(folder, "", allowed, another)
     rows = read_lines(folder / ROWS, work.columns)
     if rows and not resume:
         allowed = f"holds {len(rows)} rows of this {work.kind}"
-        raise InputError([Fault(str(folder), "", allowed, "Add --resume to go on from them")])
+        raise InputError.at(folder, "", allowed, "Add --resume to go on from them")
     if rows and held.get("code_sha256") != digest:
         allowed = "holds rows that other code or libraries computed"
-        raise InputError([Fault(str(folder), "", allowed, f"{another} to start anew")])
+        raise InputError.at(folder, "", allowed, f"{another} to start anew")
     return rows

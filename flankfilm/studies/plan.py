@@ -208,13 +208,11 @@ def read_rows_file(path: Path, kind: type[F]) -> F:
 
 def refuse_unknown_outputs(names: Iterable[str]) -> None:
     """Refuse outputs that no row has, all at once."""
-    found = Faults()
-    for name in names:
-        if name not in OUTPUTS:
+    with Faults() as found:
+        for name in (name for name in names if name not in OUTPUTS):
             near = difflib.get_close_matches(name, OUTPUTS, n=1)
             remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(OUTPUTS)}"
             found.add("outputs", repr(name), "is not an output", remedy)
-    found.raise_if_any()
 
 
 def plan_of(study: StudyFile, folder: Path) -> Plan:
@@ -257,9 +255,7 @@ def put(raw: dict[str, Any], key: str, value: Value) -> None:
     for section in sections:
         inner = here.setdefault(section, {})
         if not isinstance(inner, dict):
-            raise InputError(
-                [Fault(key, "", f"{section} is a value, not a section", "Name a key of the scene")]
-            )
+            raise InputError.at(key, "", f"{section} is a value, not a section", "Name a key of the scene")
         here = inner
     here[last] = value
 
@@ -268,9 +264,7 @@ def following(values: Mapping[str, Value], rule: Follow) -> Value:
     """Value of a key that follows one of `values`."""
     leader = values[rule.of]
     if isinstance(leader, str | bool):
-        raise InputError(
-            [Fault("follow", rule.of, "is text, which nothing can follow", 'Use design = "list"')]
-        )
+        raise InputError.at("follow", rule.of, "is text, which nothing can follow", 'Use design = "list"')
     followed = rule.times * leader + rule.plus
     whole = isinstance(leader, int) and rule.times.is_integer() and rule.plus.is_integer()
     return round(followed) if whole else followed
@@ -293,15 +287,14 @@ def _bounded(study: StudyFile) -> None:
     for length in lengths if study.samples is None else ():
         rows = rows * length if study.design == "grid" else max(rows, length)
         if rows > MOST_ROWS:
-            allowed = f"must give at most {MOST_ROWS:,} rows"
-            raise InputError([Fault("vary", "", allowed, "Take fewer steps")])
+            raise InputError.at("vary", "", f"must give at most {MOST_ROWS:,} rows", "Take fewer steps")
     if study.design == "list" and len(set(lengths)) != 1:
         allowed = 'must have equally many values in a "list"'
         listed = ", ".join(str(length) for length in lengths)
-        raise InputError([Fault("vary", listed, allowed, 'Or design = "grid"')])
+        raise InputError.at("vary", listed, allowed, 'Or design = "grid"')
     if rows * (len(study.vary) + len(study.follow)) > MOST_CELLS:
         allowed = f"must give at most {MOST_CELLS:,} rows times keys"
-        raise InputError([Fault("vary", "", allowed, "Take fewer rows or keys")])
+        raise InputError.at("vary", "", allowed, "Take fewer rows or keys")
 
 
 def _listed(values: Range | tuple[Value, ...]) -> tuple[Value, ...]:
@@ -350,6 +343,3 @@ def _check_rows(plan: Plan) -> None:
                 break
     if faults:
         raise InputError(list(faults.values())[:MOST_FAULTS])
-
-
-__all__ = ["Plan", "StudyFile", "plan_of", "read_plan"]

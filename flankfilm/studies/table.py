@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.studies.row import RowResult
 
 ROWS = "rows.csv"
@@ -64,8 +64,7 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
             file.truncate(len(whole))
     lines = list(csv.reader(io.StringIO(whole.decode("utf-8"))))
     if lines and lines[0] != columns.header:
-        allowed = "must hold the columns of this study"
-        raise InputError([Fault(str(path), "", allowed, "Name another folder with --out")])
+        raise InputError.at(path, "", "must hold the columns of this study", "Name another folder with --out")
     first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
     found = []
     for line in lines[1:]:
@@ -112,7 +111,5 @@ def locked(folder: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as fault:
             allowed = "another study is at work there"
-            raise InputError(
-                [Fault(str(folder), "", allowed, "Wait for it, or name another --out")]
-            ) from fault
+            raise InputError.at(folder, "", allowed, "Wait for it, or name another --out") from fault
         yield

@@ -93,16 +93,13 @@ def iso6336_dynamic(
     array([..., ...])
     """
     omega = np.asarray(speed, dtype=np.float64)
-    found = Faults()
-    given = (force, reduced_mass, pitch_deviation, profile_deviation, relief)
-    for (name, bound), value in zip(_LIMITS.items(), given, strict=True):
-        found.number(name, value, bound)
-    if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
-        found.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
     ratio = pair.contact_ratio
-    if not ratio > 1.0:
-        found.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
-    found.raise_if_any(GeometryError)
+    with Faults(GeometryError) as found:
+        found.numbers(_LIMITS, (force, reduced_mass, pitch_deviation, profile_deviation, relief))
+        if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
+            found.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
+        if not ratio > 1.0:
+            found.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
     stiffness = iso6336(pair, force)
     tangential = force * math.cos(pair.rack.alpha) / pair.face_width  # N/m
     load = tangential / 1e3  # N/mm
@@ -116,9 +113,8 @@ def iso6336_dynamic(
     main = c1 * b_p + c2 * b_f + c4 * b_k + 1.0
     above = c5 * b_p + c6 * b_f + c7
     between = above + (main - above) * (1.5 - n) / 0.35
-    k_v = np.where(n <= limit, n * (c1 * b_p + c2 * b_f + c3 * b_k) + 1.0, main)
-    k_v = np.where(n > 1.15, between, k_v)
-    k_v = np.where(n >= 1.5, above, k_v)
+    rising = n * (c1 * b_p + c2 * b_f + c3 * b_k) + 1.0
+    k_v = np.select([n >= 1.5, n > 1.15, n <= limit], [above, between, rising], main)
     return Iso6336DynamicFactor(k_v, n, limit, resonance, b_p, b_f, b_k)
 
 

@@ -119,16 +119,15 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
         If a point of the path is not on both involutes.
     """
     teeth = []
-    found = Faults()
-    for name, profile, material, rho in zip(
-        ("rho1", "rho2"), pair.teeth_profiles, pair.materials, (path.rho1, path.rho2), strict=True
-    ):
-        low, high = profile.flank_rho
-        slack = 1e-9 * profile.module
-        if not np.all((rho >= low - slack) & (rho <= high + slack)):
-            allowed = f"must be at least {low:.6g} and at most {high:.6g} m, the flank"
-            value = f"{np.min(rho):g} .. {np.max(rho):g}"
-            found.add(f"path.{name}", value, allowed, "closed forms hold between A and E")
-        teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))
-    found.raise_if_any(GeometryError)
+    with Faults(GeometryError) as found:
+        for name, profile, material, rho in zip(
+            ("rho1", "rho2"), pair.teeth_profiles, pair.materials, (path.rho1, path.rho2), strict=True
+        ):
+            low, high = profile.flank_rho
+            slack = 1e-9 * profile.module
+            if not np.all((rho >= low - slack) & (rho <= high + slack)):
+                allowed = f"must be at least {low:.6g} and at most {high:.6g} m, the flank"
+                value = f"{np.min(rho):g} .. {np.max(rho):g}"
+                found.add(f"path.{name}", value, allowed, "closed forms hold between A and E")
+            teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))
     return teeth[0], teeth[1]

@@ -37,13 +37,11 @@ class ClosedForm:
         """Keep the parts from being replaced."""
         object.__setattr__(self, "parts", MappingProxyType(dict(self.parts)))
 
-    @property
     @described("m/N", "point")
     def compliance(self) -> Array:
         """Sum of the parts' compliances."""
         return np.asarray(sum(self.parts.values()))
 
-    @property
     @described("N/m", "point")
     def stiffness(self) -> Array:
         """Secant stiffness of the single pair."""

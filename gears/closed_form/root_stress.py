@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 
-from base import Fault, Faults, RangeWarning, described, part, quantity, record
+from base import Faults, RangeWarning, described, part, quantity, record
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.involute import involute_function
@@ -33,7 +33,6 @@ class RootSection:
 
     headline = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F")
 
-    @property
     @described("1")
     def q_s(self) -> float:
         """Notch parameter s_Fn / (2 rho_F)."""
@@ -118,10 +117,9 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     >>> iso6336_3(pair, force=10e3)
     Iso6336RootStress(... and ... MPa, load at D, Y_B 1 and 1)
     """
-    found = Faults()
-    found.number("force", force, NORMAL_FORCE)
-    found.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
-    found.raise_if_any(GeometryError)
+    with Faults(GeometryError) as found:
+        found.number("force", force, NORMAL_FORCE)
+        found.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
     points = pair.points
     ends = [profile.flank_rho[1] for profile in pair.teeth_profiles]
     outer = ends if load_at == "tip" else [points.D, pair.line_of_action - points.B]
@@ -181,7 +179,7 @@ def _theta(name: str, teeth: int, G: float, H: float) -> float:
             break
     if abs(theta - 2.0 * G / teeth * math.tan(theta) + H) > 1e-12:
         allowed = "must have a fillet with a tangent at 30 degrees to the tooth's centre line"
-        raise GeometryError([Fault(name, f"theta = {theta:.6g} rad", allowed, "change shift or rack")])
+        raise GeometryError.at(name, f"theta = {theta:.6g} rad", allowed, "change shift or rack")
     return theta
 
 
@@ -192,7 +190,7 @@ def _rim_factor(name: str, profile: ToothProfile) -> float:
     if ratio <= 0.5:
         allowed = "must leave a rim of more than half the tooth's depth"
         value = f"{ratio:.3g} tooth depths"
-        raise GeometryError([Fault(f"{name}.bore_radius", value, allowed, "ISO 6336-3 has no Y_B: use FE")])
+        raise GeometryError.at(f"{name}.bore_radius", value, allowed, "ISO 6336-3 has no Y_B: use FE")
     return 1.6 * math.log(2.242 / ratio) if ratio < 1.2 else 1.0
 
 

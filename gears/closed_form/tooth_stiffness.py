@@ -33,13 +33,11 @@ class Iso6336Stiffness:
 
     headline = ("c_th", "c_prime", "c_gamma", "C_R", "C_B")
 
-    @property
     @described("N/m")
     def single_stiffness(self) -> float:
         """Single stiffness c' b."""
         return self.c_prime * factor("N/(mm um)") * self.face_width
 
-    @property
     @described("N/m")
     def mesh_stiffness(self) -> float:
         """Mesh stiffness c_gamma b."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from pathlib import Path
 
 import pytest
 
@@ -48,3 +49,23 @@ def test_all_faults_are_raised_together():
     with pytest.raises(InputError) as caught:
         found.raise_if_any()
     assert [fault.where for fault in caught.value.faults] == ["b", "n", "plane"]
+
+
+def test_a_block_raises_what_it_noted_as_the_error_asked_for_unless_it_fails_itself():
+    class OutOfStockError(InputError):
+        """Faults of a shelf."""
+
+    limits = {"width": Limit(0, 3), "height": Limit(0, 3), "depth": Limit(0, 3)}
+    with pytest.raises(OutOfStockError) as caught, Faults(OutOfStockError) as found:
+        found.numbers(limits, (4, 5))
+    assert [fault.where for fault in caught.value.faults] == ["width", "height"]
+    with pytest.raises(ZeroDivisionError), Faults() as found:
+        found.numbers(limits, (4, 1 / 0))
+    with Faults() as found:
+        found.numbers(limits, (1, 2, 3))
+
+
+def test_an_error_of_one_fault_shows_texts_as_they_are_and_other_values_by_their_representation():
+    assert str(InputError.at(Path("a.toml"), "", "does not exist")) == "a.toml: does not exist"
+    (fault,) = InputError.at("nodes", (1, 2), "must be a number", "129 is usual").faults
+    assert fault == Fault("nodes", "(1, 2)", "must be a number", "129 is usual")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
@@ -27,13 +26,11 @@ class Shaft:
     message: str = "converged"
     bend: Array | None = quantity("rad", "slope", "section", default=None)
 
-    @cached_property
-    @described("Pa", "section")
+    @described("Pa", "section", kept=True)
     def stress(self) -> Array:
         """Largest shear stress of each section."""
         return np.asarray(2 * self.torque / (np.pi * self.radius**3))
 
-    @property
     @described("Pa")
     def mean_stress(self) -> float:
         """Mean of the largest stress."""

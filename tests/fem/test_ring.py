@@ -15,8 +15,8 @@ from fem.flamant import hertz_indentation
 from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
 from gears import Gear, GearPair
+from gears.plane import turned
 from meshes import Sizes, gear_mesh, mesh_sector
-from meshes.annulus import turned
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)
 SMALL = GearPair(Gear(18, profile_shift=0.2), Gear(24), 2e-3, 0.04)

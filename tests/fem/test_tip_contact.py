@@ -14,7 +14,7 @@ from fem.strip_contact import flat_kernel, flat_kernels, from_the_corner, from_t
 from fem.tip_contact import edge_laws
 from fem.tip_geometry import lever_ratio, opening, unloaded_gap
 from fem.tip_strips import tip_strips
-from gears.placement import mirrored, turned
+from gears.plane import mirrored, turned
 from meshes import Sizes, mesh_sector
 from tests.fem.test_ring import whole_annulus
 

@@ -14,7 +14,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gears import Gear, GearPair, GeometryError, GeometryWarning, Material
-from gears.placement import mirrored
+from gears.plane import mirrored
 
 numbers = st.integers(18, 200)
 shift = st.floats(-0.1, 0.5)

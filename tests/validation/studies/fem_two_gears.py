@@ -30,8 +30,8 @@ from two_gear_meshes import MIRROR, Focus, sector
 import fem
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 from gears import Gear, GearPair
+from gears.plane import turned
 from meshes import Sizes, gear_mesh
-from meshes.annulus import turned
 
 PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)
 TORQUE = 600.0

@@ -17,8 +17,8 @@ from pathlib import Path
 import fem_two_gears as two
 import numpy as np
 
+from gears.plane import turned
 from meshes.abaqus import mesh_text, number
-from meshes.annulus import turned
 
 MM = 1e3
 """The deck is in mm, N, MPa: CalculiX's contact has tolerances in plain numbers."""
