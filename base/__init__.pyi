@@ -16,6 +16,7 @@ from .files import replacing as replacing
 from .files import sweep_temporaries as sweep_temporaries
 from .limits import Faults as Faults
 from .limits import Limit as Limit
+from .results import Described as Described
 from .results import Figure as Figure
 from .results import Quantity as Quantity
 from .results import Result as Result

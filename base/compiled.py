@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from contextlib import AbstractContextManager
 from functools import cache
 from typing import Any
 
-from base.cost import unclocked
+from base.cost import ASIDE, unclocked
 
 
 @cache
@@ -31,21 +29,10 @@ def hide_compilation() -> None:
     class Listener(event.Listener):  # type: ignore[misc,unused-ignore]
         """Opens an unclocked stretch when the lock is taken, closes it when the lock is let go."""
 
-        def __init__(self) -> None:
-            self._of_thread = threading.local()
-
         def on_start(self, _event: Any) -> None:
-            hidden = unclocked()
-            hidden.__enter__()
-            self._held().append(hidden)
+            ASIDE.open()
 
         def on_end(self, _event: Any) -> None:
-            self._held().pop().__exit__(None, None, None)
-
-        def _held(self) -> list[AbstractContextManager[None]]:
-            if not hasattr(self._of_thread, "held"):
-                self._of_thread.held = []
-            held: list[AbstractContextManager[None]] = self._of_thread.held
-            return held
+            ASIDE.close()
 
     event.register("numba:compiler_lock", Listener())

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -43,26 +44,36 @@ class Cost:
             max(self.unknowns, other.unknowns),
             self.iterations + other.iterations,
             self.periods + other.periods,
-            {
-                name: self.parts.get(name, 0.0) + other.parts.get(name, 0.0)
-                for name in {**self.parts, **other.parts}
-            },
-            {
-                name: self.counts.get(name, 0) + other.counts.get(name, 0)
-                for name in {**self.counts, **other.counts}
-            },
+            _summed(self.parts, other.parts),
+            _summed(self.counts, other.counts),
         )
 
 
-class _Aside(threading.local):
+def _summed(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: first.get(name, 0) + second.get(name, 0) for name in {**first, **second}}
+
+
+class Aside(threading.local):
     """Seconds of a thread that no stopwatch counts; overlapping stretches count once."""
 
     depth = 0
     seconds = 0.0
     began = 0.0
 
+    def open(self) -> None:
+        """Begin a stretch."""
+        if self.depth == 0:
+            self.began = perf_counter()
+        self.depth += 1
 
-_ASIDE = _Aside()
+    def close(self) -> None:
+        """End the stretch that was begun last."""
+        self.depth -= 1
+        if self.depth == 0:
+            self.seconds += perf_counter() - self.began
+
+
+ASIDE = Aside()
 
 
 @contextmanager
@@ -74,15 +85,11 @@ def unclocked() -> Iterator[None]:
     >>> with unclocked():
     ...     import decimal
     """
-    if _ASIDE.depth == 0:
-        _ASIDE.began = perf_counter()
-    _ASIDE.depth += 1
+    ASIDE.open()
     try:
         yield
     finally:
-        _ASIDE.depth -= 1
-        if _ASIDE.depth == 0:
-            _ASIDE.seconds += perf_counter() - _ASIDE.began
+        ASIDE.close()
 
 
 class Stopwatch:
@@ -98,9 +105,9 @@ class Stopwatch:
     """
 
     def __init__(self) -> None:
-        self._began, self._aside = perf_counter(), _ASIDE.seconds
+        self._began, self._aside = perf_counter(), ASIDE.seconds
 
     @property
     def seconds(self) -> float:
         """Seconds so far, less those of `unclocked` stretches that have ended."""
-        return perf_counter() - self._began - (_ASIDE.seconds - self._aside)
+        return perf_counter() - self._began - (ASIDE.seconds - self._aside)

@@ -42,6 +42,17 @@ class Limit:
     high_open: bool = False
     whole: bool = False
 
+    @classmethod
+    def above(cls, low: float, high: float = math.inf, unit: str = "", remedy: str = "") -> Limit:
+        """Limit of numbers that must be more than `low`.
+
+        Examples
+        --------
+        >>> str(Limit.above(0.0, unit="m"))
+        'must be a finite number, more than 0 m'
+        """
+        return cls(low, high, unit, remedy, low_open=True)
+
     def __str__(self) -> str:
         """What must hold, in words."""
         unit = f" {self.unit}" if self.unit else ""

@@ -12,9 +12,9 @@ from base import Array, Faults, Limit
 
 LAWS = ("greenwood-tripp", "greenwood-williamson")
 LIMITS = {
-    "deviation": Limit(0.0, 1e-3, "m", "sigma in m, 1e-7 is a tenth of a micrometre", low_open=True),
-    "density": Limit(0.0, 1e18, "1/m2", "1e10 to 1e12 are usual", low_open=True),
-    "tip_radius": Limit(0.0, 1.0, "m", "1e-6 to 1e-4 are usual", low_open=True),
+    "deviation": Limit.above(0.0, 1e-3, "m", "sigma in m, 1e-7 is a tenth of a micrometre"),
+    "density": Limit.above(0.0, 1e18, "1/m2", "1e10 to 1e12 are usual"),
+    "tip_radius": Limit.above(0.0, 1.0, "m", "1e-6 to 1e-4 are usual"),
     "offset": Limit(0.0, 3.0, remedy="1.15 is usual"),
 }
 """What the numbers of a roughness may be."""

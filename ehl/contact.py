@@ -10,32 +10,30 @@ from ehl.lubricant import Lubricant
 from ehl.rheology import ROELANDS_LN_VISCOSITY, ROELANDS_PRESSURE
 
 LIMITS = {
-    "load": Limit(
+    "load": Limit.above(
         0.0,
         1e15,
         "N/m",
         "a pair without load has no film to solve: leave it out, or give its small load in N/m",
-        low_open=True,
     ),
-    "entrainment": Limit(
+    "entrainment": Limit.above(
         0.0,
         1e9,
         "m/s",
         "without entrainment no steady film exists: take the contact as dry; "
         "if both surfaces move backwards, give the magnitude and mirror x",
-        low_open=True,
     ),
-    "radius": Limit(0.0, 1e6, "m", "give R in m", low_open=True),
-    "reduced_modulus": Limit(0.0, 1e14, "Pa", "give E' in Pa, 2.26e11 for steel", low_open=True),
+    "radius": Limit.above(0.0, 1e6, "m", "give R in m"),
+    "reduced_modulus": Limit.above(0.0, 1e14, "Pa", "give E' in Pa, 2.26e11 for steel"),
 }
 """What the numbers of a line contact may be."""
 
 _MOES = "Moes' numbers of line contacts lie between 0.01 and 5000 (M), 0 and 30 (L)"
 _MOES_LIMITS = {
-    "M": Limit(0.0, 1e9, remedy=_MOES, low_open=True),
+    "M": Limit.above(0.0, 1e9, remedy=_MOES),
     "L": Limit(0.0, 1e3, remedy=_MOES),
     "roelands_z": Limit(0.1, 2.0, remedy="oils lie between 0.2 and 1"),
-    "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa", "for a constant viscosity give L = 0", low_open=True),
+    "pressure_viscosity": Limit.above(0.0, 1e-7, "1/Pa", "for a constant viscosity give L = 0"),
     "reduced_modulus": LIMITS["reduced_modulus"],
     "radius": LIMITS["radius"],
 }

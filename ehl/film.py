@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,18 +27,19 @@ MEANINGS = {
 
 DEFINITIONS = tuple(MEANINGS)
 
+unsolved = partial(quantity, default=math.nan)
+"""A figure that is NaN where no solution was found."""
+
 
 @record
 class FilmErrors:
     """Estimated relative errors, from the grid of half as many cells and from the length of the inlet."""
 
     film: float = quantity("1", "error of central and minimum film")
-    separation: float = quantity("1", "error of the film separation", default=math.nan)
-    approach_stiffness: float = quantity("1", "error of the stiffness by separation", default=math.nan)
-    tangent_stiffness: float = quantity("1", "error of the stiffness by central film", default=math.nan)
-    inlet: float = quantity(
-        "1", "share of the film lost to the finite inlet, 0 where the domain was given", default=math.nan
-    )
+    separation: float = unsolved("1", "error of the film separation")
+    approach_stiffness: float = unsolved("1", "error of the stiffness by separation")
+    tangent_stiffness: float = unsolved("1", "error of the stiffness by central film")
+    inlet: float = unsolved("1", "share of the film lost to the finite inlet, 0 where the domain was given")
 
 
 @record
@@ -73,36 +75,20 @@ class Film:
     cost: Cost
     converged: bool
     message: str
-    central_thickness: float = quantity(
-        "m", "film thickness at x = 0", shown="um", error="error", default=math.nan
+    central_thickness: float = unsolved("m", "film thickness at x = 0", shown="um", error="error")
+    minimum_thickness: float = unsolved("m", "least film thickness", shown="um", error="error")
+    minimum_position: float = unsolved("m", "place of the least thickness", shown="um")
+    outlet: float = unsolved("m", "place where the film ends", shown="um")
+    separation: float = unsolved(
+        "m", "film separation: approach of the dry contact less that with the film", shown="um"
     )
-    minimum_thickness: float = quantity(
-        "m", "least film thickness", shown="um", error="error", default=math.nan
+    separation_slope: float = unsolved("m2/N", "derivative of the separation by the load at fixed speed")
+    central_slope: float = unsolved("m2/N", "derivative of the central thickness by the load at fixed speed")
+    flow: float = unsolved(
+        "m", "mass flow over rho0 u: the film that leaves the contact at ambient pressure", shown="um"
     )
-    minimum_position: float = quantity("m", "place of the least thickness", shown="um", default=math.nan)
-    outlet: float = quantity("m", "place where the film ends", shown="um", default=math.nan)
-    separation: float = quantity(
-        "m",
-        "film separation: approach of the dry contact less that with the film",
-        shown="um",
-        default=math.nan,
-    )
-    separation_slope: float = quantity(
-        "m2/N", "derivative of the separation by the load at fixed speed", default=math.nan
-    )
-    central_slope: float = quantity(
-        "m2/N", "derivative of the central thickness by the load at fixed speed", default=math.nan
-    )
-    flow: float = quantity(
-        "m",
-        "mass flow over rho0 u: the film that leaves the contact at ambient pressure",
-        shown="um",
-        default=math.nan,
-    )
-    flux_error: float = quantity(
-        "1", "largest deviation of the mass flow inside the film, relative", default=math.nan
-    )
-    load_error: float = quantity("1", "error of the integral of the pressure, relative", default=math.nan)
+    flux_error: float = unsolved("1", "largest deviation of the mass flow inside the film, relative")
+    load_error: float = unsolved("1", "error of the integral of the pressure, relative")
     supply: Supply | None = part("what is held at the inlet; None where it is flooded", default=None)
     spike: Spike | None = part(
         "second maximum of the pressure; None where there is no narrow one", default=None

@@ -15,15 +15,11 @@ GRADES = (2, 3, 5, 7, 10, 15, 22, 32, 46, 68, 100, 150, 220, 320, 460, 680, 1000
 _ZERO = 273.15  # K at 0 degC
 LIMITS = {
     "vg": Limit(7.0, 1e4, "mm2/s", "give the grade's number, 7 to 3200 mm2/s at 40 degC"),
-    "temperature": Limit(
-        _ZERO - 20.0,
-        _ZERO + 150.0,
-        "K",
-        "give the oil's temperature in kelvin, degC + 273.15",
-        low_open=True,
+    "temperature": Limit.above(
+        _ZERO - 20.0, _ZERO + 150.0, "K", "give the oil's temperature in kelvin, degC + 273.15"
     ),
     "viscosity_index": Limit(0.0, 250.0, remedy="mineral oils have about 95, synthetic oils 140 to 250"),
-    "density_15": Limit(500.0, 2000.0, "kg/m3", "of the oil at 15 degC", low_open=True),
+    "density_15": Limit.above(500.0, 2000.0, "kg/m3", "of the oil at 15 degC"),
 }
 """What the numbers of a graded oil may be."""
 

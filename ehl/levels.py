@@ -59,11 +59,11 @@ class State:
 
 @dataclass(frozen=True)
 class Figures:
-    """Headline figures of one grid [m]."""
+    """Headline figures of one grid [m], under the names that a film gives them."""
 
-    central: float
-    minimum: float
-    position: float
+    central_thickness: float
+    minimum_thickness: float
+    minimum_position: float
     outlet: float
     separation: float
 
@@ -83,9 +83,9 @@ def figures(level: Level) -> Figures:
     i = int(np.clip(np.argmin(found.H), 1, grid.nodes.size - 2))
     shift, lowest = _lowest(grid.nodes[i - 1 : i + 2] - grid.nodes[i], found.H[i - 1 : i + 2])
     return Figures(
-        central=centre_gap(grid, groups, found.P, found.H0) * groups.gap,
-        minimum=lowest * groups.gap,
-        position=float(grid.nodes[i] + shift) * groups.length,
+        central_thickness=centre_gap(grid, groups, found.P, found.H0) * groups.gap,
+        minimum_thickness=lowest * groups.gap,
+        minimum_position=float(grid.nodes[i] + shift) * groups.length,
         outlet=_outlet(grid.nodes, found.P) * groups.length,
         separation=(found.H0 + dry_approach(grid)) * groups.gap,
     )

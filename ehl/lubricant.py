@@ -24,10 +24,10 @@ from ehl.rheology import (
 )
 
 LIMITS = {
-    "viscosity": Limit(0.0, 1e100, "Pa s", "give eta0 in Pa s", low_open=True),
+    "viscosity": Limit.above(0.0, 1e100, "Pa s", "give eta0 in Pa s"),
     "pressure_viscosity": Limit(0.0, 1e-6, "1/Pa", "give alpha in 1/Pa, near 2e-8 for mineral oil"),
-    "density": Limit(0.0, 1e5, "kg/m3", "give rho0 in kg/m3", low_open=True),
-    "roelands_z": Limit(0.0, 2.0, remedy="leave it out to derive it from alpha", low_open=True),
+    "density": Limit.above(0.0, 1e5, "kg/m3", "give rho0 in kg/m3"),
+    "roelands_z": Limit.above(0.0, 2.0, remedy="leave it out to derive it from alpha"),
 }
 """What the numbers of a lubricant may be."""
 

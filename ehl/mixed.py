@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from base import Cost, InputError, described, part, quantity, record, shorten
+from base import Cost, InputError, described, part, record, shorten
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
-from ehl.film import Film
+from ehl.film import Film, unsolved
 from ehl.solver import solve
 from ehl.supply import Supply
 
@@ -43,21 +43,13 @@ class MixedFilm:
     cost: Cost
     converged: bool
     message: str
-    asperity_share: float = quantity(
-        "1", "share of the load that the asperities carry", shown="%", default=math.nan
+    asperity_share: float = unsolved("1", "share of the load that the asperities carry", shown="%")
+    asperity_stiffness: float = unsolved("N/m2", "stiffness of the asperities at the contact's width")
+    separation_slope: float = unsolved(
+        "m2/N", "derivative of the separation by the load at fixed speed, asperities included"
     )
-    asperity_stiffness: float = quantity(
-        "N/m2", "stiffness of the asperities at the contact's width", default=math.nan
-    )
-    separation_slope: float = quantity(
-        "m2/N",
-        "derivative of the separation by the load at fixed speed, asperities included",
-        default=math.nan,
-    )
-    central_slope: float = quantity(
-        "m2/N",
-        "derivative of the central thickness by the load at fixed speed, asperities included",
-        default=math.nan,
+    central_slope: float = unsolved(
+        "m2/N", "derivative of the central thickness by the load at fixed speed, asperities included"
     )
 
     @described("1")

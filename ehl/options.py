@@ -17,8 +17,8 @@ _ARTICLE_DOMAIN = (-4.0, 1.2)
 """The grid of a published study of spur gears: 130 equal nodes, criterion 1e-6 on the pressure."""
 
 _LIMITS = {
-    "tolerance": Limit(0.0, 0.2, remedy="0.005 is 0.5 %", low_open=True),
-    "spike": Limit(0.0, 0.2, remedy="0.01 is 1 %", low_open=True),
+    "tolerance": Limit.above(0.0, 0.2, remedy="0.005 is 0.5 %"),
+    "spike": Limit.above(0.0, 0.2, remedy="0.01 is 1 %"),
 }
 _NODES = (32, 4097, "129 is usual; leave it out to let the tolerance decide")
 _SHARP_TOLERANCE = 1e-3  # below this the film feels a spike that falls between the nodes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from typing import Any
 
 import numpy as np
 
@@ -29,10 +30,11 @@ def film_error(coarse: Level, fine: Level) -> float:
     weights = np.where(np.abs(at) <= 1.0, coarse.grid.weights, 0.0)
     change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
-    central, minimum = before.central / after.central - 1.0, before.minimum / after.minimum - 1.0
-    return _GRID_FACTOR * (
-        abs(central) + abs(minimum) + profile + abs(before.separation / after.separation - 1.0)
+    changes = (
+        abs(getattr(before, name) / getattr(after, name) - 1.0)
+        for name in ("central_thickness", "minimum_thickness", "separation")
     )
+    return _GRID_FACTOR * (profile + sum(changes))
 
 
 def spike_error(coarse: Level, fine: Level) -> float:
@@ -50,42 +52,32 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     contact, found, supply = run.contact, fine.found, run.supply
     shown, before = figures(fine), figures(coarse)
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
+    lost = _SEPARATION_LOSS * inlet
     errors = FilmErrors(
         film=error,
-        separation=_GRID_FACTOR * abs(before.separation / shown.separation - 1.0) + _SEPARATION_LOSS * inlet,
-        approach_stiffness=abs(slope_before.separation / slope.separation - 1.0)
-        + slope.ripple
-        + _SEPARATION_LOSS * inlet,
-        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + _SEPARATION_LOSS * inlet,
+        separation=_GRID_FACTOR * abs(before.separation / shown.separation - 1.0) + lost,
+        approach_stiffness=abs(slope_before.separation / slope.separation - 1.0) + slope.ripple + lost,
+        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + lost,
         inlet=inlet,
     )
     groups = fine.groups
-    x = fine.grid.nodes * groups.length
     message = "converged"
     if found.P[-2] > 0.0:
         message = "converged; the film reaches the outlet of the domain, which cuts it off there"
         warnings.warn(message, RangeWarning, stacklevel=5)
     return Film(
-        contact=contact,
-        x=x,
+        **_frame(run, fine),
+        **vars(shown),
         pressure=found.P * groups.pressure,
         thickness=found.H * groups.gap,
-        central_thickness=shown.central,
-        minimum_thickness=shown.minimum,
-        minimum_position=shown.position,
-        inlet=float(x[0]),
-        outlet=shown.outlet,
-        separation=shown.separation,
         separation_slope=slope.separation / contact.load,
         central_slope=slope.central / contact.load,
         flow=fine.flow,
         flux_error=found.flux_error,
         load_error=found.load_error,
         errors=errors,
-        cost=run.cost(),
         converged=True,
         message=message,
-        supply=supply,
         spike=_spike(coarse, fine),
         state=State(coarse.bare(), fine.bare()),
     )
@@ -108,19 +100,26 @@ def _spike(coarse: Level, fine: Level) -> Spike | None:
 def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> Film:
     """Return a film without figures."""
     blank = np.full(fine.grid.nodes.size, math.nan)
-    x = fine.grid.nodes * run.contact.half_width * fine.grid.ratio
     return Film(
-        contact=run.contact,
-        x=x,
+        **_frame(run, fine),
         pressure=blank,
         thickness=blank,
-        inlet=float(x[0]),
         errors=FilmErrors(error),
-        cost=run.cost(),
         converged=False,
         message=f"{reason}: {_remedy(run, fine.plan)}",
-        supply=run.supply,
     )
+
+
+def _frame(run: Run, fine: Level) -> dict[str, Any]:
+    """What a film has whether it was solved or not."""
+    x = fine.grid.nodes * fine.groups.length
+    return {
+        "contact": run.contact,
+        "x": x,
+        "inlet": float(x[0]),
+        "supply": run.supply,
+        "cost": run.cost(),
+    }
 
 
 def _remedy(run: Run, plan: Plan) -> str:

@@ -7,8 +7,8 @@ import math
 from base import Faults, Limit, quantity, record
 from ehl.film import DEFINITIONS, MEANINGS, Film
 
-_FACE_WIDTH = Limit(0.0, 1e3, "m", "give b in m", low_open=True)
-_BODIES = Limit(0.0, 1e18, "N/m", "give it at the whole face", low_open=True)
+_FACE_WIDTH = Limit.above(0.0, 1e3, "m", "give b in m")
+_BODIES = Limit.above(0.0, 1e18, "N/m", "give it at the whole face")
 
 
 @record

@@ -17,7 +17,7 @@ from base import Array, Faults, Limit
 
 _FLOODED = "leave the supply out for a flooded inlet"
 _AHEAD = Limit(-1e6, 0.0, "m", f"x in m, ahead of the line of centres; {_FLOODED}", high_open=True)
-_LAYER = Limit(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}", low_open=True)
+_LAYER = Limit.above(0.0, 1.0, "m", f"h_oil in m; {_FLOODED}")
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,11 @@ from typing import Any
 
 from base.files import replacing, sweep_temporaries
 
-_LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh")
+LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh")
+"""Libraries whose versions may change what is computed."""
+
+PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
+"""All packages of this project."""
 
 
 class CacheWarning(UserWarning):
@@ -47,10 +51,10 @@ def results_cache(use: bool = True) -> Cache:
 
 
 @cache
-def code_digest(packages: tuple[str, ...]) -> str:
+def code_digest(packages: tuple[str, ...] = PACKAGES) -> str:
     """Digest of the source files of `packages`, and of Python and the libraries' versions."""
     digest = hashlib.sha256(platform.python_version().encode())
-    for name in _LIBRARIES:
+    for name in LIBRARIES:
         digest.update(f"{name}=={metadata.version(name)}\n".encode())
     for package in sorted(packages):
         for source in sorted(_folder(package).rglob("*.py")):

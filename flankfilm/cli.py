@@ -254,15 +254,12 @@ def new(scene: Path, /) -> int:
     scene : Path
         The file to write.
     """
+    from flankfilm.folder import write_new
     from flankfilm.scene import template
 
     if scene.suffix != ".toml":
         raise InputError.at(scene, "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")
-    try:
-        with scene.open("x", encoding="utf-8") as file:
-            file.write(template())
-    except FileExistsError as fault:
-        raise InputError.at(scene, "", "exists already and is kept", "Name another file") from fault
+    write_new(scene, template(), "Name another file")
     print(f"{scene} is written. Next: flankfilm run {scene}")
     return 0
 

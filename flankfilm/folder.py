@@ -1,4 +1,4 @@
-"""The folder that results go to."""
+"""The folder that results go to, files that a user names to be read, and files that must be new."""
 
 from __future__ import annotations
 
@@ -21,3 +21,38 @@ def claim(folder: Path) -> None:
     except OSError as fault:
         allowed = f"cannot be written: {fault.strerror}"
         raise InputError.at(folder, "", allowed, "Name another with --out") from fault
+
+
+def content_of(path: Path, largest: int, remedy: str, shorter: str) -> bytes:
+    """Content of a file that somebody else wrote.
+
+    Parameters
+    ----------
+    path : Path
+    largest : int
+        Bytes above which it is not read.
+    remedy, shorter : str
+        What to do where it is missing, and where it is too large.
+    """
+    try:
+        refuse_missing(path, remedy)
+        if path.stat().st_size > largest:
+            raise InputError.at(path, "", f"is larger than {largest:,} bytes", shorter)
+        return path.read_bytes()
+    except OSError as fault:
+        raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
+
+
+def refuse_missing(path: Path, remedy: str) -> None:
+    """Refuse what is no file."""
+    if not path.is_file():
+        raise InputError.at(path, "", "is a folder" if path.is_dir() else "does not exist", remedy)
+
+
+def write_new(path: Path, text: str, remedy: str) -> None:
+    """Write a file that must not exist yet."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError as fault:
+        raise InputError.at(path, "", "exists already and is kept", remedy) from fault

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from base import InputError, shorten
+from flankfilm.folder import refuse_missing
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import LARGEST_FILE, bounded, validated
 
@@ -45,9 +46,7 @@ def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
 
 def _attributes(path: Path) -> dict[str, str]:
     """Text attributes of a netCDF file."""
-    if not path.is_file():
-        what = "is a folder" if path.is_dir() else "does not exist"
-        raise InputError.at(path, "", what, "Name a scene or a results.nc")
+    refuse_missing(path, "Name a scene or a results.nc")
     import h5py
 
     try:

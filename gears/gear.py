@@ -8,19 +8,15 @@ from base import Fault, Faults, Limit, shorten
 
 RELIEF_LIMITS = {
     "amount": Limit(0.0, 1.0, "m", "give the material removed at the tip in metres"),
-    "length": Limit(0.0, 1e3, "m", "give the length along the path of contact in metres", low_open=True),
+    "length": Limit.above(0.0, 1e3, "m", "give the length along the path of contact in metres"),
 }
 """What the numbers of tip relief may be."""
 
 LIMITS = {
     "teeth": Limit(5, 10_000, remedy="choose teeth in this range", whole=True),
     "profile_shift": Limit(-0.8, 1.5, "modules", "shift the profile less"),
-    "bore_radius": Limit(
-        0.0,
-        1e4,
-        "m",
-        "give the radius of the bore in metres, or None for half the root radius",
-        low_open=True,
+    "bore_radius": Limit.above(
+        0.0, 1e4, "m", "give the radius of the bore in metres, or None for half the root radius"
     ),
     "tip_alteration": Limit(-1.0, 1.0, "modules", "change the tip less"),
     "thickness_allowance": Limit(0.0, 1.0, "m", "give the arc by which the tooth is thinned, in metres"),

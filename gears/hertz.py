@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Limit
 
-NORMAL_FORCE = Limit(0.0, unit="N", remedy="give the normal force on the pair of teeth", low_open=True)
+NORMAL_FORCE = Limit.above(0.0, unit="N", remedy="give the normal force on the pair of teeth")
 """What the force between two teeth may be."""
 
 

@@ -19,9 +19,7 @@ from gears.rack import BasicRack
 LIMITS = {
     "module": Limit(1e-5, 1.0, "m", "give the module in metres (2 mm is 2e-3)"),
     "face_width": Limit(1e-6, 100.0, "m", "give the face width in metres (40 mm is 40e-3)"),
-    "centre_distance": Limit(
-        0.0, 1e4, "m", "give the distance of the axes in metres, or None", low_open=True
-    ),
+    "centre_distance": Limit.above(0.0, 1e4, "m", "give the distance of the axes in metres, or None"),
 }
 """What the numbers of a pair itself may be."""
 

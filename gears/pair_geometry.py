@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from base import Array, Figure, described
+from base import Array, Described, Figure, described
 from gears.errors import GeometryError
 from gears.gear import Gear
 from gears.involute import involute_function, tangent_from_involute
@@ -16,6 +16,17 @@ from gears.material import STEEL, Material, reduced_modulus
 from gears.path import PathOfContact, PathPoints
 from gears.profile import ToothProfile, generate
 from gears.rack import ISO_53_A, BasicRack
+
+
+def _of_both(name: str, meaning: str) -> Described[tuple[float, float]]:
+    """Length that each tooth has, of pinion and wheel [m]."""
+
+    def lengths(pair: PairGeometry) -> tuple[float, float]:
+        first, second = (getattr(tooth, name) for tooth in pair.teeth_profiles)
+        return first, second
+
+    lengths.__doc__ = meaning
+    return described("m", "gear", shown="mm")(lengths)
 
 
 @dataclass(frozen=True)
@@ -43,40 +54,12 @@ class PairGeometry:
         assert second is not None
         return first, second
 
-    def _of_both(self, name: str) -> tuple[float, float]:
-        """Length that each tooth has, of pinion and wheel [m]."""
-        first, second = (getattr(tooth, name) for tooth in self.teeth_profiles)
-        return first, second
-
-    @described("m", "gear", shown="mm")
-    def reference_radii(self) -> tuple[float, float]:
-        """Reference radius, r = m z / 2."""
-        return self._of_both("reference_radius")
-
-    @described("m", "gear", shown="mm")
-    def base_radii(self) -> tuple[float, float]:
-        """Base radius, r_b = r cos alpha."""
-        return self._of_both("base_radius")
-
-    @described("m", "gear", shown="mm")
-    def root_radii(self) -> tuple[float, float]:
-        """Root radius, r_f = r - m (h_fP - x)."""
-        return self._of_both("root_radius")
-
-    @described("m", "gear", shown="mm")
-    def tip_radii(self) -> tuple[float, float]:
-        """Tip radius, r_a = r + m (h_aP + x + k)."""
-        return self._of_both("tip_radius")
-
-    @described("m", "gear", shown="mm")
-    def form_radii(self) -> tuple[float, float]:
-        """Form radius, at which the involute starts."""
-        return self._of_both("form_radius")
-
-    @described("m", "gear", shown="mm")
-    def bore_radii(self) -> tuple[float, float]:
-        """Bore radius, half the root radius where none was given."""
-        return self._of_both("bore_radius")
+    reference_radii = _of_both("reference_radius", "Reference radius, r = m z / 2.")
+    base_radii = _of_both("base_radius", "Base radius, r_b = r cos alpha.")
+    root_radii = _of_both("root_radius", "Root radius, r_f = r - m (h_fP - x).")
+    tip_radii = _of_both("tip_radius", "Tip radius, r_a = r + m (h_aP + x + k).")
+    form_radii = _of_both("form_radius", "Form radius, at which the involute starts.")
+    bore_radii = _of_both("bore_radius", "Bore radius, half the root radius where none was given.")
 
     @described("1")
     def ratio(self) -> float:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from base import Fault, Faults, Limit
 
 LIMITS = {
-    "h_aP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.0", low_open=True),
-    "h_fP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 1.25", low_open=True),
-    "rho_fP": Limit(0.0, 3.0, "modules", "ISO 53 profile A has 0.38", low_open=True),
+    "h_aP": Limit.above(0.0, 3.0, "modules", "ISO 53 profile A has 1.0"),
+    "h_fP": Limit.above(0.0, 3.0, "modules", "ISO 53 profile A has 1.25"),
+    "rho_fP": Limit.above(0.0, 3.0, "modules", "ISO 53 profile A has 0.38"),
     "alpha": Limit(
         math.radians(10.0), math.radians(35.0), "rad", "give the angle in radians (20 deg is 0.349066)"
     ),

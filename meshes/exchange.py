@@ -99,26 +99,22 @@ def as_meshio(
         start += len(mesh.points)
     points = np.concatenate([mesh.points for mesh in gears.values()])
     kinds = ("triangle6", "line3") if form.curved else ("triangle", "line")
-    blocks = [_Block(np.concatenate(triangles), np.concatenate(tooth))]
-    tags = [np.zeros(len(blocks[0].cells), dtype=int)]
+    inside = np.concatenate(triangles)
+    blocks = [(inside, np.concatenate(tooth), np.zeros(len(inside), dtype=int))]
     if form.edges:
-        blocks.append(_Block(np.concatenate(edges), np.concatenate(edge_tooth)))
-        tags.append(np.concatenate(numbers))
-    parts = 1 if form.curved else None
+        blocks.append((np.concatenate(edges), np.concatenate(edge_tooth), np.concatenate(numbers)))
+    if not form.curved:
+        blocks = [_straight(*block) for block in blocks]
+    cells, teeth, tags = (list(parts) for parts in zip(*blocks, strict=True))
     made = meshio.Mesh(
-        np.column_stack([points, np.zeros(len(points))]),
-        [
-            (kind, block.cells if parts else block.straight)
-            for kind, block in zip(kinds, blocks, strict=False)
-        ],
+        np.column_stack([points, np.zeros(len(points))]), list(zip(kinds, cells, strict=False))
     )
-    repeats = [parts or block.pieces for block in blocks]
     if form.number:
-        made.cell_data[form.number] = [np.tile(tag, n) for tag, n in zip(tags, repeats, strict=True)]
+        made.cell_data[form.number] = tags
         made.field_data = {name: np.array([k, 1]) for k, name in enumerate(names, 1)}
         made.cell_tags = {k: [name] for k, name in enumerate(names, 1)}  # med keeps the names
     if form.fields:
-        made.cell_data["tooth"] = [np.tile(block.tooth, n) for block, n in zip(blocks, repeats, strict=True)]
+        made.cell_data["tooth"] = teeth
         for name, on in nodes.items():
             made.point_data[name] = np.zeros(len(points), dtype=np.int32)
             made.point_data[name][on] = 1
@@ -127,23 +123,11 @@ def as_meshio(
     return made
 
 
-@dataclass(frozen=True)
-class _Block:
-    """Second-order elements, three or six nodes each, with the tooth of each."""
-
-    cells: Integers
-    tooth: Integers
-
-    @property
-    def pieces(self) -> int:
-        """Straight elements that stand for one of these."""
-        return 4 if self.cells.shape[1] == 6 else 2
-
-    @property
-    def straight(self) -> Integers:
-        """The straight elements, all first ones before all second ones."""
-        picks = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]) if self.pieces == 4 else ([0, 2], [2, 1])
-        return np.concatenate([self.cells[:, pick] for pick in picks])
+def _straight(cells: Integers, *data: Integers) -> tuple[Integers, ...]:
+    """Straight elements that stand for second-order ones, all first ones before all second ones, and their data."""
+    picks = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]) if cells.shape[1] == 6 else ([0, 2], [2, 1])
+    pieces = np.concatenate([cells[:, pick] for pick in picks])
+    return pieces, *(np.tile(one, len(picks)) for one in data)
 
 
 def write_by_meshio(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gears import ToothProfile
 
 
-_LENGTH = Limit(0.0, unit="modules", low_open=True, remedy="give a positive edge length")
+_LENGTH = Limit.above(0.0, unit="modules", remedy="give a positive edge length")
 _LIMITS = dict.fromkeys(("flank", "fillet", "root", "top", "corner", "rim", "growth"), _LENGTH) | {
     "layer_growth": Limit(1.0, remedy="layers grow towards the bore")
 }

@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.bench.case import (
-    Answer,
-    Case,
-    Level,
-    Levels,
-    answer,
-    case,
-    level,
-    over,
-    percent,
-    value,
-)
+from flankfilm.bench.case import Answer, Case, Level, Levels, answer, case, level, over, percent, value
 from flankfilm.bench.examples import DOMAIN, contacts_along_path, pitch_point
 from flankfilm.bench.work_cases import work_film
 

@@ -9,8 +9,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-LIBRARIES = ("flankfilm", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
-THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+from flankfilm.cache import LIBRARIES
+from flankfilm.studies.executors import THREADS, default_workers
 
 
 @dataclass(frozen=True)
@@ -71,12 +71,12 @@ def this_machine() -> Machine:
     """Describe the machine that this process runs on."""
     return Machine(
         _processor(),
-        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+        default_workers(),
         _memory(),
         f"{platform.system()}, {platform.machine()}",
         f"{platform.python_implementation()} {platform.python_version()}",
         _blas(),
-        {name: version(name) for name in LIBRARIES},
+        {name: version(name) for name in ("flankfilm", *LIBRARIES)},
         {name: os.environ[name] for name in THREADS if name in os.environ},
         load(),
     )

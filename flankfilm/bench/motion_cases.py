@@ -6,18 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.bench.case import (
-    Answer,
-    Case,
-    Levels,
-    PeerWork,
-    Series,
-    answer,
-    case,
-    level,
-    over,
-    value,
-)
+from flankfilm.bench.case import Answer, Case, Levels, PeerWork, Series, answer, case, level, over, value
 from flankfilm.bench.examples import PERIODS, START, oscillator
 from flankfilm.bench.stepwise_cases import stepwise
 from flankfilm.bench.work_cases import work_motion

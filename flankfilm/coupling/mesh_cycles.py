@@ -97,7 +97,7 @@ def checked(tolerance: float, **positive: float) -> float:
         With every fault.
     """
     with Faults() as faults:
-        faults.number("tolerance", tolerance, Limit(0.0, 0.4, low_open=True, remedy="such as 0.005"))
+        faults.number("tolerance", tolerance, Limit.above(0.0, 0.4, remedy="such as 0.005"))
         for name, value in positive.items():
-            faults.number(name, value, Limit(0.0, low_open=True))
+            faults.number(name, value, Limit.above(0.0))
     return tolerance

@@ -32,10 +32,11 @@ def import_gears(
         Basic rack of ISO 53, where the file names no tool.
     """
     from flankfilm.exchange.bring_in import imported
+    from flankfilm.folder import write_new
 
     target = out if out is not None else Path(f"{file.stem}.toml")
     brought = imported(file, stage=stage, rack=rack)
-    _write_new(target, brought.text)
+    write_new(target, brought.text, "Name another: --out")
     for note in brought.notes:
         print(note)
     print(f"{target} is written.")
@@ -184,12 +185,3 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
 
     print(app.generate_completion(prog_name="flankfilm", shell=shell))
     return 0
-
-
-def _write_new(path: Path, text: str) -> None:
-    """Write a file that must not exist yet."""
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError as fault:
-        raise InputError.at(path, "", "exists already and is kept", "Name another: --out") from fault

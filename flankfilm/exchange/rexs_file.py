@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from base import InputError, shorten
+from flankfilm.folder import content_of
 
 LARGEST_FILE = 50_000_000
 """Bytes; a gear unit with all its bearings and results is a few megabytes."""
@@ -119,16 +120,7 @@ def parse_model(content: bytes, name: str) -> Model:
 
 
 def _bytes_of(path: Path) -> bytes:
-    try:
-        if not path.is_file():
-            what = "is a folder" if path.is_dir() else "does not exist"
-            raise InputError.at(path, "", what, "Name a REXS file")
-        if path.stat().st_size > LARGEST_FILE:
-            allowed = f"is larger than {LARGEST_FILE:,} bytes"
-            raise InputError.at(path, "", allowed, "Export the stage alone, without results")
-        content = path.read_bytes()
-    except OSError as fault:
-        raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
+    content = content_of(path, LARGEST_FILE, "Name a REXS file", "Export the stage alone, without results")
     for start, kind in ((b"PK", "a ZIP archive (.rexsz)"), (b"{", "JSON (.rexsj)")):
         if content.lstrip()[:2].startswith(start):
             remedy = "Unpack it, or export the model as XML (.rexs)"

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from base import Fault, InputError, shorten
+from base import Faults, InputError, shorten
 from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.draft import GEARS, OPEN, Draft
 from flankfilm.exchange.rexs_attributes import Attribute
@@ -69,8 +69,7 @@ def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
     relation = _chosen(model, source, stage)
     reader = _StageReader(model, source, relation)
     draft = reader.draft()
-    if reader.faults:
-        raise InputError(reader.faults)
+    reader.faults.raise_if_any()
     return draft
 
 
@@ -95,7 +94,7 @@ class _StageReader:
     model: Model
     source: str
     relation: Relation
-    faults: list[Fault] = field(default_factory=list)
+    faults: Faults = field(default_factory=Faults)
     notes: list[str] = field(default_factory=list)
 
     def draft(self) -> Draft:
@@ -155,7 +154,7 @@ class _StageReader:
         self, component: Component, attribute: Attribute, value: str, allowed: str, remedy: str = ""
     ) -> None:
         where = f"{self.source}: {component}: {attribute.name}"
-        self.faults.append(Fault(where, shorten(value), allowed, remedy))
+        self.faults.add(where, shorten(value), allowed, remedy)
 
     def _gears(self, stage: Component) -> tuple[Component, Component] | None:
         """Driving gear and driven gear; gear 1 drives where the file does not say."""
@@ -163,11 +162,11 @@ class _StageReader:
         first, second = listed
         for role, gear in zip(("gear_1", "gear_2"), listed, strict=True):
             if gear is None:
-                self.faults.append(Fault(f"{self.source}: {stage}", "", f"has no {role}", "Export it again"))
+                self.faults.add(f"{self.source}: {stage}", "", f"has no {role}", "Export it again")
             elif gear.type != "cylindrical_gear":
                 allowed = "is no external cylindrical gear; internal and other gears are out of scope"
-                self.faults.append(Fault(f"{self.source}: {stage}: {role}", str(gear), allowed))
-        if first is None or second is None or self.faults:
+                self.faults.add(f"{self.source}: {stage}: {role}", str(gear), allowed)
+        if first is None or second is None or self.faults.found:
             return None
         drives = {}
         for relation in self.model.related("stage_gear_data", "stage", stage.id):
@@ -264,7 +263,7 @@ class _StageReader:
         for name, a, b in zip(("addendum", "tip radius"), first, second, strict=True):
             if abs(a - b) > SAME * abs(a):
                 allowed = f"must be {a:g} modules, as that of {tools[0]}: a pair has one basic rack"
-                self.faults.append(Fault(f"{self.source}: {tools[1]}: {name}", f"{b:g}", allowed))
+                self.faults.add(f"{self.source}: {tools[1]}: {name}", f"{b:g}", allowed)
         return rack | {"h_fP": first[0], "rho_fP": first[1]}
 
     def _in_modules(self, tool: Component, attributes: tuple[Attribute, ...], module: float) -> float:

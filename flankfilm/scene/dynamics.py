@@ -76,7 +76,7 @@ class DynamicsSection(Section):
         "damping_ratio": replace(OSCILLATOR["damping_ratio"], high=5.0),
         "transmission_error": Limit(0.0, 0.01, "m"),
         "error_phase": Limit(-2.0 * math.pi, 2.0 * math.pi, "rad"),
-        "length": Limit(0.0, 1.0, "m", low_open=True),
+        "length": Limit.above(0.0, 1.0, "m"),
         "mean_force": _NUMBER,
         "error_amplitude": _NUMBER,
         "half_backlash": _NUMBER,

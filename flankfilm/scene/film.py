@@ -127,7 +127,7 @@ class FilmSection(Section):
     """The oil film."""
 
     ground: ClassVar[Limits] = {
-        "meniscus": Limit(0.0, 1.0, "m", low_open=True),
+        "meniscus": Limit.above(0.0, 1.0, "m"),
         "meniscus_half_widths": Limit(1.00001, 1e6),
         "thickness": Limit(1e-10, 0.01, "m"),
     }

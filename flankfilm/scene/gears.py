@@ -96,8 +96,8 @@ class HubSection(Section):
     """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
 
     ground: ClassVar[Limits] = {
-        "radial_stiffness": Limit(0.0, 1e15, "N/m", low_open=True),
-        "torsional_stiffness": Limit(0.0, 1e15, "N m/rad", low_open=True),
+        "radial_stiffness": Limit.above(0.0, 1e15, "N/m"),
+        "torsional_stiffness": Limit.above(0.0, 1e15, "N m/rad"),
         "hub_radius": GEAR["bore_radius"],
     }
 

@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from base import Fault, InputError
+from flankfilm.folder import content_of
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.schema import Scene
@@ -75,9 +76,8 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
     try:
         raw = tomllib.loads(text)
     except ValueError as fault:  # also a number of more digits than Python reads
-        raise InputError.at(
-            name, "", f"must be TOML: {fault}", "'flankfilm new' writes a scene to start from"
-        ) from fault
+        remedy = "'flankfilm new' writes a scene to start from"
+        raise InputError.at(name, "", f"must be TOML: {fault}", remedy) from fault
     except RecursionError as fault:
         raise InputError([_too_deep(name)]) from fault
     bounded(raw, name)
@@ -104,17 +104,11 @@ def _too_deep(name: str) -> Fault:
 
 def read_text(path: Path) -> str:
     """Read a scene or study file as text."""
+    remedy = "name a scene file, or write one: flankfilm new FILE"
     try:
-        if not path.is_file():
-            what = "is a folder" if path.is_dir() else "does not exist"
-            raise InputError.at(path, "", what, "name a scene file, or write one: flankfilm new FILE")
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError.at(path, "", f"is larger than {LARGEST_FILE:,} bytes, so no scene or study")
-        return path.read_bytes().decode("utf-8")
+        return content_of(path, LARGEST_FILE, remedy, "a scene or study is a few kilobytes").decode("utf-8")
     except UnicodeDecodeError as fault:
         raise InputError.at(path, "", "is not a text file (TOML in UTF-8)") from fault
-    except OSError as fault:
-        raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
 
 
 def validated(raw: dict[str, Any]) -> Scene:

@@ -15,7 +15,8 @@ from base import InputError
 
 Kind = Literal["processes", "dask", "mpi"]
 
-_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+"""Variables that limit the threads of libraries."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def _mpi() -> Iterator[Pool]:
     except (ImportError, RuntimeError) as fault:
         raise _missing("mpi", "mpi4py") from fault
     # ranks have started already: they take the settings before they load the libraries that heed them
-    with MPIPoolExecutor(env=dict.fromkeys(_ONE_THREAD, "1")) as pool:
+    with MPIPoolExecutor(env=dict.fromkeys(THREADS, "1")) as pool:
         try:
             yield Pool(pool, lambda: pool.num_workers)
         finally:
@@ -106,8 +107,8 @@ def _leave_interrupts() -> None:
 @contextmanager
 def _single_threaded() -> Iterator[None]:
     """Have processes that are started meanwhile use one thread each: cores are shared by rows, not within."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
         yield
     finally:

@@ -16,8 +16,6 @@ from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.table import ROWS, Columns, Line, append, locked, read_lines
 
-PACKAGES = ("base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm")
-
 
 @dataclass(frozen=True)
 class Work:
@@ -83,7 +81,7 @@ def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
     """
     claim(folder)
     with locked(folder):
-        digest = code_digest(PACKAGES)
+        digest = code_digest()
         lines = _rows_there(folder, work, resume, digest)
         plain = {"title": work.title, work.kind: work.identity, "code_sha256": digest}
         write_text(_note(folder, work), json.dumps(plain, indent=1))

@@ -17,7 +17,7 @@ from gears.pair import GearPair
 _AMOUNT = Limit(0.0, unit="m", remedy="give its amount in metres")
 _LIMITS = {
     "force": NORMAL_FORCE,
-    "reduced_mass": Limit(0.0, unit="kg", remedy="give the mass in kilograms", low_open=True),
+    "reduced_mass": Limit.above(0.0, unit="kg", remedy="give the mass in kilograms"),
     "pitch_deviation": _AMOUNT,
     "profile_deviation": _AMOUNT,
     "relief": _AMOUNT,
