@@ -51,7 +51,7 @@ def results_cache(use: bool = True) -> Cache:
 
 
 @cache
-def code_digest(packages: tuple[str, ...] = PACKAGES) -> str:
+def code_digest(packages: tuple[str, ...]) -> str:
     """Digest of the source files of `packages`, and of Python and the libraries' versions."""
     digest = hashlib.sha256(platform.python_version().encode())
     for name in LIBRARIES:

@@ -40,19 +40,13 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def pair_html(pair: GearPair) -> str:
     """Key data of a pair and a drawing of its mesh at the pitch point."""
-    first, second = pair.teeth_profiles
+    teeth = pair.teeth_profiles
     both = [
-        ("teeth", "", f"{first.teeth}", f"{second.teeth}"),
+        ("teeth", "", *(f"{tooth.teeth}" for tooth in teeth)),
         ("profile shift", "", f"{pair.pinion.profile_shift:g}", f"{pair.wheel.profile_shift:g}"),
         *(
-            (f"{name} diameter", "mm", f"{2e3 * a:.4f}", f"{2e3 * b:.4f}")
-            for name, a, b in (
-                ("tip", first.tip_radius, second.tip_radius),
-                ("reference", first.reference_radius, second.reference_radius),
-                ("base", first.base_radius, second.base_radius),
-                ("root", first.root_radius, second.root_radius),
-                ("bore", first.bore_radius, second.bore_radius),
-            )
+            (f"{name} diameter", "mm", *(f"{2e3 * getattr(tooth, f'{name}_radius'):.4f}" for tooth in teeth))
+            for name in ("tip", "reference", "base", "root", "bore")
         ),
     ]
     common = [

@@ -161,12 +161,9 @@ class PairGeometry:
 
         J = pi rho b (r^4 - r_bore^4) / 2
         """
+        scale = 0.5 * math.pi * self.face_width
         first, second = (
-            0.5
-            * math.pi
-            * material.density
-            * self.face_width
-            * (tooth.reference_radius**4 - tooth.bore_radius**4)
+            scale * material.density * (tooth.reference_radius**4 - tooth.bore_radius**4)
             for material, tooth in zip(self.materials, self.teeth_profiles, strict=True)
         )
         return first, second

@@ -100,7 +100,7 @@ def as_meshio(
     points = np.concatenate([mesh.points for mesh in gears.values()])
     kinds = ("triangle6", "line3") if form.curved else ("triangle", "line")
     inside = np.concatenate(triangles)
-    blocks = [(inside, np.concatenate(tooth), np.zeros(len(inside), dtype=int))]
+    blocks: list[tuple[Integers, ...]] = [(inside, np.concatenate(tooth), np.zeros(len(inside), dtype=int))]
     if form.edges:
         blocks.append((np.concatenate(edges), np.concatenate(edge_tooth), np.concatenate(numbers)))
     if not form.curved:

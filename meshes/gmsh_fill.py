@@ -74,15 +74,11 @@ def _mesh_polygon(model: Any, polygon: Array) -> tuple[Array, Integers]:
     geo.synchronize()
     model.mesh.generate(2)
     tags, coordinates, _ = model.mesh.getNodes()
-    order = {int(model.mesh.getNodes(0, corner)[0][0]): i for i, corner in enumerate(corners)}
+    ours = np.array([int(model.mesh.getNodes(0, corner)[0][0]) for corner in corners])
+    ordered = np.concatenate([ours, tags[~np.isin(tags, ours)]]).astype(np.int64)
     index = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
-    new = n
+    index[ordered] = np.arange(len(ordered))
     points = np.empty((len(tags), 2))
-    for tag, xyz in zip(tags, np.reshape(coordinates, (-1, 3)), strict=True):
-        place = order.get(int(tag))
-        if place is None:
-            place, new = new, new + 1
-        index[int(tag)] = place
-        points[place] = xyz[:2]
+    points[index[tags.astype(np.int64)]] = np.reshape(coordinates, (-1, 3))[:, :2]
     _, nodes = model.mesh.getElementsByType(2, surface)
     return points, index[np.reshape(nodes, (-1, 3)).astype(np.int64)]

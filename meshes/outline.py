@@ -92,6 +92,11 @@ class Curve:
     size: Callable[[Array], Array]
 
 
+def arc(name: str, radius: float, start: float, end: float, size: Callable[[Array], Array]) -> Curve:
+    """Curve about the gear's axis, between polar angles [rad]."""
+    return Curve(name, start, end, lambda angle: polar(radius, angle), size)
+
+
 def cut(curve: Curve, samples: int = 400) -> Array:
     """Parameters of the nodes on a curve: the edge length follows ``curve.size``.
 
@@ -175,15 +180,8 @@ def sector_curves(
         Curve("side_right", bottom_radius, profile.root_radius, lambda r: polar(r, half_pitch), graded(side))
     ]
     if (half_pitch - profile.root_half_angle) * profile.root_radius > 1e-6 * m:
-        right.append(
-            Curve(
-                "root_right",
-                half_pitch,
-                profile.root_half_angle,
-                lambda angle: polar(profile.root_radius, angle),
-                graded(constant(sizes.root)),
-            )
-        )
+        ends = half_pitch, profile.root_half_angle
+        right.append(arc("root_right", profile.root_radius, *ends, graded(constant(sizes.root))))
     right.append(Curve("fillet_right", 0.0, 1.0, profile.fillet, graded(constant(sizes.fillet))))
     base2 = 2.0 * profile.base_radius
 
@@ -200,23 +198,13 @@ def sector_curves(
 
         return Curve(curve.name.replace("right", "left"), curve.end, curve.start, at, curve.size)
 
-    top = Curve(
-        "top",
-        profile.tip_half_angle,
-        -profile.tip_half_angle,
-        lambda angle: polar(profile.tip_radius, angle),
-        constant(sizes.top),
-    )
+    land = profile.tip_half_angle
+    top = arc("top", profile.tip_radius, land, -land, constant(sizes.top))
     # a rim thinner than 1.7 modules bends: its edges are shorter in proportion
     thin = min(1.0, 0.6 * (profile.root_radius - bottom_radius) / m)
     bottom_edges = max(3, int(np.ceil(profile.pitch_angle * bottom_radius / (sizes.rim * m * thin) - 1e-9)))
-    bottom = Curve(
-        "bottom",
-        -half_pitch,
-        half_pitch,
-        lambda angle: polar(bottom_radius, angle),
-        lambda points: np.full(len(points), profile.pitch_angle * bottom_radius / bottom_edges),
-    )
+    edge = profile.pitch_angle * bottom_radius / bottom_edges
+    bottom = arc("bottom", bottom_radius, -half_pitch, half_pitch, lambda points: np.full(len(points), edge))
     return (*right, top, *(mirrored(curve) for curve in reversed(right)), bottom)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from base import Array, InputError, Integers, record
 from gears.plane import polar
 from meshes.gmsh_fill import triangulate
-from meshes.outline import Curve, Sizes, cut, sector_curves
+from meshes.outline import Curve, Sizes, arc, cut, sector_curves
 from meshes.triangle import NODES, shape_gradients
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def mesh_sector(
     (['bore', 'fillet_left', 'fillet_right'], True)
     """
     sizes = sizes or Sizes()
-    m, pitch = profile.module, profile.pitch_angle
+    m = profile.module
     rim = profile.root_radius - 0.8 * np.pi * m
     layered = rim - profile.bore_radius > 0.6 * sizes.rim * m
     bottom = rim if layered else profile.bore_radius
@@ -120,13 +120,8 @@ def mesh_sector(
     if layered:
         radii = _layer_radii(rim, profile.bore_radius, sizes, m)
         points, triangles = _add_layers(points, triangles, ends, cuts[-1], radii)
-        named["bottom"] = Curve(
-            "bore",
-            -0.5 * pitch,
-            0.5 * pitch,
-            lambda angle: polar(profile.bore_radius, angle),
-            curves[-1].size,
-        )
+        half = 0.5 * profile.pitch_angle
+        named["bottom"] = arc("bore", profile.bore_radius, -half, half, curves[-1].size)
     ends["bore"], named["bore"] = ends.pop("bottom"), named.pop("bottom")
     mesh = _second_order(points, triangles, ends, named, (profile.teeth, m, profile.base_radius))
     for _ in range(refinements):

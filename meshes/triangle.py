@@ -12,18 +12,9 @@ NODES: Array = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]]
 
 def shape(xi: Array, eta: Array) -> Array:
     """Evaluate the shape functions (..., 6) at reference coordinates."""
-    l0 = 1 - xi - eta
-    return np.stack(
-        [
-            l0 * (2 * l0 - 1),
-            xi * (2 * xi - 1),
-            eta * (2 * eta - 1),
-            4 * xi * l0,
-            4 * xi * eta,
-            4 * eta * l0,
-        ],
-        axis=-1,
-    )
+    corners = np.stack([1 - xi - eta, xi, eta], axis=-1)
+    middles = 4 * corners * np.roll(corners, -1, axis=-1)
+    return np.concatenate([corners * (2 * corners - 1), middles], axis=-1)
 
 
 def shape_gradients(xi: Array, eta: Array) -> Array:

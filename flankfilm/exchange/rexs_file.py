@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from xml.parsers import expat
+from xml.etree import ElementTree as ET
 
 from base import InputError, shorten
 from flankfilm.folder import content_of
@@ -102,21 +102,42 @@ def read_model(path: Path) -> Model:
 
 def parse_model(content: bytes, name: str) -> Model:
     """Read the content of a REXS file that faults call `name`; see `read_model`."""
-    reader = _Reader(name)
-    parser = expat.ParserCreate(namespace_separator="}")
-    parser.buffer_text = True
-    parser.StartDoctypeDeclHandler = reader.doctype
-    parser.StartElementHandler = reader.start
-    parser.EndElementHandler = reader.end
-    parser.CharacterDataHandler = reader.text
+    parser = ET.XMLParser(target=_Tree(name))
     try:
-        parser.Parse(content, True)
-    except (expat.ExpatError, ValueError, LookupError) as fault:
+        parser.feed(content)
+        root = parser.close()
+    except (ET.ParseError, ValueError, LookupError) as fault:
         if isinstance(fault, InputError):
             raise
         allowed = f"must be XML: {shorten(str(fault))}"
         raise InputError.at(name, "", allowed, "Export the model again as REXS (XML)") from fault
-    return reader.model()
+    if root.tag != "model":
+        allowed = "is XML but no REXS model (its outermost element is not model)"
+        raise InputError.at(name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")
+    version = root.get("version", "")
+    if not version.startswith(VERSIONS):
+        allowed = "is not a REXS version that is known here"
+        raise InputError.at(f"{name}: version", repr(version), allowed, "Versions 1.0 to 2.0")
+    components: dict[str, Component] = {}
+    for one in map(_component, root.iterfind("components/component")):
+        if one.id in components:
+            value = f"component id {shorten(one.id)}"
+            raise InputError.at(name, value, "stands twice; ids must differ", "Export it again")
+        components[one.id] = one
+    relations = (
+        Relation(found.get("type", ""), {r.get("role", ""): r.get("id", "") for r in found.iterfind("ref")})
+        for found in root.iterfind("relations/relation")
+    )
+    made_by = f"{root.get('applicationId', '')} {root.get('applicationVersion', '')}".strip()
+    return Model(version, made_by, components, tuple(relations))
+
+
+def _component(element: ET.Element) -> Component:
+    attributes = {
+        found.get("id", ""): ((found.text or "").strip()[:LONGEST_VALUE], found.get("unit", "").strip())
+        for found in element.iterfind("attribute[@id]")
+    }
+    return Component(element.get("id", ""), element.get("type", ""), element.get("name", ""), attributes)
 
 
 def _bytes_of(path: Path) -> bytes:
@@ -128,78 +149,27 @@ def _bytes_of(path: Path) -> bytes:
     return content
 
 
-class _Reader:
-    """Gathers components and relations while the parser goes through the file."""
+class _Tree(ET.TreeBuilder):
+    """Builds the elements of a file that declares no document type and is not nested without end."""
 
     def __init__(self, name: str) -> None:
+        super().__init__()
         self._name = name
-        self._path: list[str] = []
-        self._head: dict[str, str] | None = None
-        self._components: dict[str, Component] = {}
-        self._relations: list[Relation] = []
-        self._attributes: dict[str, tuple[str, str]] = {}
-        self._component: dict[str, str] = {}
-        self._relation = ""
-        self._roles: dict[str, str] = {}
-        self._attribute: tuple[str, str] = ("", "")
-        self._value: list[str] | None = None
+        self._depth = 0
 
     def doctype(self, *_: object) -> None:
         remedy = "REXS files have none; remove it if you trust the file"
         raise InputError.at(self._name, "", "has a document type declaration, which is refused", remedy)
 
-    def start(self, tag: str, marks: dict[str, str]) -> None:
-        self._path.append(tag.rpartition("}")[2])
-        if len(self._path) > DEEPEST:
+    def start(self, tag: str, attrs: dict[str, str], /) -> ET.Element:
+        self._depth += 1
+        if self._depth > DEEPEST:
             raise InputError.at(self._name, "", f"is nested deeper than {DEEPEST} elements")
-        match self._path:
-            case ["model"]:
-                self._head = marks
-            case ["model", "relations", "relation"]:
-                self._relation, self._roles = marks.get("type", ""), {}
-            case ["model", "relations", "relation", "ref"]:
-                self._roles[marks.get("role", "")] = marks.get("id", "")
-            case ["model", "components", "component"]:
-                self._component, self._attributes = marks, {}
-            case ["model", "components", "component", "attribute"]:
-                self._attribute, self._value = (marks.get("id", ""), marks.get("unit", "")), []
-            case ["model", "components", "component", "attribute", *_]:
-                self._value = None  # an array, a matrix: no scalar
+        return super().start(tag.rpartition("}")[2], attrs)
 
-    def text(self, data: str) -> None:
-        if self._value is not None and self._path[-1] == "attribute":
-            self._value.append(data[: LONGEST_VALUE + 1])
-            if len(self._value) > LONGEST_VALUE:
-                self._value = None
-
-    def end(self, tag: str) -> None:
-        match self._path:
-            case ["model", "relations", "relation"]:
-                self._relations.append(Relation(self._relation, self._roles))
-            case ["model", "components", "component"]:
-                self._keep()
-            case ["model", "components", "component", "attribute"] if self._value is not None:
-                name, unit = self._attribute
-                self._attributes[name] = ("".join(self._value).strip()[:LONGEST_VALUE], unit.strip())
-                self._value = None
-        self._path.pop()
-
-    def _keep(self) -> None:
-        marks = self._component
-        key = marks.get("id", "")
-        if key in self._components:
-            allowed = "stands twice; ids must differ"
-            raise InputError.at(self._name, f"component id {shorten(key)}", allowed, "Export it again")
-        kind, name = marks.get("type", ""), marks.get("name", "")
-        self._components[key] = Component(key, kind, name, self._attributes)
-
-    def model(self) -> Model:
-        if self._head is None:
-            allowed = "is XML but no REXS model (its outermost element is not model)"
-            raise InputError.at(self._name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")
-        version = self._head.get("version", "")
-        if not version.startswith(VERSIONS):
-            allowed = "is not a REXS version that is known here"
-            raise InputError.at(f"{self._name}: version", repr(version), allowed, "Versions 1.0 to 2.0")
-        made_by = self._head.get("applicationId", ""), self._head.get("applicationVersion", "")
-        return Model(version, " ".join(made_by).strip(), self._components, tuple(self._relations))
+    def end(self, tag: str, /) -> ET.Element:
+        self._depth -= 1
+        element = super().end(tag)
+        if element.tag == "attribute" and len(element):
+            element.clear()  # an array, a matrix: no scalar, and much of some files
+        return element

@@ -8,6 +8,7 @@ named by an ordered_reference of the gear up to 1.1 and by a manufacturing_step 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -21,22 +22,11 @@ from flankfilm.exchange.rexs_file import Component, Model, Relation
 SAME = 1e-9
 """Relative difference within which two numbers of a file are one number."""
 
-MODIFICATIONS = (
-    "tip_relief",
-    "root_relief",
-    "triangular_tip_relief",
-    "triangular_root_relief",
-    "profile_crowning",
-    "profile_slope",
-    "profile_twist",
-    "profile_deviation",
-    "helix_crowning",
-    "helix_slope",
-    "helix_deviation",
-    "end_relief_datum_face",
-    "end_relief_non_datum_face",
-    "topographical_modification",
+MODIFICATIONS = re.compile(
+    "(triangular_)?(tip|root)_relief|profile_(crowning|slope|twist|deviation)|helix_(crowning|slope|deviation)|"
+    "end_relief_(non_)?datum_face|topographical_modification"
 )
+"""Types of components that modify a flank."""
 
 
 def stages(model: Model) -> dict[str, Relation]:
@@ -321,7 +311,7 @@ class _StageReader:
             if not members & own:
                 continue
             for component in (self.model.components.get(i) for i in sorted(members - own)):
-                if component is not None and component.type in MODIFICATIONS:
+                if component is not None and MODIFICATIONS.fullmatch(component.type):
                     self.notes.append(f"{component} is not taken over; tip_relief is a key of the scene.")
 
 

@@ -51,11 +51,11 @@ def provenance(scene_json: str) -> dict[str, str]:
     import platform
     from importlib.metadata import version
 
-    from flankfilm.cache import LIBRARIES, code_digest
+    from flankfilm.cache import LIBRARIES, PACKAGES, code_digest
 
     versions = {name: version(name) for name in ("flankfilm", *LIBRARIES)}
     return {
         "scene_json": scene_json,
         "versions_json": json.dumps({"python": platform.python_version(), **versions}),
-        "code_sha256": code_digest(),
+        "code_sha256": code_digest(PACKAGES),
     }

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from base import InputError
-from flankfilm.cache import code_digest
+from flankfilm.cache import PACKAGES, code_digest
 from flankfilm.folder import claim
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
@@ -81,7 +81,7 @@ def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
     """
     claim(folder)
     with locked(folder):
-        digest = code_digest()
+        digest = code_digest(PACKAGES)
         lines = _rows_there(folder, work, resume, digest)
         plain = {"title": work.title, work.kind: work.identity, "code_sha256": digest}
         write_text(_note(folder, work), json.dumps(plain, indent=1))

@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
+from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
@@ -24,7 +26,7 @@ from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.tables import spelt
 from flankfilm.output.variables import sentence
 from flankfilm.stages.catalogue import FILM, MESH, PAIR, ROOT_STRESS, VERIFICATION
-from flankfilm.stages.engine import Engine
+from flankfilm.stages.engine import Engine, Stage
 from gears import GearPair
 
 
@@ -147,46 +149,32 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
     return of
 
 
+def _of(stage: Stage[Any], value: Take) -> Callable[[Engine], Any]:
+    return lambda engine: value(engine[stage])
+
+
 def _roots() -> Iterator[Named]:
     """Greatest stresses along the fillets."""
-    for gear in ("pinion", "wheel"):
-        for kind in ("tension", "compression"):
-            yield _output(
-                f"root_{kind}_{gear}",
-                Figure("Pa", f"greatest {kind} along the fillets of the {gear}", shown="MPa"),
-                "root-stress",
-                lambda engine, gear=gear, kind=kind: (
-                    getattr(  # type: ignore[misc]
-                        getattr(engine[ROOT_STRESS].stress, gear), f"greatest_{kind}"
-                    ).stress_Pa
-                ),
-            )
+    for gear, kind in product(("pinion", "wheel"), ("tension", "compression")):
+        meaning = f"greatest {kind} along the fillets of the {gear}"
+        about = Figure("Pa", meaning, shown="MPa")
+        stress = attrgetter(f"stress.{gear}.greatest_{kind}.stress_Pa")
+        yield _output(f"root_{kind}_{gear}", about, "root-stress", _of(ROOT_STRESS, stress))
 
 
 def _differences() -> Iterator[Named]:
     """Differences of the closed forms' mean mesh stiffness from finite elements held to the path."""
     forms = {**{key.replace("-", "_"): label for key, label in CLOSED_FORMS.items()}, "iso6336": "ISO 6336-1"}
-    for end, reference in (
-        ("", "held to the path"),
-        ("_like_for_like", "without hub wind-up and coupling"),
-    ):
-        for name, model in forms.items():
-            meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
-            yield _output(
-                f"{name}{end}",
-                Figure("1", meaning, shown="%"),
-                "closed-forms",
-                lambda engine, model=model, reference=reference: engine[VERIFICATION].difference(  # type: ignore[misc]
-                    model, reference
-                ),
-            )
+    ends = {"": "held to the path", "_like_for_like": "without hub wind-up and coupling"}
+    for (end, reference), (name, model) in product(ends.items(), forms.items()):
+        meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
+        value = _of(VERIFICATION, methodcaller("difference", model, reference))
+        yield _output(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value)
 
 
 def _harmonic(order: int) -> Named:
-    meaning = f"amplitude of harmonic {order} of the secant stiffness over its mean"
-    return _output(
-        f"harmonic_{order}", Figure("1", meaning), "stiffness", lambda engine: engine[MESH].harmonic(order)
-    )
+    about = Figure("1", f"amplitude of harmonic {order} of the secant stiffness over its mean")
+    return _output(f"harmonic_{order}", about, "stiffness", _of(MESH, methodcaller("harmonic", order)))
 
 
 OUTPUTS: Mapping[str, Output] = dict(
@@ -219,7 +207,7 @@ OUTPUTS: Mapping[str, Output] = dict(
             "efficiency",
             Figure("1", "power out over power in"),
             "stiffness",
-            lambda engine: getattr(engine[MESH].contact, "efficiency", None),
+            _of(MESH, lambda cycle: getattr(cycle.contact, "efficiency", None)),
             "{}, sliding of the dry contacts alone",
         ),
         _film("least_film"),
@@ -272,7 +260,7 @@ OUTPUTS: Mapping[str, Output] = dict(
             "film_error",
             Figure("1", "largest estimated relative error of the films; nan where unknown"),
             "film",
-            lambda engine: engine[FILM].film.error,
+            _of(FILM, attrgetter("film.error")),
         ),
         *_differences(),
     )

@@ -74,11 +74,9 @@ def contact_compliances(
         )
         warnings.warn(message, RangeWarning, stacklevel=3)
     first, second = (
-        depth_compliance(
-            tooth.depth, width, tooth.material.plane_strain_modulus, tooth.material.poisson_ratio
-        )
+        depth_compliance(tooth.depth, width, material.plane_strain_modulus, material.poisson_ratio)
         / pair.face_width
-        for tooth in teeth
+        for tooth, material in zip(teeth, pair.materials, strict=True)
     )
     return first, second
 

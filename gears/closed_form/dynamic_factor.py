@@ -120,20 +120,8 @@ def iso6336_dynamic(
 
 def _constants(ratio: float) -> tuple[float, float, float, float, float, float, float]:
     """C_v1 to C_v7 of a contact ratio."""
-    if ratio <= 1.5:
-        seven = 0.75
-    elif ratio <= 2.5:
-        seven = 0.125 * math.sin(math.pi * (ratio - 2.0)) + 0.875
-    else:
-        seven = 1.0
+    seven = 0.125 * math.sin(math.pi * (min(max(ratio, 1.5), 2.5) - 2.0)) + 0.875
     if ratio <= 2.0:
         return 0.32, 0.34, 0.23, 0.90, 0.47, 0.47, seven
-    return (
-        0.32,
-        0.57 / (ratio - 0.3),
-        0.096 / (ratio - 1.56),
-        (0.57 - 0.05 * ratio) / (ratio - 1.44),
-        0.47,
-        0.12 / (ratio - 1.74),
-        seven,
-    )
+    three, four = 0.096 / (ratio - 1.56), (0.57 - 0.05 * ratio) / (ratio - 1.44)
+    return 0.32, 0.57 / (ratio - 0.3), three, four, 0.47, 0.12 / (ratio - 1.74), seven
