@@ -197,8 +197,9 @@ def described(
 
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
-        function.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error)  # type: ignore[attr-defined]
-        return cached_property(function) if kept else Described(function)
+        found: Any = cached_property(function) if kept else Described(function)
+        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error)
+        return found
 
     return made
 
@@ -232,13 +233,8 @@ def record(cls: type[T]) -> type[T]:
 def figures(cls: type) -> dict[str, Figure]:
     """Figures of a record's class by name: fields in their order, then properties."""
     found = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
-    for name in (name for base in reversed(cls.__mro__) for name in vars(base)):
-        function = getattr(getattr(cls, name, None), "fget", None) or getattr(
-            getattr(cls, name, None), "func", None
-        )
-        if (figure := getattr(function, "__figure__", None)) is not None:
-            found[name] = figure
-    return found
+    properties = {name: getattr(cls, name, None) for base in reversed(cls.__mro__) for name in vars(base)}
+    return found | {n: one.__figure__ for n, one in properties.items() if hasattr(one, "__figure__")}
 
 
 def quantities(result: object) -> dict[str, Quantity]:

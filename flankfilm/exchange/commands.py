@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from base import Fault, InputError
+from base import InputError
 
 
 def import_gears(
@@ -41,9 +42,7 @@ def import_gears(
         print(note)
     print(f"{target} is written.")
     if brought.faults:
-        raise InputError(
-            [Fault(f"{target}: {f.where}", f.value, f.allowed, f.remedy) for f in brought.faults]
-        )
+        raise InputError(replace(fault, where=f"{target}: {fault.where}") for fault in brought.faults)
     print(f"Next: flankfilm check {target}")
     return 0
 

@@ -20,10 +20,6 @@ OPEN = math.nan
 GEARS = ("pinion", "wheel")
 
 
-def _no_pair() -> dict[str, Any]:
-    return {name: {} for name in GEARS}
-
-
 @dataclass(frozen=True)
 class Draft:
     """What a file says of a pair, by the keys of a scene and in its units.
@@ -44,7 +40,7 @@ class Draft:
     title: str
     source: str
     names: tuple[str, str]
-    pair: dict[str, Any] = field(default_factory=_no_pair)
+    pair: dict[str, Any] = field(default_factory=lambda: {name: {} for name in GEARS})
     material: dict[str, Any] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 

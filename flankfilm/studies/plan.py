@@ -8,7 +8,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
@@ -335,10 +335,8 @@ def _check_rows(plan: Plan) -> None:
             validated(plan.raw_scene(row))
         except InputError as error:
             for fault in error.faults:
-                faults.setdefault(
-                    (fault.where, fault.allowed),
-                    Fault(f"row {row}: {fault.where}", fault.value, fault.allowed, fault.remedy),
-                )
+                of_row = replace(fault, where=f"row {row}: {fault.where}")
+                faults.setdefault((fault.where, fault.allowed), of_row)
             if len(faults) >= MOST_FAULTS:
                 break
     if faults:
