@@ -233,8 +233,9 @@ def record(cls: type[T]) -> type[T]:
 def figures(cls: type) -> dict[str, Figure]:
     """Figures of a record's class by name: fields in their order, then properties."""
     found = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
-    properties = {name: getattr(cls, name, None) for base in reversed(cls.__mro__) for name in vars(base)}
-    return found | {n: one.__figure__ for n, one in properties.items() if hasattr(one, "__figure__")}
+    names = dict.fromkeys(name for base in reversed(cls.__mro__) for name in vars(base))
+    marked = ((name, getattr(getattr(cls, name, None), "__figure__", None)) for name in names)
+    return found | {name: figure for name, figure in marked if figure is not None}
 
 
 def quantities(result: object) -> dict[str, Quantity]:

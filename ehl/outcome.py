@@ -30,11 +30,9 @@ def film_error(coarse: Level, fine: Level) -> float:
     weights = np.where(np.abs(at) <= 1.0, coarse.grid.weights, 0.0)
     change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
-    changes = (
-        abs(getattr(before, name) / getattr(after, name) - 1.0)
-        for name in ("central_thickness", "minimum_thickness", "separation")
-    )
-    return _GRID_FACTOR * (profile + sum(changes))
+    names = ("central_thickness", "minimum_thickness", "separation")
+    changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
+    return _GRID_FACTOR * (profile + math.fsum(changes))
 
 
 def spike_error(coarse: Level, fine: Level) -> float:
