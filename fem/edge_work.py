@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from base import Array, Integers
-from fem import flamant
+from base import Array, Booleans, Integers, record
 from fem.elasticity import PlaneElasticity
 
-__all__ = ["edge_points", "traction_integrals"]
+__all__ = ["LineForces", "edge_points", "nodal", "traction_integrals"]
 
 _GAUSS, _GAUSS_WEIGHT = np.polynomial.legendre.leggauss(5)
 _GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
@@ -33,16 +32,31 @@ def edge_points(points: Array, edges: Integers, t: Array) -> tuple[Array, Array,
     )
 
 
+@record
+class LineForces:
+    """Unit line loads on a flank.
+
+    Attributes
+    ----------
+    place, inward : (loads, 2) arrays
+        Where they act [m], and normals of the flank into the material.
+    lean : (loads,) array
+        Angles of the forces from the normals [rad], anticlockwise.
+    """
+
+    place: Array
+    inward: Array
+    lean: Array
+
+    def part(self, some: Integers) -> LineForces:
+        """Some of the loads, each as often as it is named."""
+        return LineForces(self.place[some], self.inward[some], self.lean[some])
+
+
 def traction_integrals(
-    points: Array,
-    edges: Integers,
-    load: Array,
-    inward: Array,
-    law: PlaneElasticity,
-    length: float,
-    lean: float = 0.0,
+    points: Array, edges: Integers, loads: LineForces, law: PlaneElasticity, length: float
 ) -> tuple[Array, Array]:
-    """Nodal forces of Flamant's tractions, and their work on Flamant's own displacement.
+    """Forces of Flamant's tractions on the nodes of edges, and their work on Flamant's own displacement.
 
     Parameters
     ----------
@@ -50,57 +64,107 @@ def traction_integrals(
         Nodes [m].
     edges : (k, 3) array
         First node, last node, middle; material on the left.
-    load, inward : (loads, 2) arrays
-        Places [m] of unit line loads, and normals of the flank into the material.
+    loads : LineForces
     law : PlaneElasticity
     length : float
         Unit of length of the logarithm [m].
-    lean : float
-        Angle of the loads from the normals [rad], anticlockwise.
 
     Returns
     -------
-    forces : (2 n, loads) array
-        integral of phi_i sigma_s n ds [N/m per N/m].
-    work : (loads,) array
-        integral of u_s . sigma_s n ds [m per N/m].
+    forces : (k, 3, 2, loads) array
+        integral of phi_i sigma_s n ds over each edge, for its three nodes [N/m per N/m].
+    work : (k, loads) array
+        integral of u_s . sigma_s n ds over each edge [m per N/m].
     """
-    loads = len(load)
-    of, some, t, weight = _quadrature(points, edges, load)
-    place, along, values = edge_points(points, edges[some], t)
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=1)  # outward, times ds/dt
-    pull = flamant.traction(place, normal, load[of], flamant.leaning(inward, lean)[of]) * weight[:, None]
-    moved = flamant.displacement(place, load[of], inward[of], law, length, lean)
-    work = np.bincount(of, np.einsum("na,na->n", pull, moved), loads)
-    unknown = 2 * edges[some][:, :, None] + np.arange(2)
-    lumps = values[:, :, None] * pull[:, None, :]
-    forces = np.bincount(
-        (unknown * loads + of[:, None, None]).ravel(), lumps.ravel(), 2 * len(points) * loads
-    )
-    return np.asarray(forces, dtype=float).reshape(-1, loads), np.asarray(work, dtype=float)
+    nearest, near = _nearest(points, edges, loads.place)
+    place, along, values = edge_points(points, edges[:, None], np.broadcast_to(_GAUSS, (len(edges), 5)))
+    # outward normals, times ds
+    outward = np.stack([along[..., 1], -along[..., 0]]) * _GAUSS_WEIGHT
+    away = place[..., None] - loads.place.T
+    apart = ~near[:, None]
+    pull, work = _densities(away[:, :, 0], away[:, :, 1], outward[..., None], loads, law, length, apart)
+    lumps = np.swapaxes(values, 1, 2)[:, None] @ np.moveaxis(pull, 0, 1)
+    forces, works = np.swapaxes(lumps, 1, 2), work.sum(axis=1)
+    edge, load = np.nonzero(near)
+    if len(edge):
+        close, its_work = _on_panels(points, edges[edge], nearest[edge, load], loads.part(load), law, length)
+        forces[edge, :, :, load] = close
+        works[edge, load] = its_work
+    return forces, works
 
 
-def _quadrature(points: Array, edges: Integers, load: Array) -> tuple[Integers, Integers, Array, Array]:
-    """Load, edge, t on the edge and weight of every quadrature point, for all pairs of load and edge."""
+def nodal(edges: Integers, forces: Array, nodes: int) -> Array:
+    """Sum forces on the edges' nodes (k, 3, 2, loads) into those on all unknowns (2 nodes, loads)."""
+    from scipy.sparse import csr_array
+
+    unknown = (2 * edges[:, :, None] + np.arange(2)).ravel()
+    ones, place = np.ones(len(unknown)), np.arange(len(unknown))
+    gather = csr_array((ones, (unknown, place)), shape=(2 * nodes, len(unknown)))
+    return np.asarray(gather @ forces.reshape(len(unknown), -1))
+
+
+def _densities(
+    x: Array,
+    y: Array,
+    outward: Array,
+    loads: LineForces,
+    law: PlaneElasticity,
+    length: float,
+    apart: Booleans | None = None,
+) -> tuple[Array, Array]:
+    """Tractions (2, ...) and their work (...) on Flamant's displacement, at points away from loads by (x, y).
+
+    The stress is radial, so the parts of the displacement that do not move a point towards the load, and equal
+    parts of those that do, drop out of the work: -2/(pi E*) [cos ln(r/length) + (1 - nu*)/2 theta sin] is left.
+    Where ``apart`` is false both are zero.
+    """
+    n_x, n_y = loads.inward.T
+    along, across = x * n_x + y * n_y, y * n_x - x * n_y
+    theta = np.arctan2(across, along)
+    if np.any(loads.lean):
+        c, s = np.cos(loads.lean), np.sin(loads.lean)
+        along, across = c * along + s * across, c * across - s * along
+    r2 = x**2 + y**2
+    if apart is not None:
+        r2 = np.where(apart, r2, np.inf)
+    radial = -2 / np.pi * along * (x * outward[0] + y * outward[1]) / r2**2
+    log = 0.5 * np.log(r2 / length**2)
+    if apart is not None:
+        log = np.where(apart, log, 0.0)
+    moved = along * log + 0.5 * (1 - law.plane_poisson) * theta * across
+    return np.stack([radial * x, radial * y]), -2 / (np.pi * law.plane_modulus) * radial * moved
+
+
+def _nearest(points: Array, edges: Integers, loads: Array) -> tuple[Array, Booleans]:
+    """Parameter on each edge's chord nearest to each load, and whether the load is near the edge (k, loads)."""
     ends = points[edges[:, :2]]
     chord = ends[:, 1] - ends[:, 0]
-    length2 = np.einsum("ea,ea->e", chord, chord)
-    away = load[:, None] - ends[:, 0]
-    nearest = np.clip(np.einsum("lea,ea->le", away, chord) / length2, 0.0, 1.0)
-    near = np.sum((nearest[..., None] * chord - away) ** 2, axis=2) < 4 * length2
-    far_load, far_edge = np.nonzero(~near)
-    load_, edge_ = np.nonzero(near)
-    centre = nearest[load_, edge_][:, None]
+    length2 = np.sum(chord**2, axis=1)[:, None]
+    x, y = (loads[:, axis] - ends[:, :1, axis] for axis in (0, 1))
+    along = np.clip((x * chord[:, :1] + y * chord[:, 1:]) / length2, 0.0, 1.0)
+    apart2 = (along * chord[:, :1] - x) ** 2 + (along * chord[:, 1:] - y) ** 2
+    return along, apart2 < 4 * length2
+
+
+def _on_panels(
+    points: Array, edges: Integers, centre: Array, loads: LineForces, law: PlaneElasticity, length: float
+) -> tuple[Array, Array]:
+    """Forces (pairs, 3, 2) and work (pairs,) on an edge and of a load each, by panels halving to the nearest point."""
     halves = 0.5 ** np.arange(HALVINGS)
     halves[-1] = 0.0
+    centre = centre[:, None]
     start = np.concatenate([centre - centre * halves, centre + (1 - centre) * halves[:0:-1]], axis=1)
     width = np.diff(start, axis=1, append=1.0)
     which, panel = np.nonzero(width > 0)
     start, width = start[which, panel, None], width[which, panel, None]
-    count = len(_GAUSS)
-    return (
-        np.repeat(np.concatenate([far_load, load_[which]]), count),
-        np.repeat(np.concatenate([far_edge, edge_[which]]), count),
-        np.concatenate([np.tile(_GAUSS, len(far_load)), (start + width * _GAUSS).ravel()]),
-        np.concatenate([np.tile(_GAUSS_WEIGHT, len(far_load)), (width * _GAUSS_WEIGHT).ravel()]),
-    )
+    t = (start + width * _GAUSS).ravel()
+    weight = (width * _GAUSS_WEIGHT).ravel()
+    of = np.repeat(which, len(_GAUSS))
+    place, along, values = edge_points(points, edges[of], t)
+    outward = np.stack([along[:, 1], -along[:, 0]]) * weight
+    own = loads.part(of)
+    x, y = (place - own.place).T
+    pull, work = _densities(x, y, outward, own, law, length)
+    lumps = values[:, :, None] * pull.T[:, None, :]
+    first = np.flatnonzero(np.diff(of, prepend=-1))
+    return np.add.reduceat(lumps, first, axis=0), np.add.reduceat(work, first)

@@ -46,32 +46,45 @@ def _turned(direction: Array) -> Array:
     return np.stack([-direction[..., 1], direction[..., 0]], axis=-1)
 
 
-def leaning(inward: Array, lean: float) -> Array:
-    """Directions (..., 2) turned anticlockwise by an angle [rad]."""
-    return np.asarray(inward if lean == 0.0 else np.cos(lean) * inward + np.sin(lean) * _turned(inward))
+def leaning(inward: Array, lean: float | Array) -> Array:
+    """Directions (..., 2) turned anticlockwise by an angle, or by one (...) for each [rad]."""
+    if not np.any(lean):
+        return inward
+    turn = np.asarray(lean)[..., None]
+    return np.asarray(np.cos(turn) * inward + np.sin(turn) * _turned(inward))
 
 
 def displacement(
-    points: Array, load: Array, inward: Array, law: PlaneElasticity, length: float, lean: float = 0.0
+    points: Array,
+    load: Array,
+    inward: Array,
+    law: PlaneElasticity,
+    length: float,
+    lean: float | Array = 0.0,
 ) -> Array:
-    """Displacement (n, 2) per unit line load [m per N/m] at points (n, 2), none of them the load itself.
+    """Displacement (..., 2) per unit line load [m per N/m] at points (..., 2), none of them the load itself.
 
-    One load for all points, or a load and its inward normal (n, 2) for each. The force leans from the normal
-    by the angle ``lean`` [rad], anticlockwise.
+    One load for all points, or a load and its inward normal (..., 2) for each; the shapes are broadcast. The force
+    leans from the normal by the angle ``lean`` [rad], anticlockwise.
+
+    With theta in the second place of both equations above, the components along and across the force are
+    -2/(pi E*) [ln(r/length) + (1 + nu*)/2 sin^2] and 2/(pi E*) [(1 + nu*)/2 sin cos - (1 - nu*)/2 theta].
     """
-    along, across, r = _frame(points, load, inward)
+    x, y = (points[..., axis] - load[..., axis] for axis in (0, 1))
+    n_x, n_y = inward[..., 0], inward[..., 1]
+    along, across = x * n_x + y * n_y, y * n_x - x * n_y
     theta = np.arctan2(across, along)
-    if lean:
-        inward = leaning(inward, lean)
-        along, across, r = _frame(points, load, inward)
+    if np.any(lean):
+        c, s = np.cos(lean), np.sin(lean)
+        n_x, n_y = c * n_x - s * n_y, c * n_y + s * n_x
+        along, across = c * along + s * across, c * across - s * along
     factor = 2 / (np.pi * law.plane_modulus)
     half_minus, half_plus = 0.5 * (1 - law.plane_poisson), 0.5 * (1 + law.plane_poisson)
-    log, cos, sin = np.log(r / length), along / r, across / r
-    radial = -factor * (log * cos + half_minus * theta * sin)
-    turning = factor * (log * sin + half_plus * sin - half_minus * theta * cos)
-    u_along, u_across = radial * cos - turning * sin, radial * sin + turning * cos
-    moved: Array = u_along[..., None] * inward + u_across[..., None] * _turned(inward)
-    return moved
+    r2 = along**2 + across**2
+    sine = across / r2
+    u_along = -factor * (0.5 * np.log(r2 / length**2) + half_plus * across * sine)
+    u_across = factor * (half_plus * along * sine - half_minus * theta)
+    return np.stack([u_along * n_x - u_across * n_y, u_along * n_y + u_across * n_x], axis=-1)
 
 
 def stress(points: Array, load: Array, inward: Array) -> Array:

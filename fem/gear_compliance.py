@@ -21,7 +21,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.line_load import flank_points, line_loads
+from fem.line_load import flank_points, joined, line_loads
 from fem.ring import Ring
 
 if TYPE_CHECKING:
@@ -219,12 +219,13 @@ def sample_places(profile: ToothProfile, rho_low: float, count: int) -> Array:
 
 def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> FlankSamples:
     """Load a flank at growing curvature radii [m] and take the displacements there and on ``reach`` teeth."""
-    at = flank_points(ring.mesh, rho, flank)
-    loads, along_flank = line_loads(ring, at), line_loads(ring, at.part(slice(-1, None)).towards_tip())
+    at, count = flank_points(ring.mesh, rho, flank), len(rho)
+    every = line_loads(ring, joined(at, at.part(slice(-1, None)).towards_tip()))
+    loads = every.part(slice(count))
     teeth = [tooth if flank == "left" else -tooth for tooth in range(1, reach + 1)]
-    cross = [loads.on_neighbour(tooth).T for tooth in teeth]
-    corner = [loads.on_neighbour(tooth, along_flank)[0] for tooth in teeth]
-    return FlankSamples(rho, loads.regular_at_load(), np.array(cross), np.array(corner))
+    there = np.array([loads.on_neighbour(tooth, every) for tooth in teeth])
+    cross, corner = np.swapaxes(there[:, :count], 1, 2), there[:, count]
+    return FlankSamples(rho, loads.regular_at_load(), cross, corner)
 
 
 def gear_compliance(

@@ -10,16 +10,17 @@ enters the load. No element is refined at the load, and one factorisation serves
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from base import Array, Fault, InputError, Integers, record
 from fem import flamant
-from fem.edge_work import edge_points, traction_integrals
+from fem.edge_work import LineForces, edge_points, nodal, traction_integrals
 from fem.ring import Ring
 from meshes import SectorMesh
 
-__all__ = ["FlankPoints", "LineLoads", "flank_points", "line_loads"]
+__all__ = ["FlankPoints", "LineLoads", "flank_points", "joined", "line_loads"]
 
 
 @record
@@ -34,7 +35,7 @@ class FlankPoints:
         Position on the element's edge [m], and the involute's unit normal into the material.
     nodes, weights : (n, 3) arrays
         Nodes of the edge and values of their shape functions.
-    lean : float
+    lean : float or (n,) array
         Angle from the normal to the direction in which the points are loaded or observed [rad], anticlockwise.
     """
 
@@ -43,7 +44,7 @@ class FlankPoints:
     inward: Array
     nodes: Integers
     weights: Array
-    lean: float = 0.0
+    lean: float | Array = 0.0
 
     def part(self, some: slice) -> FlankPoints:
         """Take some of the points."""
@@ -54,12 +55,18 @@ class FlankPoints:
             inward=self.inward[some],
             nodes=self.nodes[some],
             weights=self.weights[some],
+            lean=self.leans[some],
         )
 
     def towards_tip(self) -> FlankPoints:
         """Return the same points in the direction of the flank's tangent towards the tip."""
         clockwise = self.inward[0, 1] * self.points[0, 0] > self.inward[0, 0] * self.points[0, 1]
         return replace(self, lean=-0.5 * np.pi if clockwise else 0.5 * np.pi)
+
+    @property
+    def leans(self) -> Array:
+        """Angle of each point (n,) [rad]."""
+        return np.broadcast_to(self.lean, self.rho.shape)
 
     @property
     def direction(self) -> Array:
@@ -103,6 +110,16 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     return FlankPoints(rho, points, inward, edges[which], weights)
 
 
+def joined(*points: FlankPoints) -> FlankPoints:
+    """Several points' lists one after the other."""
+    return FlankPoints(
+        *(
+            np.concatenate([getattr(some, name) for some in points])
+            for name in ("rho", "points", "inward", "nodes", "weights", "leans")
+        )
+    )
+
+
 @record
 class LineLoads:
     """Unit line loads (1 N per metre of face, one at a time) on tooth 0 of a ring.
@@ -113,8 +130,8 @@ class LineLoads:
         Where the loads act.
     cut_force : (cut, loads) array
         Forces that the loaded sector exerts on its cuts, polar components.
-    own_inner : (inner, loads) array
-        u_r of the inner unknowns with the cuts held [m per N/m].
+    force, handed_on : (inner, loads), (cut, loads) arrays
+        Right-hand sides for u_r of the inner unknowns, and what held cuts carry of them, Cartesian components.
     held : (loads,) array
         u_r at the load with the cuts held [m per N/m].
     """
@@ -122,8 +139,25 @@ class LineLoads:
     ring: Ring
     at: FlankPoints
     cut_force: Array
-    own_inner: Array
+    force: Array
+    handed_on: Array
     held: Array
+
+    @cached_property
+    def own_inner(self) -> Array:
+        """u_r of the inner unknowns with the cuts held (inner, loads) [m per N/m]."""
+        return self._inner_with(np.zeros_like(self.cut_force))
+
+    def part(self, some: slice) -> LineLoads:
+        """Some of the loads."""
+        return replace(
+            self,
+            at=self.at.part(some),
+            cut_force=self.cut_force[:, some],
+            force=self.force[:, some],
+            handed_on=self.handed_on[:, some],
+            held=self.held[some],
+        )
 
     def regular_at_load(self) -> Array:
         """u_r along each load at the load itself [m per N/m]: (loads,)."""
@@ -147,55 +181,53 @@ class LineLoads:
         nodes, local = np.unique(where.nodes, return_inverse=True)
         # no point of a flank is on a cut or on the hub
         asked = np.searchsorted(self.ring.inner, (2 * nodes[:, None] + np.arange(2)).ravel())
-        moved = self.inner(tooth, asked).reshape(len(nodes), 2, -1)
+        moved = self.inner(tooth)[asked].reshape(len(nodes), 2, -1)
         return replace(where, nodes=local.reshape(where.nodes.shape)).component(moved)
 
     def singular(self, where: FlankPoints) -> Array:
         """u_s along the directions of points of tooth 0 (points, loads); zero at the loads themselves."""
-        part, law, length = np.zeros((len(where.rho), len(self.at.rho))), self.ring.law, self.ring.mesh.module
-        for i, (load, inward) in enumerate(zip(self.at.points, self.at.inward, strict=True)):
-            apart = np.any(where.points != load, axis=1)
-            u = flamant.displacement(where.points[apart], load, inward, law, length, self.at.lean)
-            part[apart, i] = np.einsum("na,na->n", u, where.direction[apart])
-        return part
+        at, law, length = self.at, self.ring.law, self.ring.mesh.module
+        there = where.points[:, None]
+        apart = np.any(there != at.points, axis=2)
+        there = np.where(apart[..., None], there, at.points + length * at.inward)
+        u = flamant.displacement(there, at.points, at.inward, law, length, at.lean)
+        return np.asarray(np.where(apart, np.sum(u * where.direction[:, None], axis=2), 0.0))
 
-    def inner(self, tooth: int, some: Integers | slice = slice(None)) -> Array:
-        """Inner unknowns of a tooth's sector, all or some: (unknowns, loads)."""
+    def inner(self, tooth: int) -> Array:
+        """Inner unknowns of a tooth's sector: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
-        inner = -self.ring.inner_by_cut[some] @ cuts
-        return np.asarray(inner + self.own_inner[some] if tooth == 0 else inner)
+        return self._inner_with(cuts) if tooth == 0 else -self.ring.inner_by_cut @ cuts
+
+    def _inner_with(self, cuts: Array) -> Array:
+        condensed = self.ring.condensed
+        return condensed.solve(self.force, self.handed_on + condensed.sprung @ cuts)[0]
 
 
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     """Solve for unit line loads at flank points, all with the ring's factorisation."""
-    mesh, loads = ring.mesh, len(at.rho)
-    sides = [facets for name, facets in mesh.facets.items() if name.startswith("side")]
-    free = [f for name, f in mesh.facets.items() if name != "bore" and not name.startswith("side")]
-    on_free, lost = _integrals(ring, np.concatenate(free), at)
-    on_sides, _ = _integrals(ring, np.concatenate(sides), at)
-    _, gained = _integrals(ring, mesh.facets["bore"], at)
-    force = -(on_free + on_sides)
-
-    def singular(unknowns: Integers) -> Array:
-        points = np.repeat(mesh.points[unknowns[::2] // 2], loads, axis=0)
-        source, inward = (
-            np.tile(at.points, (len(unknowns) // 2, 1)),
-            np.tile(at.inward, (len(unknowns) // 2, 1)),
-        )
-        moved = flamant.displacement(points, source, inward, ring.law, mesh.module, at.lean)
-        return moved.reshape(-1, loads, 2).swapaxes(1, 2).reshape(-1, loads)
-
-    cut, hub = singular(ring.cut), singular(ring.hub)
-    inner = force[ring.inner] + ring.K_ic @ cut + ring.K_ih @ hub
-    pull_cut, pull_hub = ring.K_cc @ cut + ring.K_ch @ hub, ring.K_ch.T @ cut + ring.K_hh @ hub
-    on_cut = force[ring.cut] + pull_cut - ring.inner_by_cut.T @ inner
-    solved = ring.factor.solve(inner)
-    known = gained - lost + np.sum(inner * solved, axis=0)
-    for values, pulls, unknowns in ((cut, pull_cut, ring.cut), (hub, pull_hub, ring.hub)):
-        known -= np.sum(values * (pulls + force[unknowns] - on_free[unknowns]), axis=0)
-    return LineLoads(ring, at, ring.polar.T @ on_cut, solved, known)
-
-
-def _integrals(ring: Ring, edges: Integers, at: FlankPoints) -> tuple[Array, Array]:
-    mesh = ring.mesh
-    return traction_integrals(mesh.points, edges, at.points, at.inward, ring.law, mesh.module, at.lean)
+    mesh, law, length = ring.mesh, ring.law, ring.mesh.module
+    sides = np.concatenate([facets for name, facets in mesh.facets.items() if name.startswith("side")])
+    free = np.concatenate(
+        [f for name, f in mesh.facets.items() if name != "bore" and not name.startswith("side")]
+    )
+    edges = np.concatenate([free, sides, mesh.facets["bore"]])
+    loads = LineForces(at.points, at.inward, at.leans)
+    pulls, work = traction_integrals(mesh.points, edges, loads, law, length)
+    on_free = nodal(free, pulls[: len(free)], len(mesh.points))
+    on_sides = nodal(sides, pulls[len(free) : len(free) + len(sides)], len(mesh.points))
+    bordering = np.concatenate([ring.cut, ring.hub])
+    places = mesh.points[bordering[::2] // 2][:, None]
+    singular = flamant.displacement(places, at.points, at.inward, law, length, at.lean)
+    border = np.swapaxes(singular, 1, 2).reshape(len(bordering), -1)
+    # what u_s on cuts and hub pulls at, less Flamant's tractions
+    pulled = ring.by_border @ border
+    force = pulled - (on_free + on_sides)
+    inner, on_cut = force[ring.inner], force[ring.cut]
+    moved, cut = ring.condensed.solve(inner, on_cut)
+    cut_force = ring.condensed.sprung @ cut
+    # with the cuts held, inner . K_ii^-1 inner is the work of all forces less that of the cuts and springs
+    handed_on = on_cut - cut_force
+    held = np.sum(inner * moved, axis=0) + np.sum(handed_on * cut, axis=0)
+    known = work[len(free) + len(sides) :].sum(axis=0) - work[: len(free)].sum(axis=0)
+    known -= np.sum(border * (force - on_free)[bordering], axis=0)
+    return LineLoads(ring, at, ring.polar.T @ cut_force, inner, handed_on, held + known)

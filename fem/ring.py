@@ -1,9 +1,9 @@
 """The whole annulus by one sector: static condensation, and a ring of equal links.
 
 All sectors of a gear are copies of one another. The sector's stiffness matrix is factorised once, its inner
-unknowns are condensed onto the two cuts to its neighbours, and the ring of z such sectors, in polar
-components, is closed by ``fem.chain``. The result is that of the whole annulus with the same elements in
-every sector, to rounding.
+unknowns are condensed onto the two cuts to its neighbours (``fem.condensation``), and the ring of z such
+sectors, in polar components, is closed by ``fem.chain``. The result is that of the whole annulus with the same
+elements in every sector, to rounding.
 
 Notation: sector j (counted anticlockwise) lies between interface j on its right and interface j + 1 on its
 left; the hub (bore) is held.
@@ -11,12 +11,14 @@ left; the hub (bore) is held.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, record, unclocked
 from fem.chain import RingOfLinks, ring_of_links
+from fem.condensation import Condensation, condensation
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 
 if TYPE_CHECKING:
@@ -38,12 +40,10 @@ class Ring:
     law : PlaneElasticity
     inner, cut, hub : index arrays
         Unknowns (2 node + component) inside the sector, on the cuts (right ones first) and on the bore.
-    factor : scipy.sparse.linalg.SuperLU
-        Of the stiffness of the inner unknowns.
-    K_ic, K_ih, K_cc, K_ch, K_hh : sparse matrices
-        Blocks of the sector's stiffness matrix.
-    inner_by_cut : (inner, cut) array
-        K_ii^-1 K_ic: minus the inner displacements that unit displacements of the cuts cause.
+    condensed : Condensation
+        Factors of the sector's stiffness.
+    by_border : (unknowns, cut + hub) sparse matrix
+        Columns of the sector's stiffness matrix: forces by displacements of cuts and hub.
     polar : (cut, cut) sparse matrix
         From polar to Cartesian components on the cuts.
     schur : (cut, cut) array
@@ -59,13 +59,8 @@ class Ring:
     inner: Integers
     cut: Integers
     hub: Integers
-    factor: Any
-    K_ic: csc_array
-    K_ih: csc_array
-    K_cc: csc_array
-    K_ch: csc_array
-    K_hh: csc_array
-    inner_by_cut: Array
+    condensed: Condensation
+    by_border: csc_array
     polar: csc_array
     schur: Array
     links: RingOfLinks
@@ -75,6 +70,12 @@ class Ring:
     def unknowns(self) -> int:
         """Unknowns of the whole annulus that this ring stands for."""
         return self.mesh.teeth * (len(self.inner) + len(self.cut) // 2)
+
+    @cached_property
+    def inner_by_cut(self) -> Array:
+        """K_ii^-1 K_ic (inner, cut): minus the inner displacements that unit displacements of the cuts cause."""
+        nothing = np.zeros((len(self.inner), len(self.cut)))
+        return -self.condensed.solve(nothing, self.condensed.sprung)[0]
 
     def interfaces(self, force: Array, sector: int) -> Array:
         """Displacements of both cuts of a sector when forces act on the cuts of sector 0.
@@ -113,7 +114,6 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     """
     with unclocked():
         from scipy.sparse import block_diag, csc_array
-        from scipy.sparse.linalg import splu
 
     watch = Stopwatch()
     stiffness = stiffness_matrix(mesh.points, mesh.triangles, law)
@@ -124,45 +124,31 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     by_radius = [side[np.argsort(np.linalg.norm(mesh.points[side], axis=1))] for side in (right, left)]
     cut, hub = _unknowns(np.concatenate(by_radius)), _unknowns(hub_nodes)
     inner = np.setdiff1d(np.arange(mesh.unknowns), np.concatenate([cut, hub]))
-    rows = stiffness[inner]
-    # symmetric and definite: no pivoting, and an ordering for symmetric patterns
-    factor = splu(
-        csc_array(rows[:, inner]),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    condensed = condensation(inner, cut, stiffness)
     factored = watch.seconds
-    K_ic, K_cc = csc_array(rows[:, cut]), csc_array(stiffness[cut][:, cut])
-    inner_by_cut = factor.solve(K_ic.toarray())
     outward = mesh.points[np.concatenate(by_radius)]
     outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
     turns = np.stack([outward, np.stack([-outward[:, 1], outward[:, 0]], axis=1)], axis=2)
     polar = csc_array(block_diag(list(turns)))
-    schur = polar.T @ (polar.T @ (K_cc.toarray() - K_ic.T @ inner_by_cut)).T
+    schur = polar.T @ (polar.T @ condensed.stiffness).T
     schur = 0.5 * (schur + schur.T)
     links = ring_of_links(schur, mesh.teeth)
-    condensed = watch.seconds
+    seconds = watch.seconds
     return Ring(
         mesh,
         law,
         inner,
         cut,
         hub,
-        factor,
-        K_ic,
-        csc_array(rows[:, hub]),
-        K_cc,
-        csc_array(stiffness[cut][:, hub]),
-        csc_array(stiffness[hub][:, hub]),
-        inner_by_cut,
+        condensed,
+        csc_array(stiffness[:, np.concatenate([cut, hub])]),
         polar,
         schur,
         links,
         Cost(
-            condensed,
+            seconds,
             len(inner) + len(cut),
-            parts={"assemble": assembled, "factor": factored - assembled, "condense": condensed - factored},
+            parts={"assemble": assembled, "factor": factored - assembled, "condense": seconds - factored},
         ),
     )
 

@@ -15,7 +15,7 @@ import numpy as np
 from base import Array, record
 from fem.elasticity import PlaneElasticity
 from fem.gear_compliance import corner_logarithm, hub_windup, wedge_logarithms
-from fem.line_load import FlankPoints, flank_points, line_loads
+from fem.line_load import FlankPoints, flank_points, joined, line_loads
 from fem.strip_contact import flat_kernels
 
 if TYPE_CHECKING:
@@ -179,10 +179,12 @@ def _regular(ring: Ring, normal: FlankPoints, tangent: FlankPoints, solved: int)
     log = -2 / (np.pi * law.plane_modulus) * np.log(np.where(on_load, m, gap) / m)
     step = (1 - law.plane_poisson) / (2 * law.plane_modulus) * np.sign(place[loaded] - place[:, None])
     constant = (1 + law.plane_poisson) / (np.pi * law.plane_modulus)
-    push, drag = line_loads(ring, normal.part(loaded)), line_loads(ring, tangent.part(loaded))
-    nn, tn = (push.on_tooth(0, at) + push.singular(at) for at in (normal, tangent))
-    nt, tt = (drag.on_tooth(0, at) + drag.singular(at) for at in (normal, tangent))
+    loads = line_loads(ring, joined(normal.part(loaded), tangent.part(loaded)))
+    both = joined(normal, tangent)
+    moved = loads.on_tooth(0, both) + loads.singular(both)
+    (nn, nt), (tn, tt) = (np.hsplit(rows, 2) for rows in np.vsplit(moved, 2))
+    by_normal, by_tangent = np.split(loads.regular_at_load(), 2)
     # at the load itself the displacement along the load is an energy, which converges faster
-    nn = np.where(on_load, push.regular_at_load(), nn - log + constant)
-    tt = np.where(on_load, drag.regular_at_load(), tt - log)
+    nn = np.where(on_load, by_normal, nn - log + constant)
+    tt = np.where(on_load, by_tangent, tt - log)
     return nn, nt - step, tn + step, tt
