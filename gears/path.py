@@ -1,4 +1,4 @@
-"""Path of contact: curvature radii, surface speeds and pressure angles along the line of action."""
+"""Path of contact: curvature radii and surface speeds along the line of action."""
 
 from __future__ import annotations
 
@@ -71,12 +71,6 @@ class PathOfContact:
         """Distances of the contact from the axes of pinion and wheel, each (n,) [m]."""
         first, second = self.base_radii
         return np.hypot(first, self.rho1), np.hypot(second, self.rho2)
-
-    @property
-    def pressure_angles(self) -> tuple[Array, Array]:
-        """Pressure angles of the involutes at the contact, arctan(rho / r_b), each (n,) [rad]."""
-        first, second = self.base_radii
-        return np.arctan(self.rho1 / first), np.arctan(self.rho2 / second)
 
     @property
     def specific_sliding(self) -> tuple[Array, Array]:

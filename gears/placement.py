@@ -41,14 +41,6 @@ class Placement:
         """Points (n, 2) of the wheel's tooth frame in the common frame [m]."""
         return np.asarray(turned(points, self.wheel_angle) + self.wheel_centre)
 
-    def pinion_direction(self, vectors: Array) -> Array:
-        """Vectors (n, 2) of the pinion's tooth frame, such as normals, in the common frame."""
-        return turned(vectors, self.pinion_angle)
-
-    def wheel_direction(self, vectors: Array) -> Array:
-        """Vectors (n, 2) of the wheel's tooth frame, such as normals, in the common frame."""
-        return turned(vectors, self.wheel_angle)
-
 
 def place(pair: PairGeometry, rho1: float) -> Placement:
     """Placement of the gears for a contact at curvature radius `rho1` of the pinion.

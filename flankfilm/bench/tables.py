@@ -29,7 +29,7 @@ class Summary:
 
     Attributes
     ----------
-    solver, title, series, quantity : str
+    title, series, quantity : str
         What it is of.
     errors, seconds : (float, float)
         True error and processor time of the coarsest and of the finest level.
@@ -37,11 +37,8 @@ class Summary:
         Factor of processor time for a tenth of the error; NaN where too few levels can be compared.
     ratios : (float, float)
         Least and greatest estimated over true error; NaN where there is no estimate.
-    failures : int
-        Levels without figures.
     """
 
-    solver: str
     title: str
     series: str
     quantity: str
@@ -49,7 +46,6 @@ class Summary:
     seconds: tuple[float, float]
     gain: float
     ratios: tuple[float, float]
-    failures: int
 
 
 def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
@@ -61,12 +57,10 @@ def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
     for case in cases:
         for series in dict.fromkeys(row.series for row in case.rows):
             rows = [row for row in case.rows if row.series == series]
-            failures = sum(bool(row.failure) for row in rows)
             for quantity in dict.fromkeys(row.quantity for row in rows if row.quantity):
                 one = tuple(row for row in rows if row.quantity == quantity)
                 ratios = list(known_ratios(case, one))
                 yield Summary(
-                    case.solver,
                     case.title,
                     series,
                     quantity,
@@ -74,7 +68,6 @@ def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
                     (one[0].cpu, one[-1].cpu),
                     gain(one),
                     (min(ratios, default=math.nan), max(ratios, default=math.nan)),
-                    failures,
                 )
 
 

@@ -14,7 +14,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gears import Gear, GearPair, GeometryError, GeometryWarning, Material
-from gears.plane import mirrored
+from gears.plane import mirrored, turned
 
 numbers = st.integers(18, 200)
 shift = st.floats(-0.1, 0.5)
@@ -50,7 +50,7 @@ def test_path_identities(z1, z2, x1, x2):
     pitch = pair.path_at(points.C)
     assert pitch.radii[0][0] == pytest.approx(pair.pitch_radii[0])
     assert pitch.sliding(100.0)[0] == pytest.approx(0.0, abs=1e-12)
-    assert pitch.pressure_angles[0][0] == pytest.approx(pair.working_pressure_angle)
+    assert np.arctan(pitch.rho1[0] / pair.base_radii[0]) == pytest.approx(pair.working_pressure_angle)
     first, second = path.surface_speeds(100.0)
     assert np.allclose(path.entrainment(100.0), (first + second) / 2)
     assert np.allclose(path.sliding(100.0), first - second)
@@ -95,8 +95,12 @@ def test_placed_flanks_touch_with_opposite_normals(z1, z2, x1, x2, where):
     placed, path, (first, second) = pair.placement(rho), pair.path_at(rho), pair.teeth_profiles
     assert np.allclose(placed.pinion(mirrored(first.involute(path.rho1))), placed.contact_point, atol=1e-15)
     assert np.allclose(placed.wheel(mirrored(second.involute(path.rho2))), placed.contact_point, atol=1e-14)
-    assert np.allclose(placed.pinion_direction(mirrored(first.normal(path.rho1))), placed.normal, atol=1e-13)
-    assert np.allclose(placed.wheel_direction(mirrored(second.normal(path.rho2))), -placed.normal, atol=1e-13)
+    assert np.allclose(
+        turned(mirrored(first.normal(path.rho1)), placed.pinion_angle), placed.normal, atol=1e-13
+    )
+    assert np.allclose(
+        turned(mirrored(second.normal(path.rho2)), placed.wheel_angle), -placed.normal, atol=1e-13
+    )
     assert np.allclose(placed.wheel_centre, [0, pair.working_centre_distance])
 
 
