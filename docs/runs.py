@@ -26,8 +26,8 @@ def results(scene: Scene, stages: Sequence[Stage[Any]] = ()) -> xr.Dataset:
     """Give what ``results.nc`` of a scene holds, of some stages alone where they are given; nothing is written."""
     keep_compiled_code()
     from flankfilm.output.run import results_dataset
-    from flankfilm.stages.catalogue import goals
     from flankfilm.stages.engine import Engine
+    from flankfilm.stages.goals import goals
 
     engine = Engine(scene, Cache(user_cache() / "results"))
     with warnings.catch_warnings():

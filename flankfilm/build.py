@@ -5,22 +5,24 @@ What a section hands over one to one is its `Section.si`; here stands what takes
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TypeVar
 
-from base import InputError
+import fem
+import gears
 from flankfilm.scene.gears import DeviationsSection, GearSection, PairSection, RackSection
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
+from flankfilm.scene.section import Section, required
 
-if TYPE_CHECKING:
-    from fem import Support
-    from gears import BasicRack, Gear, GearDeviations, GearPair
+S = TypeVar("S", bound=Section)
+B = TypeVar("B")
 
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.4, 0.39)}
 """Profiles of ISO 53:1998, annex A: addendum, dedendum and tip radius, times the module."""
 
 
-def gear_pair(scene: Scene) -> GearPair:
+def gear_pair(scene: Scene) -> gears.GearPair:
     """Build the pair of a scene; without a material it is of steel.
 
     Raises
@@ -28,42 +30,35 @@ def gear_pair(scene: Scene) -> GearPair:
     InputError
         With every fault of the geometry, each under the scene's key.
     """
-    from gears import STEEL, GearPair, Material
-
-    section = scene.pair
-    if section is None:
-        raise InputError.at("[pair]", "", "is required", "Add the section [pair]")
+    section = required(scene.pair, "[pair]")
     with under_keys(section, "pair"):
-        first, second = (
-            (STEEL, STEEL)
-            if scene.material is None
-            else (Material(**material.si()) for material in scene.material.each)
-        )
-        pair = GearPair(
-            pinion=_gear(section.pinion),
-            wheel=_gear(section.wheel),
-            rack=_rack(section),
-            material=(first, second),
-            **section.si(),
+        materials = (gears.STEEL, gears.STEEL)
+        if scene.material is not None:
+            materials = _both(scene.material.each, lambda material: gears.Material(**material.si()))
+        pinion, wheel = _both(section.each, _gear)
+        pair = gears.GearPair(
+            pinion=pinion, wheel=wheel, rack=_rack(section), material=materials, **section.si()
         )
         backlash = section.value("backlash_um")
         return pair.with_backlash(backlash) if backlash else pair
 
 
-def _gear(section: GearSection) -> Gear:
-    from gears import Gear, TipRelief
+def _both(sections: tuple[S, S], build: Callable[[S], B]) -> tuple[B, B]:
+    """What is built of pinion and wheel."""
+    first, second = map(build, sections)
+    return first, second
 
+
+def _gear(section: GearSection) -> gears.Gear:
     relief = section.tip_relief
-    return Gear(**section.si(), tip_relief=None if relief is None else TipRelief(**relief.si()))
+    return gears.Gear(**section.si(), tip_relief=None if relief is None else gears.TipRelief(**relief.si()))
 
 
-def _rack(section: PairSection) -> BasicRack:
-    from gears import BasicRack
-
+def _rack(section: PairSection) -> gears.BasicRack:
     if isinstance(section.rack, RackSection):
-        return BasicRack(**section.rack.si())
+        return gears.BasicRack(**section.rack.si())
     h_aP, h_fP, rho_fP = ISO_53[section.rack[-1]]
-    return BasicRack(h_aP=h_aP, h_fP=h_fP, rho_fP=rho_fP)
+    return gears.BasicRack(h_aP=h_aP, h_fP=h_fP, rho_fP=rho_fP)
 
 
 def pinion_speed(scene: Scene) -> float:
@@ -79,59 +74,46 @@ def pinion_torque(scene: Scene) -> float:
 def _operating(scene: Scene, key: str, remedy: str) -> float:
     """Value of a key of [operating], in SI."""
     found = scene.operating.value(key) if scene.operating else None
-    if found is None:
-        raise InputError.at(f"operating.{key}", "", "is required", remedy)
-    return float(found)
+    return float(required(found, f"operating.{key}", remedy=remedy))
 
 
-def supports(scene: Scene) -> tuple[Support, Support] | None:
+def supports(scene: Scene) -> tuple[fem.Support, fem.Support] | None:
     """Rigid hubs of both gears; None where both are held on their bores."""
-    from fem import Support
-
-    if scene.pair is None or (scene.pair.pinion.hub is None and scene.pair.wheel.hub is None):
+    sections = required(scene.pair, "[pair]").each
+    if all(gear.hub is None for gear in sections):
         return None
-    first, second = (
-        Support() if gear.hub is None else Support(**gear.hub.si())
-        for gear in (scene.pair.pinion, scene.pair.wheel)
-    )
-    return first, second
+    return _both(sections, lambda gear: fem.Support() if gear.hub is None else fem.Support(**gear.hub.si()))
 
 
 def tip_roundings(scene: Scene) -> tuple[float, float]:
     """Radii of the tip edges of pinion and wheel [m]."""
-    if scene.pair is None:
-        return 0.0, 0.0
-    first, second = (gear.value("tip_rounding_um") for gear in (scene.pair.pinion, scene.pair.wheel))
-    return first, second
+    return _both(required(scene.pair, "[pair]").each, lambda gear: float(gear.value("tip_rounding_um")))
 
 
 def deviations(
-    scene: Scene, pair: GearPair, *, pitch: bool
-) -> tuple[GearDeviations | None, GearDeviations | None] | None:
+    scene: Scene, pair: gears.GearPair, *, pitch: bool
+) -> tuple[gears.GearDeviations | None, gears.GearDeviations | None] | None:
     """Deviations of both gears; those of the pitches only where every tooth counts.
 
     A mesh cycle of one base pitch stands for all teeth: it knows the profiles alone.
     """
-    if scene.pair is None:
-        return None
-    sections = (scene.pair.pinion, scene.pair.wheel)
     first, second = (
         _deviations(section.deviations, radius, pitch)
-        for section, radius in zip(sections, pair.base_radii, strict=True)
+        for section, radius in zip(required(scene.pair, "[pair]").each, pair.base_radii, strict=True)
     )
-    return None if first is None and second is None else (first, second)
+    return (first, second) if first or second else None
 
 
-def _deviations(section: DeviationsSection | None, base_radius: float, pitch: bool) -> GearDeviations | None:
-    from gears import GearDeviations, PitchDeviations, ProfileDeviation
-
+def _deviations(
+    section: DeviationsSection | None, base_radius: float, pitch: bool
+) -> gears.GearDeviations | None:
     if section is None:
         return None
     curve, given = section.profile, section.si()
-    profile = None if curve is None else ProfileDeviation.over_roll_angle(base_radius, **curve.si())
+    profile = None if curve is None else gears.ProfileDeviation.over_roll_angle(base_radius, **curve.si())
     pitches = None
     if pitch and "single" in given:
-        pitches = PitchDeviations.from_single(given["single"])
+        pitches = gears.PitchDeviations.from_single(given["single"])
     elif pitch and "cumulative" in given:
-        pitches = PitchDeviations(given["cumulative"])
-    return None if profile is None and pitches is None else GearDeviations(profile, pitches)
+        pitches = gears.PitchDeviations(given["cumulative"])
+    return gears.GearDeviations(profile, pitches) if profile or pitches else None

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Any
 
-from base import InputError
-from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, LubricantSection
+import ehl
+from flankfilm import coupling
+from flankfilm.scene.film import BY_GRADE, BY_NUMBERS
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
-
-if TYPE_CHECKING:
-    from ehl import Lubricant, Meniscus, OilLayer, Roughness
-    from flankfilm.coupling import FilmModel, PlacedMeniscus
+from flankfilm.scene.section import required
 
 
-def lubricant(scene: Scene) -> Lubricant:
+def lubricant(scene: Scene) -> ehl.Lubricant:
     """Build the oil of a scene.
 
     Raises
@@ -23,59 +21,38 @@ def lubricant(scene: Scene) -> Lubricant:
     InputError
         Without the section, and with every fault that only the oil's laws find.
     """
-    oil = scene.lubricant
-    if oil is None:
-        raise InputError.at("[lubricant]", "", "is required by the film", "Add the section [lubricant]")
+    oil = required(scene.lubricant, "[lubricant]", "the film")
+    law: dict[str, Any] = {}
+    if oil.constant_viscosity:
+        law["pressure_viscosity"] = 0.0
+    if oil.viscosity_law == "barus":
+        law["roelands_z"] = 1.0  # Roelands' law of this index is Barus' law
     with under_keys(oil, "lubricant"):
-        return _graded(oil) if oil.graded else _by_numbers(oil)
+        if not oil.graded:
+            return ehl.Lubricant(**oil.si(*BY_NUMBERS, "compressible") | law)
+        graded = ehl.Lubricant.from_iso_vg(**oil.si(*BY_GRADE, "compressible"))
+        return replace(graded, **law) if law else graded
 
 
-def film_model(scene: Scene, name: str) -> FilmModel:
+def film_model(scene: Scene, name: str) -> coupling.FilmModel:
     """How the films of a scene are computed, by the model of the given name."""
-    from flankfilm.coupling import FilmModel
-
-    return FilmModel(name, scene.film.stiffness, _supply(scene), roughness(scene), scene.film.grid)
+    return coupling.FilmModel(name, scene.film.stiffness, _supply(scene), roughness(scene), scene.film.grid)
 
 
-def _supply(scene: Scene) -> Meniscus | OilLayer | PlacedMeniscus | None:
+def _supply(scene: Scene) -> ehl.Meniscus | ehl.OilLayer | coupling.PlacedMeniscus | None:
     """Give what a scene holds at the inlet; None for flooded contacts."""
-    from ehl import Meniscus, OilLayer
-    from flankfilm.coupling import PlacedMeniscus
-
     film = scene.film
     if film.oil_layer_um is not None:
-        return OilLayer(**film.si("oil_layer_um"))
+        return ehl.OilLayer(**film.si("oil_layer_um"))
     if film.meniscus_half_widths is not None:
-        return PlacedMeniscus(film.meniscus_half_widths)
-    return None if film.meniscus_mm is None else Meniscus(-film.value("meniscus_mm"))
+        return coupling.PlacedMeniscus(film.meniscus_half_widths)
+    return None if film.meniscus_mm is None else ehl.Meniscus(-film.value("meniscus_mm"))
 
 
-def roughness(scene: Scene) -> Roughness | None:
+def roughness(scene: Scene) -> ehl.Roughness | None:
     """Build the roughness of a scene; None for smooth flanks."""
-    from ehl import Roughness
-
     rough = scene.roughness
     if rough is None:
         return None
     with under_keys(scene, ""):
-        return Roughness(**rough.si())
-
-
-def _by_numbers(oil: LubricantSection) -> Lubricant:
-    from ehl import Lubricant
-
-    given = oil.si(*BY_NUMBERS, "compressible")
-    if oil.constant_viscosity:
-        given["pressure_viscosity"] = 0.0
-    if oil.viscosity_law == "barus":
-        given["roelands_z"] = 1.0  # Roelands' law of this index is Barus' law
-    return Lubricant(**given)
-
-
-def _graded(oil: LubricantSection) -> Lubricant:
-    from ehl import Lubricant
-
-    found = Lubricant.from_iso_vg(**oil.si(*BY_GRADE, "compressible"))
-    if oil.viscosity_law == "barus":
-        return replace(found, roelands_z=1.0)
-    return replace(found, pressure_viscosity=0.0) if oil.constant_viscosity else found
+        return ehl.Roughness(**rough.si())

@@ -111,15 +111,11 @@ class Cache:
         except FileNotFoundError:
             return None
         except OSError as fault:
-            warnings.warn(
-                f"result cache: {path}: {fault.strerror}; computed again", CacheWarning, stacklevel=2
-            )
+            _warn(f"{path}: {fault.strerror}; computed again")
             return None
         if hashlib.sha256(payload).hexdigest().encode() != head:
             path.unlink(missing_ok=True)
-            warnings.warn(
-                f"result cache: {path.name[:12]} was damaged; computed again", CacheWarning, stacklevel=2
-            )
+            _warn(f"{path.name[:12]} was damaged; computed again")
             return None
         return pickle.loads(payload)
 
@@ -133,4 +129,8 @@ class Cache:
                 beside.write_bytes(hashlib.sha256(payload).hexdigest().encode() + b"\n" + payload)
             sweep_temporaries(self.folder)
         except OSError as fault:
-            warnings.warn(f"result cache: not kept ({fault.strerror})", CacheWarning, stacklevel=2)
+            _warn(f"not kept ({fault.strerror})")
+
+
+def _warn(text: str) -> None:
+    warnings.warn(f"result cache: {text}", CacheWarning, stacklevel=3)

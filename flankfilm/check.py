@@ -10,8 +10,9 @@ from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN, goals
+from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.goals import goals
 
 T = TypeVar("T")
 

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,17 +25,9 @@ INTERRUPTED = 130
 app = App(
     name="flankfilm",
     help="Stiffness, oil film and motion of spur-gear pairs; each number with its error and its cost.",
+    version=lambda: metadata.version("flankfilm"),
     version_flags=["--version"],
 )
-
-
-def _version() -> str:
-    from importlib.metadata import version
-
-    return version("flankfilm")
-
-
-app.version = _version
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from flankfilm.cache import keep_compiled_code, results_cache
 from flankfilm.folder import claim
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from flankfilm.studies.plan import Plan
     from flankfilm.studies.run import StudyResults
 
+T = TypeVar("T")
 SceneOrPath = Scene | Path | str
 
 
@@ -145,11 +145,7 @@ def study(
     from flankfilm.studies.run import run_study
 
     plan = read_plan(Path(study)) if isinstance(study, str | Path) else study
-    with _folder(out) as folder:
-        found = run_study(plan, folder, how)
-        if out is not None:
-            write_study(found, folder)
-    return found
+    return _rows(lambda folder: run_study(plan, folder, how), write_study, out)
 
 
 def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execution = Execution()) -> Optimum:
@@ -164,11 +160,7 @@ def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execut
     from flankfilm.optimisation.task import read_task
 
     asked = read_task(Path(task)) if isinstance(task, str | Path) else task
-    with _folder(out) as folder:
-        found = search(asked, folder, how)
-        if out is not None:
-            write_optimum(found, folder)
-    return found
+    return _rows(lambda folder: search(asked, folder, how), write_optimum, out)
 
 
 def _scene(given: SceneOrPath) -> Scene:
@@ -176,11 +168,11 @@ def _scene(given: SceneOrPath) -> Scene:
     return given if isinstance(given, Scene) else scene_in(Path(given))[0]
 
 
-@contextmanager
-def _folder(out: Path | str | None) -> Iterator[Path]:
-    """Folder that was named, or one that goes away."""
-    if out is not None:
-        yield Path(out)
-        return
-    with tempfile.TemporaryDirectory(prefix="flankfilm-") as folder:
-        yield Path(folder)
+def _rows(compute: Callable[[Path], T], write: Callable[[T, Path], object], out: Path | str | None) -> T:
+    """Rows computed and written in the folder that was named, or computed in one that goes away."""
+    if out is None:
+        with tempfile.TemporaryDirectory(prefix="flankfilm-") as folder:
+            return compute(Path(folder))
+    found = compute(Path(out))
+    write(found, Path(out))
+    return found

@@ -38,10 +38,9 @@ def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
     held = _attributes(path)
     if "design" in held:
         raise InputError.at(path, "", "holds a study", "Run its study file, or a results.nc")
-    text = held.get("scene_json", "")
-    if not text:
+    if not held.get("scene_json"):
         raise InputError.at(path, "", "holds no scene", "Name a results.nc that flankfilm wrote")
-    return _scene(text, str(path)), _differences(held)
+    return _scene(held["scene_json"], str(path)), _differences(held)
 
 
 def _attributes(path: Path) -> dict[str, str]:
@@ -88,8 +87,7 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
         own: dict[str, Any] = json.loads(here["versions_json"])
     except ValueError:
         theirs = own = {}
-    changed = [f"{name} {theirs.get(name, '?')}, here {version}" for name, version in own.items()]
-    changed = [text for text, name in zip(changed, own, strict=True) if theirs.get(name) != own[name]]
+    changed = [f"{n} {theirs.get(n, '?')}, here {v}" for n, v in own.items() if theirs.get(n) != v]
     if changed:
         found.append(f"made with {'; '.join(changed)}")
     if held.get("code_sha256") != here["code_sha256"]:

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from base import Cost, record, show_with
+from flankfilm.plan.decisions import decisions
 from flankfilm.scene import Scene
-from flankfilm.stages.decisions import decisions
 from flankfilm.stages.engine import Stage, StageRun
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.stages.decide import Plan
-    from flankfilm.stages.decisions import Decision
+    from flankfilm.plan.decide import Plan
+    from flankfilm.plan.decisions import Decision
 
 
 T = TypeVar("T")

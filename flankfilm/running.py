@@ -12,8 +12,8 @@ from flankfilm.output.run import results_dataset, write_data
 from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import goals
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.goals import goals
 from flankfilm.stages.vtk import write_fields
 
 

@@ -1,3 +1,4 @@
+from .along_path import FilmAlongPath as FilmAlongPath
 from .cycle import MeshCycle as MeshCycle
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
@@ -9,7 +10,6 @@ from .loaded_teeth import LoadedTeeth as LoadedTeeth
 from .loads import TorqueCurves as TorqueCurves
 from .loads import revolution as revolution
 from .loads import torque_curves as torque_curves
-from .lubricated import FilmAlongPath as FilmAlongPath
 from .lubricated import LubricatedCycle as LubricatedCycle
 from .lubricated import film_along_path as film_along_path
 from .lubricated import lubricate as lubricate

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import fields
+from typing import Any, ClassVar
 
 import numpy as np
 
+import fem
 from base import Array, Cost, described, part, quantity, record
-
-if TYPE_CHECKING:
-    import fem
 
 
 @record
@@ -83,7 +82,18 @@ class MeshCycle:
 
     def harmonic(self, order: int) -> float:
         """Amplitude of a harmonic of the secant stiffness over its mean."""
-        return float(2 * np.abs(np.fft.rfft(self.secant_stiffness)[order]) / self.secant_stiffness.sum())
+        return float(harmonics(self.secant_stiffness)[order - 1])
+
+    @classmethod
+    def fields_of(cls, found: object) -> dict[str, Any]:
+        """Fields of this class that another record has as well, for one made of it."""
+        return {one.name: getattr(found, one.name) for one in fields(cls) if hasattr(found, one.name)}
+
+
+def harmonics(curve: Array) -> Array:
+    """Amplitudes of the harmonics 1, 2, ... of evenly sampled values (n,) over their mean, (n // 2,)."""
+    spectrum = np.abs(np.fft.rfft(curve))
+    return np.asarray(2.0 * spectrum[1:] / spectrum[0])
 
 
 def sampling_error(stiffness: Array) -> float:

@@ -24,6 +24,7 @@ is weighted linearly: place changes radius and speed by little from one film to 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -176,16 +177,16 @@ class FilmLaw:
 
 
 @dataclass(frozen=True, eq=False)
-class PlacedFilm:
-    """A film law at fixed places, in the form of `gears.share_load`."""
+class Placed:
+    """A law of place and force, such as a `FilmLaw`, at fixed places: a deflection law of `gears.share_load`."""
 
-    law: FilmLaw
+    law: Callable[[Array, Array], tuple[Array, Array]]
     rho1: Array
 
     def approach(self, force: Array) -> Array:
-        """Separation of each pair, shape (positions, pairs) [m]."""
+        """Separation or deflection of each pair, shape (positions, pairs) [m]."""
         return self.law(self.rho1, force)[0]
 
     def slope(self, force: Array) -> Array:
-        """Derivative of the separation by the force, shape (positions, pairs) [m/N]."""
+        """Its derivative by the force, shape (positions, pairs) [m/N]."""
         return self.law(self.rho1, force)[1]

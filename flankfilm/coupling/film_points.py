@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import ehl
+import gears
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import PathFilms, film_inside
-
-if TYPE_CHECKING:
-    from ehl import Film, MixedFilm, StiffnessRow
-    from gears import GearPair
 
 SPIKE = 0.01
 """Wanted relative error of the pressure spike in pictures."""
@@ -24,30 +21,28 @@ _NARROW = 30.0
 
 def definitions(model: str) -> tuple[str, ...]:
     """Definitions of film stiffness that a film model has."""
-    from ehl import DEFINITIONS
-
-    return DEFINITIONS if model == "ehl" else ("dowson-central", "dowson-minimum")
+    return ehl.DEFINITIONS if model == "ehl" else ("dowson-central", "dowson-minimum")
 
 
-def stiffness_rows(pair: GearPair, dry: MeshCycle, path: PathFilms) -> tuple[StiffnessRow, ...]:
+def stiffness_rows(pair: gears.GearPair, dry: MeshCycle, path: PathFilms) -> tuple[ehl.StiffnessRow, ...]:
     """Every definition of the film's stiffness at the contact nearest to C, and what it costs its pair of teeth.
 
     The teeth's stiffness is the dry mesh's tangent with a pair nearest to C, times that pair's share of the
     force: all of it where one pair carries the load there.
     """
-    from ehl import MixedFilm, stiffness_table
-
     distance = np.where(dry.load_share > 0.0, np.abs(dry.rho1 - pair.points.C), np.inf)
     position, column = np.unravel_index(int(np.nanargmin(distance)), distance.shape)
     bodies = float(dry.stiffness[position] * dry.load_share[position, column])
     film = path.films[int(np.argmin(np.abs(path.rho1 - pair.points.C)))]
-    table = stiffness_table(film_inside(film), pair.face_width, bodies)
-    return _with_asperities(film, table, pair.face_width, bodies) if isinstance(film, MixedFilm) else table
+    table = ehl.stiffness_table(film_inside(film), pair.face_width, bodies)
+    return (
+        _with_asperities(film, table, pair.face_width, bodies) if isinstance(film, ehl.MixedFilm) else table
+    )
 
 
 def _with_asperities(
-    film: MixedFilm, table: tuple[StiffnessRow, ...], face_width: float, bodies: float
-) -> tuple[StiffnessRow, ...]:
+    film: ehl.MixedFilm, table: tuple[ehl.StiffnessRow, ...], face_width: float, bodies: float
+) -> tuple[ehl.StiffnessRow, ...]:
     """Put the asperities parallel to each film, and the whole derivative below."""
     parallel = face_width * film.asperity_stiffness
     rows = [
@@ -66,7 +61,7 @@ def _with_asperities(
     return tuple(rows)
 
 
-def profiles(pair: GearPair, path: PathFilms, positions: int, grid: str) -> dict[str, Film]:
+def profiles(pair: gears.GearPair, path: PathFilms, positions: int, grid: str) -> dict[str, ehl.Film]:
     """Films nearest to A, C and E, and to B and D on their single-pair side, with the pressure spike resolved.
 
     The tolerance asks for thicknesses, which a grid too coarse for the spike meets.
@@ -85,20 +80,18 @@ def profiles(pair: GearPair, path: PathFilms, positions: int, grid: str) -> dict
     return {name: replace(film, state=None) for name, film in fine.items() if film.converged}
 
 
-def _fine(films: dict[str, Film]) -> dict[str, Film]:
+def _fine(films: dict[str, ehl.Film]) -> dict[str, ehl.Film]:
     """Solve films again for pictures, the lightest load first.
 
     Spikes narrow with the pressure: after one that grids do not resolve, which takes seconds to find out,
     those of heavier contacts are left alone. Without its spike a film is as good as the one along the path.
     """
-    from ehl import solve
-
     found = {name: replace(film, spike=None) for name, film in films.items()}
     for name in sorted(films, key=lambda name: films[name].contact.peak_pressure):
         contact, supply = films[name].contact, films[name].supply
         if contact.lubricant.pressure_viscosity * contact.peak_pressure > _NARROW:
             break
-        sharp = solve(contact, spike=SPIKE, supply=supply)
+        sharp = ehl.solve(contact, spike=SPIKE, supply=supply)
         if not sharp.converged:
             break
         found[name] = sharp

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
+import ehl
+import gears
 from base import Array, Faults, InputError, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 
-if TYPE_CHECKING:
-    from ehl import Film, FormulaFilm, LineContact, Lubricant, Meniscus, MixedFilm, OilLayer, Roughness
-    from gears import GearPair
-
-    Solved: TypeAlias = Film | MixedFilm | FormulaFilm
-    Supply: TypeAlias = Meniscus | OilLayer | None
+Solved: TypeAlias = "ehl.Film | ehl.MixedFilm | ehl.FormulaFilm"
+Supply: TypeAlias = "ehl.Meniscus | ehl.OilLayer | None"
 
 LEAST_SHARE = 1e-3
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
@@ -56,8 +54,8 @@ class FilmModel:
 
     name: str = "ehl"
     definition: str | None = None
-    supply: Meniscus | OilLayer | PlacedMeniscus | None = None
-    roughness: Roughness | None = None
+    supply: ehl.Meniscus | ehl.OilLayer | PlacedMeniscus | None = None
+    roughness: ehl.Roughness | None = None
     grid: str = "graded"
 
     def __post_init__(self) -> None:
@@ -80,7 +78,7 @@ class FilmModel:
             return "flooded"
         return "oil-layer" if type(self.supply).__name__ == "OilLayer" else "meniscus"
 
-    def supply_of(self, contact: LineContact) -> Supply:
+    def supply_of(self, contact: ehl.LineContact) -> Supply:
         """Supply of one contact.
 
         Raises
@@ -88,12 +86,10 @@ class FilmModel:
         InputError
             For a meniscus inside the dry contact.
         """
-        from ehl import Meniscus
-
         held = self.supply
         if isinstance(held, PlacedMeniscus):
-            return Meniscus(-held.half_widths * contact.half_width)
-        if isinstance(held, Meniscus) and -held.position <= contact.half_width:
+            return ehl.Meniscus(-held.half_widths * contact.half_width)
+        if isinstance(held, ehl.Meniscus) and -held.position <= contact.half_width:
             allowed = f"must be more than {contact.half_width:.4g} m, the half-width of a contact on the path"
             remedy = "nearer in no film forms; move it out, or give its place in half-widths"
             raise InputError.at("meniscus", f"{-held.position:g}", allowed, remedy)
@@ -116,31 +112,26 @@ class PathFilms:
 
     rho1: Array
     films: tuple[Solved, ...]
-    flooded: tuple[Film, ...] = ()
+    flooded: tuple[ehl.Film, ...] = ()
 
 
 def contacts_of(
-    pair: GearPair, cycle: MeshCycle, speed: float, lubricant: Lubricant
-) -> tuple[Array, tuple[LineContact, ...]]:
+    pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
+) -> tuple[Array, tuple[ehl.LineContact, ...]]:
     """Line contacts that the loaded pairs of a cycle make, with their places on the path [m]."""
-    from ehl import LineContact
-
     touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
     position, number = np.nonzero(touching)
     order = np.argsort(cycle.rho1[position, number], kind="stable")
     position, number = position[order], number[order]
     rho1 = cycle.rho1[position, number]
     path = pair.path_at(rho1)
+    load = cycle.forces[position, number] / pair.face_width
+    each = np.stack((load, path.entrainment(speed), path.radius), axis=1).tolist()
     contacts = tuple(
-        LineContact(
+        ehl.LineContact(
             load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
         )
-        for w, u, r in zip(
-            (cycle.forces[position, number] / pair.face_width).tolist(),
-            path.entrainment(speed).tolist(),
-            path.radius.tolist(),
-            strict=True,
-        )
+        for w, u, r in each
     )
     return rho1, contacts
 
@@ -148,7 +139,7 @@ def contacts_of(
 def films_of(
     model: FilmModel,
     rho1: Array,
-    contacts: tuple[LineContact, ...],
+    contacts: tuple[ehl.LineContact, ...],
     before: PathFilms | None,
     tolerance: float,
 ) -> PathFilms:
@@ -159,32 +150,25 @@ def films_of(
     SolverError
         Where a film has no solution.
     """
-    from ehl import dowson
-
     if model.name == "dowson":
-        return PathFilms(rho1, tuple(dowson(contact) for contact in contacts))
+        return PathFilms(rho1, tuple(ehl.dowson(contact) for contact in contacts))
     old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
-    flooded: tuple[Film, ...] = ()
+    flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
         smooth = replace(model, supply=None, roughness=None)
-        flooded = tuple(
-            film_inside(film)
-            for film in _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
-        )
+        found = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
+        flooded = tuple(map(film_inside, found))
     supplies = tuple(model.supply_of(contact) for contact in contacts)
     return PathFilms(rho1, _solved(model, rho1, contacts, supplies, old.films, tolerance), flooded)
 
 
 def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> PathFilms:
     """Solve the same starved films with their meniscus held instead of their layer, or the layer instead of it."""
-    from ehl import Meniscus, OilLayer
-
-    inside = tuple(film_inside(film) for film in path.films)
     contacts = tuple(film.contact for film in path.films)
     by_layer = model.held == "oil-layer"
     supplies = tuple(
-        None if not film.starved else Meniscus(film.inlet) if by_layer else OilLayer(film.flow)
-        for film in inside
+        None if not film.starved else ehl.Meniscus(film.inlet) if by_layer else ehl.OilLayer(film.flow)
+        for film in map(film_inside, path.films)
     )
     return replace(path, films=_solved(model, path.rho1, contacts, supplies, path.films, tolerance))
 
@@ -192,34 +176,30 @@ def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> P
 def _solved(
     model: FilmModel,
     rho1: Array,
-    contacts: tuple[LineContact, ...],
+    contacts: tuple[ehl.LineContact, ...],
     supplies: tuple[Supply, ...],
     before: tuple[Solved, ...],
     tolerance: float,
 ) -> tuple[Solved, ...]:
     """Solve contacts one after the other, each from what it was before, or from the last."""
-    from ehl import solve, solve_mixed
-
     found: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
         near = before[i] if before else found[-1] if found else None
         start = None if near is None else film_inside(near)
-        film: Film | MixedFilm
+        film: ehl.Film | ehl.MixedFilm
         if model.roughness is None:
-            film = solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
+            film = ehl.solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
         else:
-            film = solve_mixed(contact, model.roughness, tolerance, supply, start)
+            film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, start)
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
         found.append(film)
     return tuple(found)
 
 
-def film_inside(film: Solved) -> Film:
+def film_inside(film: Solved) -> ehl.Film:
     """Film itself: of a mixed film that of the load which the asperities leave to it."""
-    from ehl import MixedFilm
-
-    return film.film if isinstance(film, MixedFilm) else film  # type: ignore[return-value]
+    return film.film if isinstance(film, ehl.MixedFilm) else film  # type: ignore[return-value]
 
 
 def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
@@ -239,20 +219,15 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
             'as dry; take film.model = "none"'
         )
     exponent = np.array([_exponent(film, definition) for film in path.films])
-    if not path.flooded or not any(_by_meniscus(film) for film in path.films):
+    inside = [film_inside(film) for film in path.films]
+    if not path.flooded or not any(type(film.supply).__name__ == "Meniscus" for film in inside):
         return FilmLaw(path.rho1, force, separations, exponent)
     held = HeldMeniscus(
-        np.array([-film.inlet / film.contact.half_width for film in map(film_inside, path.films)]),
+        np.array([-film.inlet / film.contact.half_width for film in inside]),
         np.array([film.separation for film in path.flooded]),
         np.array([_exponent(film, "approach") for film in path.flooded]),
     )
     return FilmLaw(path.rho1, force, separations, exponent, held)
-
-
-def _by_meniscus(film: Solved) -> bool:
-    from ehl import Meniscus
-
-    return isinstance(film_inside(film).supply, Meniscus)
 
 
 def _exponent(film: Solved, definition: str) -> float:

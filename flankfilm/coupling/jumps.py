@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import dynamics
+import gears
 from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
 from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.motion import frequencies_of
@@ -16,7 +18,6 @@ from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import OTHER
 
 if TYPE_CHECKING:
-    from dynamics import Diagram, FourierStiffness, GearOscillator, SpecialPoint
     from dynamics.labelling import Stretch
 
 DROPPED = 4
@@ -60,7 +61,7 @@ class SpeedDiagram:
 
     headline = ("branches", "jump_count")
 
-    diagram: Diagram = part("branches over the frequency")
+    diagram: dynamics.Diagram = part("branches over the frequency")
     speed_of_one: float | None = quantity("rad/s", "pinion speed of frequency 1", shown="rpm")
     stable: tuple[Stretch, ...] = part("stable motions with their ranges")
     separated: tuple[tuple[float, float], ...] = part(
@@ -168,44 +169,33 @@ def jump_speeds(
     )
 
 
-def jump_points(found: Diagram) -> list[tuple[Stretch, SpecialPoint]]:
+def jump_points(found: dynamics.Diagram) -> list[tuple[Stretch, dynamics.SpecialPoint]]:
     """Saddle nodes at which a stable stretch ends, by frequency."""
-    ends = [
-        (stretch, point)
-        for stretch in found.stretches(stable=True)
-        for point in stretch.limits
-        if point.kind == "saddle-node"
-    ]
-    return sorted(ends, key=lambda end: end[1].parameter)
+    ends = ((stretch, point) for stretch in found.stretches(stable=True) for point in stretch.limits)
+    return sorted((e for e in ends if e[1].kind == "saddle-node"), key=lambda end: end[1].parameter)
 
 
-def _jump(motion: PairOscillator, stretch: Stretch, point: SpecialPoint) -> Jump:
+def _jump(motion: PairOscillator, stretch: Stretch, point: dynamics.SpecialPoint) -> Jump:
     """Carry the errors of the stiffness through the exact derivatives of a jump's speed.
 
     The speed is the frequency times sqrt(k_m): half the relative error of the mean stiffness, less what the mean
     force, which is over k_m, changes of the frequency. The amplitudes over the mean err by twice that at most.
     """
-    from dynamics import special_sensitivities
-
     rising = stretch.high - point.parameter < point.parameter - stretch.low
     series, oscillator = motion.series, motion.oscillator
     if series.fit is None:
         return Jump(point.parameter, rising, stretch.label, {}, 0.0)
     order = series.order
     extended, dropped = _longer(motion, order + DROPPED)
-    slopes = special_sensitivities(extended, "frequency", point)
+    slopes = dynamics.special_sensitivities(extended, "frequency", point)
     here = point.parameter
     force = abs(0.5 - slopes["mean_force"] * oscillator.mean_force / here)
-    kept = [
-        abs(slopes[f"stiffness.amplitudes[{j}]"]) * oscillator.stiffness.amplitudes[j] / here
-        for j in range(order)
-    ]
-    left = [
-        slopes[f"stiffness.amplitudes[{order + i}]"] * amplitude / here for i, amplitude in enumerate(dropped)
-    ]
+    amplitudes = (*oscillator.stiffness.amplitudes, *dropped)
+    changes = [slopes[f"stiffness.amplitudes[{j}]"] * a / here for j, a in enumerate(amplitudes)]
+    kept, left = changes[:order], changes[order:]
     budget = {
-        "stiffness": _stiffness_error(motion) * (force + 2.0 * math.fsum(kept)),
-        "series": math.fsum(abs(change) for change in left),
+        "stiffness": _stiffness_error(motion) * (force + 2.0 * math.fsum(map(abs, kept))),
+        "series": math.fsum(map(abs, left)),
         "flow": point.error,
     }
     return Jump(here, rising, stretch.label, budget, left[0] if left else 0.0)
@@ -223,15 +213,13 @@ def _stiffness_error(motion: PairOscillator) -> float:
     return own + abs(change) * (cycle.film.error or 0.0)
 
 
-def _longer(motion: PairOscillator, order: int) -> tuple[GearOscillator, tuple[float, ...]]:
+def _longer(motion: PairOscillator, order: int) -> tuple[dynamics.GearOscillator, tuple[float, ...]]:
     """Oscillator with room for further harmonics, of amplitude zero at their phases, and the amplitudes they have."""
-    from dynamics import FourierStiffness, fit_fourier
-
     assert motion.series.cycle is not None
     samples, own = motion.series.cycle.curve(motion.series.kind), motion.oscillator.stiffness
-    whole = fit_fourier(samples, order=min(order, (len(samples) - 1) // 2)).stiffness
+    whole = dynamics.fit_fourier(samples, order=min(order, (len(samples) - 1) // 2)).stiffness
     further = tuple(a / whole.mean for a in whole.amplitudes[own.order :])
-    series = FourierStiffness(
+    series = dynamics.FourierStiffness(
         own.mean, own.amplitudes + (0.0,) * len(further), own.phases + whole.phases[own.order :]
     )
     return replace(motion.oscillator, stiffness=series), further
@@ -239,33 +227,24 @@ def _longer(motion: PairOscillator, order: int) -> tuple[GearOscillator, tuple[f
 
 def _variants(motion: PairOscillator, bounds: tuple[float, float]) -> dict[str, tuple[float, ...]]:
     """Jump frequencies with the other law of stiffness and with one more harmonic, in this motion's frequency."""
-    from dynamics import diagram, fit_fourier
-
     series, scales = motion.series, motion.scales
     if series.cycle is None or scales is None:
         return {}
-    kind, order, found = series.kind, series.order, {}
-    for name, law, number in (
-        (f"{kind}, order {order}", kind, order),
-        (f"{kind}, order {order + 1}", kind, order + 1),
-        (f"{OTHER[kind]}, order {order}", OTHER[kind], order),
-    ):
-        fitted = fit_fourier(series.cycle.curve(law), order=number).stiffness
-        mean = fitted.mean / scales.mean_stiffness
-        changed = replace(motion.oscillator, stiffness=_over(fitted, scales.mean_stiffness))
-        ends = jump_points(diagram(changed, "frequency", bounds, periods=(1,), searches=5, max_period=1))
-        found[f"{name}, mean {mean:.4f}"] = tuple(point.parameter for _, point in ends)
+    kind, order, found, k_m = series.kind, series.order, {}, scales.mean_stiffness
+    for law, number in ((kind, order), (kind, order + 1), (OTHER[kind], order)):
+        fitted = dynamics.fit_fourier(series.cycle.curve(law), order=number).stiffness
+        over = dynamics.FourierStiffness(
+            fitted.mean / k_m, tuple(a / k_m for a in fitted.amplitudes), fitted.phases
+        )
+        changed = replace(motion.oscillator, stiffness=over)
+        ends = jump_points(
+            dynamics.diagram(changed, "frequency", bounds, periods=(1,), searches=5, max_period=1)
+        )
+        found[f"{law}, order {number}, mean {over.mean:.4f}"] = tuple(point.parameter for _, point in ends)
     return found
 
 
-def _over(series: FourierStiffness, mean: float) -> FourierStiffness:
-    """Series over a given mean."""
-    from dynamics import FourierStiffness
-
-    return FourierStiffness(series.mean / mean, tuple(a / mean for a in series.amplitudes), series.phases)
-
-
-def _factors(motion: PairOscillator, found: Diagram) -> tuple[Array, Array, Array]:
+def _factors(motion: PairOscillator, found: dynamics.Diagram) -> tuple[Array, Array, Array]:
     """Frequency, greatest force over the mean force along stable branches of period 1 and 2, ISO 6336-1's K_v."""
     from dynamics.robustness import force_range
 
@@ -281,13 +260,11 @@ def _factors(motion: PairOscillator, found: Diagram) -> tuple[Array, Array, Arra
 
 def _standard(motion: PairOscillator, frequency: Array) -> Array:
     """K_v after ISO 6336-1, method B; the pitch deviation is the peak-to-peak value of the unloaded error."""
-    from gears.closed_form import iso6336_dynamic
-
     scales, pair = motion.scales, motion.pair
     if scales is None or pair is None:
         return np.full(len(frequency), np.nan)
     reliefs = [gear.tip_relief.amount for gear in (pair.pinion, pair.wheel) if gear.tip_relief is not None]
-    factor = iso6336_dynamic(
+    factor = gears.closed_form.iso6336_dynamic(
         pair,
         motion.force,
         scales.equivalent_mass,

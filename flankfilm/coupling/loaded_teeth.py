@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypedDict
 
 import numpy as np
 
-from base import Array, Cost, Faults, SolverError, Stopwatch
+import fem
+import gears
+from base import Array, Cost, Faults, Stopwatch
+from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle, peak_to_peak_error, sampling_error
-from flankfilm.coupling.film_law import FilmLaw, PlacedFilm
+from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
-
-if TYPE_CHECKING:
-    import fem
-    from gears import GearDeviations, GearPair
 
 POSITIONS = (120, 360, 1080)
 """Numbers of positions tried, the cheapest first; each holds every third of the next one."""
@@ -37,22 +36,22 @@ class Flanks:
     """
 
     beyond_path: bool = True
-    deviations: tuple[GearDeviations | None, GearDeviations | None] | None = None
+    deviations: tuple[gears.GearDeviations | None, gears.GearDeviations | None] | None = None
     tip_rounding: tuple[float, float] = (0.0, 0.0)
     friction: float = 0.0
-
-    def arguments(self) -> dict[str, Any]:
-        """Arguments of `fem.mesh_cycle`."""
-        return {
-            "beyond_path": self.beyond_path,
-            "deviations": self.deviations,
-            "tip_rounding": self.tip_rounding,
-            "friction": self.friction,
-        }
 
 
 PLAIN_FLANKS = Flanks()
 """Sharp edges without deviations or friction; they may touch outside the path."""
+
+
+class TeethOptions(TypedDict, total=False):
+    """Fields of `LoadedTeeth` that may be left out, as keyword arguments."""
+
+    model: str
+    pairs: str
+    compliance: fem.Compliance | None
+    flanks: Flanks
 
 
 @dataclass(frozen=True)
@@ -70,13 +69,13 @@ class LoadedTeeth:
         ``"coupled"``: one approach for all loaded pairs, with the gaps that tip relief leaves and the film's
         separation as a function of its force; the gear body couples them in finite elements alone.
         ``"independent"``: each pair's secant stiffness, in series with its film's, the force in proportion.
-    compliance : fem.Compliance or None
-        Required by finite elements.
+    compliance : fem.Compliance, optional
+        For finite elements; see `meshed`.
     flanks : Flanks
         For finite elements of coupled pairs.
     """
 
-    pair: GearPair
+    pair: gears.GearPair
     torque: float
     model: str = "fem"
     pairs: str = "coupled"
@@ -88,6 +87,25 @@ class LoadedTeeth:
         with Faults() as faults:
             faults.choice("model", self.model, tuple(MODELS))
             faults.choice("pairs", self.pairs, ("coupled", "independent"))
+
+    def meshed(self, tolerance: float) -> LoadedTeeth:
+        """Give the same with the compliance computed to a tolerance, where it is needed and not there.
+
+        Raises
+        ------
+        SolverError
+            Where it misses the tolerance.
+        """
+        if self.model != "fem" or self.compliance is not None:
+            return self
+
+        found = fem.compliance(self.pair, tolerance=tolerance)
+        return replace(self, compliance=believed(found, "tooth compliance"))
+
+    @property
+    def setting(self) -> dict[str, Any]:
+        """What `fem.mesh_cycle` takes beside pair, torque and positions."""
+        return {"compliance": self.compliance, **vars(self.flanks)}
 
     @property
     def force(self) -> float:
@@ -109,9 +127,11 @@ class LoadedTeeth:
         SolverError
             Where the loaded contact did not converge.
         """
-        if (self.model, self.pairs) == ("fem", "coupled"):
-            return self._by_contact(positions, film)
-        return self._by_single_pairs(positions, film)
+        if (self.model, self.pairs) != ("fem", "coupled"):
+            return self._by_single_pairs(positions, film)
+        found = fem.mesh_cycle(self.pair, self.torque, positions=positions, film=film, **self.setting)
+        believed(found, "loaded tooth contact")
+        return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(found), contact=found)
 
     def sampled(self, sampling: float, transmission_error: float) -> MeshCycle:
         """Dry mesh cycle at as few of `POSITIONS` as two tolerances need.
@@ -140,34 +160,6 @@ class LoadedTeeth:
             if (model, "independent") != (self.model, self.pairs)
         )
 
-    def _by_contact(self, positions: int, film: FilmLaw | None) -> MeshCycle:
-        """Loaded contact by finite elements."""
-        import fem
-
-        found = fem.mesh_cycle(
-            self.pair,
-            torque=self.torque,
-            positions=positions,
-            compliance=self.compliance,
-            film=film,
-            **self.flanks.arguments(),
-        )
-        if not found.converged:
-            raise SolverError(f"loaded tooth contact: {found.message}")
-        return MeshCycle(
-            label=MODELS["fem"],
-            position=found.position,
-            rho1=found.rho1,
-            forces=found.forces,
-            load_share=found.load_share,
-            secant_stiffness=found.secant_stiffness,
-            stiffness=found.stiffness,
-            transmission_error=found.transmission_error,
-            error=found.error,
-            cost=found.cost,
-            contact=found,
-        )
-
     def _by_single_pairs(self, positions: int, film: FilmLaw | None) -> MeshCycle:
         """Pairs that know each other only through the force they share."""
         from gears import independent_pairs, share_load
@@ -184,8 +176,8 @@ class LoadedTeeth:
             compliance = 1.0 / np.where(touching, k, 1.0)
             bulk = compliance[..., None] * np.eye(k.shape[1])
             gaps = np.where(touching, _relief(self.pair, rho1), np.inf)
-            placed = None if film is None else PlacedFilm(film, rho1)
-            share = share_load(force, bulk, _NoHertz(), gaps, placed)
+            placed = None if film is None else Placed(film, rho1)
+            share = share_load(force, bulk, Placed(_no_hertz, rho1), gaps, placed)
             secant, stiffness = force / np.asarray(share.transmission_error), np.asarray(share.stiffness)
         return MeshCycle(
             label=f"{MODELS[self.model]}, {self.pairs} pairs",
@@ -201,7 +193,7 @@ class LoadedTeeth:
         )
 
 
-def contact_places(pair: GearPair, positions: int) -> tuple[Array, Array]:
+def contact_places(pair: gears.GearPair, positions: int) -> tuple[Array, Array]:
     """Place the pairs of teeth on the path.
 
     Parameters
@@ -223,17 +215,12 @@ def contact_places(pair: GearPair, positions: int) -> tuple[Array, Array]:
     return position, np.where(rho1 <= pair.points.E, rho1, np.nan)
 
 
-class _NoHertz:
+def _no_hertz(rho1: Array, force: Array) -> tuple[Array, Array]:
     """Local deflection of closed forms: already in the single pair's stiffness at the full force."""
-
-    def approach(self, force: Array) -> Array:
-        return np.zeros_like(force)
-
-    def slope(self, force: Array) -> Array:
-        return np.zeros_like(force)
+    return np.zeros_like(force), np.zeros_like(force)
 
 
-def _relief(pair: GearPair, rho1: Array) -> Array:
+def _relief(pair: gears.GearPair, rho1: Array) -> Array:
     """Clearance that tip relief of both gears leaves [m], nan staying nan, least zero at each position."""
     pinion, wheel = pair.teeth_profiles
     gap = pinion.relief(rho1) + wheel.relief(pair.line_of_action - rho1)

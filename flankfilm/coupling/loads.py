@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import fem
 from base import Array, Cost, SolverError, quantity, record
+from flankfilm.coupling.believed import believed
+from flankfilm.coupling.cycle import harmonics
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
-
-if TYPE_CHECKING:
-    from fem import MeshCycle
 
 REVOLUTION_POSITIONS = 40
 
@@ -58,26 +57,22 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
     >>> found.torque.tolist(), bool(found.secant_stiffness[0] < found.secant_stiffness[1])
     ([300.0, 600.0], True)
     """
-    import fem
-
     cycles = fem.mesh_cycle(
         teeth.pair,
         sorted({*torques, teeth.torque}),
         positions=positions,
-        compliance=teeth.compliance,
-        **teeth.flanks.arguments(),
+        **teeth.setting,
     )
     good = [cycle for cycle in cycles if cycle.converged]
     if not good:
         raise SolverError(f"mesh cycles over torque: {cycles[0].message}")
     refused = [cycle for cycle in cycles if not cycle.converged]
-    spectra = [np.abs(np.fft.rfft(cycle.secant_stiffness)) for cycle in good]
     return TorqueCurves(
         torque=np.array([cycle.torque for cycle in good]),
-        secant_stiffness=np.array([cycle.secant_stiffness.mean() for cycle in good]),
-        stiffness=np.array([cycle.stiffness.mean() for cycle in good]),
+        secant_stiffness=np.array([cycle.mean_secant_stiffness for cycle in good]),
+        stiffness=np.array([cycle.mean_stiffness for cycle in good]),
         transmission_error=np.array([np.ptp(cycle.transmission_error) for cycle in good]),
-        harmonic_1=np.array([2 * s[1] / s[0] for s in spectra]),
+        harmonic_1=np.array([harmonics(cycle.secant_stiffness)[0] for cycle in good]),
         error=max(cycle.error for cycle in good),
         cost=cycles[0].cost,
         converged=not refused,
@@ -87,7 +82,7 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
 
 def revolution(
     teeth: LoadedTeeth, pitches: int | None = None, first_teeth: tuple[int, int] = (0, 0)
-) -> MeshCycle:
+) -> fem.MeshCycle:
     """Mesh cycle tooth by tooth, with pitch deviations, by finite elements.
 
     Parameters
@@ -114,17 +109,12 @@ def revolution(
     >>> found.transmission_error.shape
     (80,)
     """
-    import fem
-
     cycle = fem.mesh_cycle(
         teeth.pair,
         teeth.torque,
         positions=REVOLUTION_POSITIONS,
-        compliance=teeth.compliance,
         pitches=pitches or teeth.pair.pinion.teeth,
         first_teeth=first_teeth,
-        **teeth.flanks.arguments(),
+        **teeth.setting,
     )
-    if not cycle.converged:
-        raise SolverError(f"revolution: {cycle.message}")
-    return cycle
+    return believed(cycle, "revolution")

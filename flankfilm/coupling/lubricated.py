@@ -3,33 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import Any, Unpack
 
 import numpy as np
 
-from base import Array, Cost, SolverError, Stopwatch, described, part, quantity, record, unclocked
-from flankfilm.coupling import film_points
+import ehl
+import gears
+from base import Array, SolverError, Stopwatch, described, part, quantity, record, unclocked
+from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
-from flankfilm.coupling.films import (
-    FilmModel,
-    PathFilms,
-    contacts_of,
-    film_inside,
-    films_of,
-    held_the_other_way,
-    law_of,
-)
-from flankfilm.coupling.loaded_teeth import PLAIN_FLANKS, Flanks, LoadedTeeth
-from flankfilm.coupling.mesh_cycles import checked, loaded_teeth
-from flankfilm.coupling.resolution import Resolution, resolution_of
+from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of, held_the_other_way, law_of
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
+from flankfilm.coupling.mesh_cycles import resolved
+from flankfilm.coupling.resolution import Resolution
 from flankfilm.coupling.warned import warned_once
-
-if TYPE_CHECKING:
-    import fem
-    from ehl import Film, Lubricant, StiffnessRow
-    from gears import GearPair
 
 FILM_POSITIONS = 40
 """Positions of a base pitch at which films are solved and brought into agreement with the load share."""
@@ -38,59 +27,6 @@ MOST_ROUNDS = 12
 
 SOLVED = FilmModel()
 """Flooded films between smooth flanks, solved."""
-
-
-@record
-class FilmAlongPath:
-    """Film at the loaded contacts of a mesh cycle, in the order of the path, at the loads that they carry with it.
-
-    What only solved, starved or mixed films have is None for others. ``error`` is the largest of the films'
-    thicknesses, None by formula.
-    """
-
-    headline = ("model", "supply", "least_film", "greatest_pressure")
-
-    model: str = quantity("", "model of the film")
-    supply: str = quantity("", "what is held at the inlet")
-    rho1: Array = quantity("m", "curvature radius of the pinion's flank at the film", "point", shown="mm")
-    load: Array = quantity("N/m", "force per length of face", "point", shown="N/mm")
-    central_thickness: Array = quantity(
-        "m", "central film, on the line of centres", "point", shown="um", error="error"
-    )
-    minimum_thickness: Array = quantity("m", "minimum film", "point", shown="um", error="error")
-    hertz_pressure: Array = quantity(
-        "Pa", "Hertz pressure, the largest of the dry contact", "point", shown="GPa"
-    )
-    stiffness: Mapping[str, Array] = quantity("N/m", "film stiffness of the whole face", "point")
-    inlet: Array | None = quantity(
-        "1", "where oil fills the gap, in half-widths ahead of the middle", "point"
-    )
-    oil_layer: Array | None = quantity(
-        "m", "layer of oil at ambient pressure that passes the contact", "point", shown="um"
-    )
-    starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
-    film_ratio: Array | None = quantity(
-        "1", "film ratio Lambda, least distance of the mean planes over sigma", "point"
-    )
-    asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
-    at_pitch: tuple[StiffnessRow, ...] = part(
-        "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"
-    )
-    profiles: Mapping[str, Film] = part("whole films at points of the path by label, for pictures")
-    error: float | None
-    cost: Cost
-    converged: bool = True
-    message: str = ""
-
-    @described("m", shown="um", error="error")
-    def least_film(self) -> float:
-        """Least film along the path."""
-        return float(self.minimum_thickness.min())
-
-    @described("Pa", shown="GPa")
-    def greatest_pressure(self) -> float:
-        """Largest Hertz pressure along the path."""
-        return float(self.hertz_pressure.max())
 
 
 @record
@@ -132,18 +68,15 @@ class LubricatedCycle(MeshCycle):
 
 
 def lubricated_cycle(
-    pair: GearPair,
+    pair: gears.GearPair,
     torque: float,
     speed: float,
-    lubricant: Lubricant,
+    lubricant: ehl.Lubricant,
     *,
     tolerance: float = 0.005,
-    model: str = "fem",
-    pairs: str = "coupled",
     film: FilmModel = SOLVED,
-    compliance: fem.Compliance | None = None,
-    flanks: Flanks = PLAIN_FLANKS,
     profiles: bool = False,
+    **teeth: Unpack[TeethOptions],
 ) -> LubricatedCycle:
     """Mesh stiffness, load share, transmission error and film of a lubricated pair over one base pitch.
 
@@ -155,16 +88,12 @@ def lubricated_cycle(
     lubricant : ehl.Lubricant
     tolerance : float
         Relative, of the mean stiffness and of the films; it is split among meshes, positions and films.
-    model, pairs : str
-        Of the teeth, as of `LoadedTeeth`.
     film : FilmModel
         Supply, roughness and model of the film.
-    compliance : fem.Compliance, optional
-        For finite elements; computed unless given.
-    flanks : Flanks
-        Deviations, edges and friction, for finite elements.
     profiles : bool
         Whether whole films at points of the path are solved as well, their pressure spikes resolved.
+    **teeth
+        As of `mesh_cycle`.
 
     Returns
     -------
@@ -190,15 +119,14 @@ def lubricated_cycle(
     >>> cycle.secant_stiffness_change < 0.0 < cycle.thinnest_film < 1e-6
     True
     """
-    asked = resolution_of(checked(tolerance, torque=torque, speed=speed), model, pairs, film.name)
     with warned_once():
-        teeth = loaded_teeth(pair, torque, asked, model, pairs, compliance, flanks)
-        dry = teeth.sampled(asked.sampling, asked.transmission_error)
-        return lubricate(teeth, dry, speed, lubricant, asked, film, profiles=profiles)
+        loaded, asked = resolved(LoadedTeeth(pair, torque, **teeth), tolerance, film.name, speed=speed)
+        dry = loaded.sampled(asked.sampling, asked.transmission_error)
+        return lubricate(loaded, dry, speed, lubricant, asked, film, profiles=profiles)
 
 
 def film_along_path(
-    pair: GearPair, torque: float, speed: float, lubricant: Lubricant, **options: Any
+    pair: gears.GearPair, torque: float, speed: float, lubricant: ehl.Lubricant, **options: Any
 ) -> FilmAlongPath:
     """Film along the path of contact, in agreement with the load share.
 
@@ -224,7 +152,7 @@ def lubricate(
     teeth: LoadedTeeth,
     dry: MeshCycle,
     speed: float,
-    lubricant: Lubricant,
+    lubricant: ehl.Lubricant,
     resolution: Resolution,
     model: FilmModel = SOLVED,
     *,
@@ -262,41 +190,33 @@ def lubricate(
     ((120, 2), True)
     """
     with unclocked():
-        import ehl
-
         ehl.solve  # noqa: B018 - loads the solver
     run = _Run(teeth, dry, speed, lubricant, resolution, model)
-    watch = Stopwatch()
     agreed = run.agree(min(FILM_POSITIONS, dry.position.size))
-    seconds = watch.seconds - agreed.in_contact_solver
-    cycle = run.with_film(agreed.law, f"{dry.label} with film")
+    path, law = agreed.path, agreed.law
+    cycle = run.with_film(path, f"{dry.label} with film")
+    least = np.array([film.minimum_thickness for film in path.films])
     return LubricatedCycle(
-        **_values(cycle),
-        least_film=agreed.law.carried(
-            np.array([film.minimum_thickness for film in agreed.path.films]), cycle.rho1, cycle.forces
-        ),
+        **MeshCycle.fields_of(cycle),
+        least_film=law.carried(least, cycle.rho1, cycle.forces),
         rounds=agreed.rounds,
         mismatch=agreed.mismatch,
         dry=dry,
-        film=run.film(agreed, seconds, profiles),
-        otherwise=run.otherwise(agreed),
+        film=gathered(model, path, teeth.pair, dry, agreed.seconds, agreed.positions if profiles else None),
+        otherwise=run.otherwise(path),
     )
-
-
-def _values(cycle: MeshCycle) -> dict[str, Any]:
-    return {field.name: getattr(cycle, field.name) for field in fields(cycle)}
 
 
 @dataclass(frozen=True)
 class _Agreement:
-    """Films whose loads are those of the load share that they bring about."""
+    """Films whose loads are those of the load share that they bring about, and the seconds that these took."""
 
     path: PathFilms
     law: FilmLaw
     positions: int
     rounds: int
     mismatch: float
-    in_contact_solver: float
+    seconds: float
 
 
 @dataclass(frozen=True)
@@ -306,14 +226,18 @@ class _Run:
     teeth: LoadedTeeth
     dry: MeshCycle
     speed: float
-    lubricant: Lubricant
+    lubricant: ehl.Lubricant
     resolution: Resolution
     model: FilmModel
 
+    def law(self, path: PathFilms) -> FilmLaw:
+        """Law of films, with the model's definition of stiffness."""
+        return law_of(path, self.teeth.pair.face_width, self.model.stiffness)
+
     def agree(self, positions: int) -> _Agreement:
         """Iterate films and load share until both agree."""
-        in_contact_solver, mismatch, rounds = 0.0, np.inf, 0
-        cycle, pair = self.teeth.cycle(positions), self.teeth.pair
+        seconds, mismatch, rounds = 0.0, np.inf, 0
+        cycle = self.teeth.cycle(positions)
         path: PathFilms | None = None
         while mismatch > self.resolution.agreement:
             if rounds == MOST_ROUNDS:
@@ -322,67 +246,34 @@ class _Run:
                     f"{mismatch:.1e} of the whole); raise the tolerance, or take the film by Dowson's formula"
                 )
             rounds += 1
-            contacts = contacts_of(pair, cycle, self.speed, self.lubricant)
+            watch = Stopwatch()
+            contacts = contacts_of(self.teeth.pair, cycle, self.speed, self.lubricant)
             path = films_of(self.model, *contacts, path, self.resolution.films)
-            law = law_of(path, pair.face_width, self.model.stiffness)
-            before, watch = cycle, Stopwatch()
-            cycle = self.teeth.cycle(positions, law)
-            in_contact_solver += watch.seconds
+            law = self.law(path)
+            seconds += watch.seconds
+            before, cycle = cycle, self.teeth.cycle(positions, law)
             mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
         assert path is not None
-        return _Agreement(path, law, positions, rounds, mismatch, in_contact_solver)
+        return _Agreement(path, law, positions, rounds, mismatch, seconds)
 
-    def with_film(self, law: FilmLaw, label: str) -> MeshCycle:
-        """Give the mesh cycle with a film law, at the positions of the dry one."""
+    def with_film(self, path: PathFilms, label: str) -> MeshCycle:
+        """Give the mesh cycle with films, at the positions of the dry one."""
+        law = self.law(path)
         cycle = self.teeth.cycle(self.dry.position.size, law)
         if self.teeth.pairs == "coupled":
             cycle = replace(cycle, secant_stiffness=_secant(cycle, law))
         return replace(cycle, label=label)
 
-    def otherwise(self, agreed: _Agreement) -> dict[str, MeshCycle]:
+    def otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
         """Give the mesh with the films that a starved one has to be compared with."""
         if self.model.supply is None:
             return {}
-        path, width = agreed.path, self.teeth.pair.face_width
-        flooded = PathFilms(path.rho1, path.flooded)
-        other = held_the_other_way(self.model, path, self.resolution.films)
         held = "meniscus" if self.model.held == "oil-layer" else "oil layer"
-        laws = {"smooth and flooded": flooded, f"same film, {held} held": other}
-        return {
-            label: self.with_film(law_of(p, width, self.model.stiffness), label) for label, p in laws.items()
+        others = {
+            "smooth and flooded": PathFilms(path.rho1, path.flooded),
+            f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
         }
-
-    def film(self, agreed: _Agreement, seconds: float, profiles: bool) -> FilmAlongPath:
-        """Gather the films along the path."""
-        path, films, pair = agreed.path, agreed.path.films, self.teeth.pair
-        solved, rough = self.model.name == "ehl", self.model.roughness is not None
-        inside = [film_inside(film) for film in films] if solved else []
-        central = np.array([film.central_thickness for film in films])
-        flooded = np.array([film.central_thickness for film in path.flooded])
-        return FilmAlongPath(
-            model=self.model.name,
-            supply=self.model.held,
-            rho1=path.rho1,
-            load=np.array([film.contact.load for film in films]),
-            central_thickness=central,
-            minimum_thickness=np.array([film.minimum_thickness for film in films]),
-            hertz_pressure=np.array([film.contact.peak_pressure for film in films]),
-            stiffness={
-                name: np.array([pair.face_width * film.stiffness(name) for film in films])
-                for name in film_points.definitions(self.model.name)
-            },
-            inlet=np.array([film.inlet / film.contact.half_width for film in inside]) if solved else None,
-            oil_layer=np.array([film.flow for film in inside]) if solved else None,
-            starvation=central / flooded if path.flooded else None,
-            film_ratio=_of_mixed(path, "film_ratio") if rough else None,
-            asperity_share=_of_mixed(path, "asperity_share") if rough else None,
-            at_pitch=film_points.stiffness_rows(pair, self.dry, path) if solved else (),
-            profiles=film_points.profiles(pair, path, agreed.positions, self.model.grid)
-            if solved and profiles
-            else {},
-            error=max(film.error for film in films) if solved else None,
-            cost=Cost(seconds, max((film.cost.unknowns for film in inside), default=0)),
-        )
+        return {label: self.with_film(other, label) for label, other in others.items()}
 
 
 def _secant(cycle: MeshCycle, law: FilmLaw) -> Array:
@@ -398,7 +289,3 @@ def _secant(cycle: MeshCycle, law: FilmLaw) -> Array:
     added = np.sum(cycle.load_share * yielding, axis=1)
     deflection = cycle.transmission_error
     return np.asarray(cycle.secant_stiffness * deflection / (deflection + added))
-
-
-def _of_mixed(path: PathFilms, name: str) -> Array:
-    return np.array([getattr(film, name) for film in path.films])

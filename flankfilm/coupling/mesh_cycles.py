@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Unpack
 
-from base import Faults, Limit, SolverError
+import gears
+from base import Faults, Limit
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.loaded_teeth import PLAIN_FLANKS, Flanks, LoadedTeeth
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.resolution import Resolution, resolution_of
-
-if TYPE_CHECKING:
-    import fem
-    from gears import GearPair
 
 
 def mesh_cycle(
-    pair: GearPair,
+    pair: gears.GearPair,
     torque: float,
     *,
     tolerance: float = 0.005,
     positions: int | None = None,
-    model: str = "fem",
-    pairs: str = "coupled",
-    compliance: fem.Compliance | None = None,
-    flanks: Flanks = PLAIN_FLANKS,
+    **teeth: Unpack[TeethOptions],
 ) -> MeshCycle:
     """Mesh stiffness, load share and transmission error of a dry pair over one base pitch, by any model.
 
@@ -36,12 +30,9 @@ def mesh_cycle(
         Relative, of the mean stiffness; it is split between meshes and positions.
     positions : int, optional
         Equal intervals of the base pitch; as few of 120, 360 and 1080 as the tolerance needs unless given.
-    model, pairs : str
-        As of `LoadedTeeth`.
-    compliance : fem.Compliance, optional
-        For finite elements; computed unless given.
-    flanks : Flanks
-        Deviations, edges and friction, for finite elements.
+    **teeth
+        ``model``, ``pairs``, ``compliance`` and ``flanks``, as of `LoadedTeeth`; the compliance is computed where
+        it is needed and not given.
 
     Raises
     ------
@@ -58,46 +49,25 @@ def mesh_cycle(
     >>> cycle.secant_stiffness.shape, round(cycle.mean_secant_stiffness / 40e6, 1)  # N/(mm um)
     ((120,), 20.2)
     """
-    asked = resolution_of(checked(tolerance, torque=torque), model, pairs, "none")
-    teeth = loaded_teeth(pair, torque, asked, model, pairs, compliance, flanks)
-    return teeth.sampled(asked.sampling, tolerance) if positions is None else teeth.cycle(positions)
+    loaded, asked = resolved(LoadedTeeth(pair, torque, **teeth), tolerance)
+    return loaded.sampled(asked.sampling, tolerance) if positions is None else loaded.cycle(positions)
 
 
-def loaded_teeth(
-    pair: GearPair,
-    torque: float,
-    resolution: Resolution,
-    model: str = "fem",
-    pairs: str = "coupled",
-    compliance: fem.Compliance | None = None,
-    flanks: Flanks = PLAIN_FLANKS,
-) -> LoadedTeeth:
-    """Pair under a torque with its model, the compliance computed where it is needed and not given.
-
-    Raises
-    ------
-    SolverError
-        Where the compliance misses its tolerance.
-    """
-    if model == "fem" and compliance is None:
-        import fem
-
-        compliance = fem.compliance(pair, tolerance=resolution.compliance)
-        if not compliance.converged:
-            raise SolverError(f"tooth compliance: {compliance.message}")
-    return LoadedTeeth(pair, torque, model, pairs, compliance, flanks)
-
-
-def checked(tolerance: float, **positive: float) -> float:
-    """Check a tolerance, and numbers that must be more than zero.
+def resolved(
+    teeth: LoadedTeeth, tolerance: float, film: str = "none", **positive: float
+) -> tuple[LoadedTeeth, Resolution]:
+    """Split a tolerance for a pair and the model of its film; give the pair with its compliance, and the split.
 
     Raises
     ------
     InputError
-        With every fault.
+        With every fault of the tolerance, the torque and further numbers that must be more than zero.
+    SolverError
+        Where no resolution meets the tolerance, or the compliance misses its share.
     """
     with Faults() as faults:
         faults.number("tolerance", tolerance, Limit.above(0.0, 0.4, remedy="such as 0.005"))
-        for name, value in positive.items():
+        for name, value in {"torque": teeth.torque, **positive}.items():
             faults.number(name, value, Limit.above(0.0))
-    return tolerance
+    asked = resolution_of(tolerance, teeth.model, teeth.pairs, film)
+    return teeth.meshed(asked.compliance), asked

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Cost, InputError, Stopwatch, part, quantity, record, unclocked
+import dynamics
+from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
 from flankfilm.coupling.oscillator import PairOscillator
-
-if TYPE_CHECKING:
-    from dynamics import GearOscillator, SweepResult
 
 MOST_PORTRAITS = 6
 
@@ -124,8 +121,7 @@ def speed_sweep(
         for direction in ("up", "down")
     }
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
-    outcomes = [(result.message, result.converged) for result in found.values()]
-    outcomes.append((grazing.message, grazing.converged))
+    solved: list[Result] = [*found.values(), grazing]
     return SpeedSweep(
         frequency=values,
         speed=speeds,
@@ -139,7 +135,7 @@ def speed_sweep(
         half_backlash=oscillator.half_backlash,
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
-        messages=tuple(message for message, converged in outcomes if not converged),
+        messages=tuple(one.message for one in solved if not one.converged),
     )
 
 
@@ -164,7 +160,7 @@ def frequencies_of(
 
 
 def _choices(
-    frequency: Array, wanted: Sequence[float], found: Mapping[str, SweepResult]
+    frequency: Array, wanted: Sequence[float], found: Mapping[str, dynamics.SweepResult]
 ) -> list[tuple[str, int]]:
     """Choose direction and index of each portrait: those asked for, else one for each kind of motion."""
     if wanted:
@@ -182,18 +178,18 @@ def _choices(
     return sorted(((d, i) for _, d, i in kept), key=lambda choice: choice[1])
 
 
-def _different(found: Mapping[str, SweepResult], index: int) -> tuple[str, ...]:
+def _different(found: Mapping[str, dynamics.SweepResult], index: int) -> tuple[str, ...]:
     """Directions whose motions differ at a value: one where both sweeps met the same."""
     labels = {result.labels[index] for result in found.values()}
     return ("up",) if len(labels) == 1 else ("up", "down")
 
 
-def _portrait(oscillator: GearOscillator, result: SweepResult, direction: str, index: int) -> Portrait:
-    from dynamics import trajectory
-
+def _portrait(
+    oscillator: dynamics.GearOscillator, result: dynamics.SweepResult, direction: str, index: int
+) -> Portrait:
     frequency = float(result.values[index])
     states = result.states[index]
     periods = int(result.periods[index]) or 60
     here = oscillator.with_parameter("frequency", frequency)
-    motion = trajectory(here, states[-1], periods=periods)
+    motion = dynamics.trajectory(here, states[-1], periods=periods)
     return Portrait(frequency, direction, result.labels[index], motion.x, motion.v, motion.poincare)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import dynamics
+import gears
 from base import Cost, described, part, quantity, record
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.series import MeshSeries, mesh_series
-
-if TYPE_CHECKING:
-    from dynamics import GearOscillator, Scaling
-    from gears import GearPair
 
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
@@ -26,10 +23,12 @@ class PairOscillator:
 
     headline = ("natural_frequency", "mean_force", "half_backlash", "frequency")
 
-    oscillator: GearOscillator = part("at the pair's speed")
-    scales: Scaling | None = part("of mass, stiffness and length; None for an oscillator in its own units")
+    oscillator: dynamics.GearOscillator = part("at the pair's speed")
+    scales: dynamics.Scaling | None = part(
+        "of mass, stiffness and length; None for an oscillator in its own units"
+    )
     series: MeshSeries = part("of the mesh stiffness")
-    pair: GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
+    pair: gears.GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
     force: float = quantity("N", "normal force", default=0.0)
     error_amplitude: float = quantity(
         "m", "amplitude of the unloaded transmission error", shown="um", default=0.0
@@ -70,37 +69,29 @@ class PairOscillator:
     def rows(self) -> tuple[tuple[str, str, str], ...]:
         """Quantities, physical and dimensionless, as text for tables."""
         osc, scales = self.oscillator, self.scales
-        own = {
-            "mean force F_m": osc.mean_force,
-            "error amplitude epsilon": osc.error_amplitude,
-            "half backlash D": osc.half_backlash,
-            "damping ratio zeta": osc.damping_ratio,
-            "mesh frequency omega": osc.frequency,
-        }
-        if scales is None:
-            return tuple((name, "", f"{value:.6g}") for name, value in own.items())
-        physical = (
-            f"{self.force:.6g} N",
-            f"{1e6 * self.error_amplitude:.4g} µm",
-            f"{1e6 * self.backlash / 2:.4g} µm",
-            f"{scales.damping(osc.damping_ratio):.4g} N s/m",
-            f"{scales.rpm(osc.frequency):.6g} rpm of the pinion",
-        )
-        rows = [
-            (name, text, f"{value:.6g}") for (name, value), text in zip(own.items(), physical, strict=True)
+        damping = "" if scales is None else f"{scales.damping(osc.damping_ratio):.4g} N s/m"
+        rpm = "" if scales is None else f"{scales.rpm(osc.frequency):.6g} rpm of the pinion"
+        own = [
+            ("mean force F_m", f"{self.force:.6g} N", f"{osc.mean_force:.6g}"),
+            ("error amplitude epsilon", f"{1e6 * self.error_amplitude:.4g} µm", f"{osc.error_amplitude:.6g}"),
+            ("half backlash D", f"{1e6 * self.backlash / 2:.4g} µm", f"{osc.half_backlash:.6g}"),
+            ("damping ratio zeta", damping, f"{osc.damping_ratio:.6g}"),
+            ("mesh frequency omega", rpm, f"{osc.frequency:.6g}"),
         ]
-        rows += [
+        if scales is None:
+            return tuple((name, "", value) for name, _, value in own)
+        return (
+            *own,
             ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
             ("mean stiffness k_m", f"{scales.mean_stiffness:.5g} N/m", "1"),
             ("equivalent mass m_e", f"{scales.equivalent_mass:.5g} kg", "1"),
             ("natural frequency", f"{scales.natural_frequency:.5g} Hz", "1"),
             ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
-        ]
-        return tuple(rows)
+        )
 
 
 def pair_oscillator(
-    pair: GearPair,
+    pair: gears.GearPair,
     stiffness: MeshCycle | MeshSeries,
     torque: float,
     speed: float,
@@ -171,19 +162,19 @@ def pair_oscillator(
     )
 
 
-def pair_inertias(pair: GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+def pair_inertias(pair: gears.GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Moments of inertia of pinion and wheel with what turns with them [kg m2]."""
     first, second = pair.moments_of_inertia
     return first + extra[0], second + extra[1]
 
 
 def pair_scales(
-    pair: GearPair,
+    pair: gears.GearPair,
     torque: float,
     mean_stiffness: float,
     extra_inertia: tuple[float, float] = (0.0, 0.0),
     length_scale: float | None = None,
-) -> Scaling:
+) -> dynamics.Scaling:
     """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`.
 
     Examples
@@ -193,9 +184,7 @@ def pair_scales(
     >>> 6e3 < pair_scales(pair, 600.0, 8e8).natural_frequency < 8e3
     True
     """
-    from dynamics import Scaling
-
-    return Scaling.from_inertias(
+    return dynamics.Scaling.from_inertias(
         inertias=pair_inertias(pair, extra_inertia),
         base_radii=pair.base_radii,
         mean_stiffness=mean_stiffness,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from base import SolverError
-from flankfilm.coupling.tolerance import CostLaw, Shares, split, step_below
+from flankfilm.coupling.tolerance import CostLaw, split, step_below
 
 COMPLIANCE = CostLaw("tooth compliance", coarsest=5e-4, seconds=0.3, power=1.0, finest=3e-6)
 """Meshing, factors and loads of both gears by finite elements."""
@@ -59,7 +60,7 @@ class Resolution:
     agreement: float
 
     @classmethod
-    def from_shares(cls, tolerance: float, shares: Shares, films: float) -> Resolution:
+    def from_shares(cls, tolerance: float, shares: Mapping[str, float], films: float) -> Resolution:
         """Resolution from a tolerance of the whole, its split among stages, and the tolerance of films."""
         # figures beside the mesh stiffness, such as fields, have finite elements all the same
         compliance = min(shares.get(COMPLIANCE.name, tolerance), COMPLIANCE.coarsest)
@@ -91,13 +92,13 @@ def film_law_of_cost(change: float, tolerance: float = 1.0) -> CostLaw:
     return CostLaw(FILMS.name, change * coarsest, FILMS.cost(coarsest), FILMS.power)
 
 
-def film_tolerance(shares: Shares, change: float, wanted: float = COARSEST_FILMS) -> float:
+def film_tolerance(shares: Mapping[str, float], change: float, wanted: float = COARSEST_FILMS) -> float:
     """Relative error that solved films may have.
 
     Parameters
     ----------
-    shares : Shares
-        Split of the tolerance; its share of the films counts by what they change of the stiffness.
+    shares : mapping
+        Split of the tolerance by stages; its share of the films counts by what they change of the stiffness.
     change : float
         As of `film_law_of_cost`.
     wanted : float

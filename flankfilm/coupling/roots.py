@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Cost, SolverError, Stopwatch, part, quantity, record, unclocked
+import fem
+import gears
+from base import Cost, Stopwatch, part, quantity, record, unclocked
+from flankfilm.coupling.believed import believed
 
 if TYPE_CHECKING:
-    import fem
     from fem.fields import GearField
-    from gears import GearPair
-    from gears.closed_form import Iso6336RootStress
 
 
 @record
@@ -23,7 +23,9 @@ class RootStresses:
     headline = ("iso_fault",)
 
     stress: fem.RootStress = part("along the mesh cycle, by finite elements")
-    iso: Iso6336RootStress | None = part("nominal stress by ISO 6336-3; None where it has no answer")
+    iso: gears.closed_form.Iso6336RootStress | None = part(
+        "nominal stress by ISO 6336-3; None where it has no answer"
+    )
     iso_fault: str = quantity("", "why ISO 6336-3 has no answer")
     error: float | None
     cost: Cost
@@ -44,7 +46,7 @@ class LoadedFields:
     message: str = ""
 
 
-def root_stresses(pair: GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) -> RootStresses:
+def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) -> RootStresses:
     """Stress at the fillets with the forces of a loaded contact.
 
     Parameters
@@ -79,7 +81,7 @@ def root_stresses(pair: GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) ->
     return RootStresses(found, iso, fault, found.error, Cost(watch.seconds))
 
 
-def fillets_of(pair: GearPair, tolerance: float, plane: str = "strain") -> fem.Fillets:
+def fillets_of(pair: gears.GearPair, tolerance: float, plane: str = "strain") -> fem.Fillets:
     """What loads anywhere on the flanks do to the fillets, by a mesh made for them.
 
     Parameters
@@ -103,15 +105,12 @@ def fillets_of(pair: GearPair, tolerance: float, plane: str = "strain") -> fem.F
     >>> fillets_of(pair, tolerance=0.05).error < 0.05
     True
     """
-    import fem
-
-    found = fem.fillets(pair, tolerance=tolerance, plane=plane)
-    if not found.converged:
-        raise SolverError(f"root stress: {found.message}")
-    return found
+    return believed(fem.fillets(pair, tolerance=tolerance, plane=plane), "root stress")
 
 
-def pitch_point_fields(pair: GearPair, cycle: fem.MeshCycle, compliance: fem.Compliance) -> LoadedFields:
+def pitch_point_fields(
+    pair: gears.GearPair, cycle: fem.MeshCycle, compliance: fem.Compliance
+) -> LoadedFields:
     """Fields with a pair nearest to the pitch point.
 
     Parameters

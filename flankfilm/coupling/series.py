@@ -12,15 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+import dynamics
 from base import Array, Cost, Stopwatch, described, part, quantity, record
-from flankfilm.coupling.cycle import MeshCycle
-
-if TYPE_CHECKING:
-    from dynamics import FourierFit, FourierStiffness
+from flankfilm.coupling.cycle import MeshCycle, harmonics
 
 MOST_HARMONICS = 50
 """Highest order of a series."""
@@ -38,9 +35,11 @@ class MeshSeries:
 
     kind: str = quantity("", "stiffness that the series is of: secant, tangent or given")
     source: str = quantity("", "mesh cycle that the series is of")
-    stiffness: FourierStiffness = part("the series")
-    fit: FourierFit | None = part("the series with its remainder; None if it was given")
-    other: FourierFit | None = part("that of the kind which was not chosen; None if the series was given")
+    stiffness: dynamics.FourierStiffness = part("the series")
+    fit: dynamics.FourierFit | None = part("the series with its remainder; None if it was given")
+    other: dynamics.FourierFit | None = part(
+        "that of the kind which was not chosen; None if the series was given"
+    )
     cycle: MeshCycle | None = part("mesh cycle that was fitted; None if the series was given")
     left_out: LeftOut | None = part("what the order leaves out; None where it was not looked at")
     share: float | None = part("what an order that was found may leave out; None for one that was named")
@@ -194,9 +193,7 @@ def mesh_series(
 
     watch = Stopwatch()
     samples = cycle.curve(kind)
-    spectrum = np.abs(np.fft.rfft(samples))
-    resolved = 2.0 * spectrum[1 : (samples.size + 1) // 2] / spectrum[0]
-    beyond = left_out(resolved, bounds, damping_ratio)
+    beyond = left_out(harmonics(samples)[: (samples.size - 1) // 2], bounds, damping_ratio)
     chosen = least_order(beyond, share) if order is None else order
     fit = fit_fourier(samples, order=chosen)
     return MeshSeries(
@@ -212,15 +209,17 @@ def mesh_series(
     )
 
 
-def given_series(mean: float, amplitudes: Sequence[float], phases: Sequence[float]) -> MeshSeries:
-    """Series by its mean [N/m], or 1, its amplitudes over the mean, and its phases [rad].
+def given_series(
+    mean: float = 1.0, amplitudes: Sequence[float] = (), phases: Sequence[float] | None = None
+) -> MeshSeries:
+    """Series by its mean [N/m], or 1, its amplitudes over the mean, and its phases [rad], zero unless given.
 
     Examples
     --------
     >>> given_series(8e8, [0.1], [0.0]).amplitude
     array([80000000.])
     """
-    from dynamics import FourierStiffness
-
-    series = FourierStiffness(mean, tuple(mean * kappa for kappa in amplitudes), tuple(phases))
+    series = dynamics.FourierStiffness(
+        mean, tuple(mean * kappa for kappa in amplitudes), tuple(phases or (0.0,) * len(amplitudes))
+    )
     return MeshSeries("given", "given", series, None, None, None, None, None, Cost(0.0))

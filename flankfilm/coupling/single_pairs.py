@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+import fem
+import gears
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record, unclocked
-
-if TYPE_CHECKING:
-    import fem
-    from gears import GearPair, PathOfContact
-    from gears.closed_form import Iso6336Stiffness
 
 CLOSED_FORMS = {
     "ishikawa": "Ishikawa",
@@ -39,27 +35,24 @@ class SinglePairs:
     travel: Array = quantity("m", "travel from A along the path of contact", "path", shown="mm")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
     stiffness: Mapping[str, Array] = quantity("N/m", "stiffness of one pair", "path")
-    iso: Iso6336Stiffness = part("stiffness by ISO 6336-1")
+    iso: gears.closed_form.Iso6336Stiffness = part("stiffness by ISO 6336-1")
     error: float | None
     cost: Cost
     converged: bool = True
     message: str = ""
 
 
-def closed_form(model: str, pair: GearPair, path: PathOfContact, force: float) -> Any:
+def closed_form(model: str, pair: gears.GearPair, path: gears.PathOfContact, force: float) -> Array:
     """Evaluate a closed form by its name in `CLOSED_FORMS` on a path of contact under a force [N]."""
-    from gears import closed_form as forms
-
-    functions: dict[str, Callable[[], Any]] = {
-        "ishikawa": lambda: forms.ishikawa(pair, path),
-        "weber-banaschek": lambda: forms.weber_banaschek(pair, path, force),
-        "potential-energy": lambda: forms.potential_energy(pair, path, force=force),
-    }
-    return functions[model]()
+    if model == "ishikawa":
+        return np.asarray(gears.closed_form.ishikawa(pair, path))
+    if model == "weber-banaschek":
+        return np.asarray(gears.closed_form.weber_banaschek(pair, path, force))
+    return np.asarray(gears.closed_form.potential_energy(pair, path, force=force))
 
 
 def single_pair_stiffness(
-    pair: GearPair,
+    pair: gears.GearPair,
     force: float,
     rho1: ArrayLike,
     model: str = "fem",
@@ -98,16 +91,14 @@ def single_pair_stiffness(
     known = np.isfinite(places)
     k = np.full_like(places, np.nan)
     if model == "fem":
-        from fem import single_pair_stiffness as by_elements
-
-        k[known] = by_elements(pair, force=force, rho1=places[known], compliance=compliance)
+        k[known] = fem.single_pair_stiffness(pair, force=force, rho1=places[known], compliance=compliance)
     else:
-        k[known] = np.asarray(closed_form(model, pair, pair.path_at(places[known]), force))
+        k[known] = closed_form(model, pair, pair.path_at(places[known]), force)
     return k
 
 
 def single_pairs(
-    pair: GearPair, torque: float, compliance: fem.Compliance | None = None, points: int = STATIONS
+    pair: gears.GearPair, torque: float, compliance: fem.Compliance | None = None, points: int = STATIONS
 ) -> SinglePairs:
     """Stiffness of one pair along the path by all closed forms, beside finite elements where they are at hand.
 

@@ -15,7 +15,7 @@ stage estimates its own error and refines until that is below its share.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -48,42 +48,7 @@ class CostLaw:
         return self.seconds * math.pow(max(1.0, self.coarsest / error), self.power)
 
 
-@dataclass(frozen=True)
-class Shares(Mapping[str, float]):
-    """Relative errors that stages may make: a mapping from names; they sum to the tolerance that was split.
-
-    Attributes
-    ----------
-    laws : tuple of CostLaw
-    errors : tuple of float
-        One for each law.
-    """
-
-    laws: tuple[CostLaw, ...]
-    errors: tuple[float, ...]
-
-    def __getitem__(self, name: str) -> float:
-        """Share of a stage."""
-        for law, error in zip(self.laws, self.errors, strict=True):
-            if law.name == name:
-                return error
-        raise KeyError(name)
-
-    def __iter__(self) -> Iterator[str]:
-        """Names of the stages."""
-        return (law.name for law in self.laws)
-
-    def __len__(self) -> int:
-        """Count the stages."""
-        return len(self.laws)
-
-    @property
-    def seconds(self) -> float:
-        """Cost that the laws foresee [s]."""
-        return math.fsum(law.cost(error) for law, error in zip(self.laws, self.errors, strict=True))
-
-
-def split(tolerance: float, laws: Sequence[CostLaw]) -> Shares | None:
+def split(tolerance: float, laws: Sequence[CostLaw]) -> dict[str, float] | None:
     """Split a tolerance among stages for the least cost; None where it lies below all that they can reach.
 
     Parameters
@@ -91,18 +56,17 @@ def split(tolerance: float, laws: Sequence[CostLaw]) -> Shares | None:
     tolerance : float
         Relative, T.
     laws : sequence of CostLaw
+        Of different names.
 
     Returns
     -------
-    Shares or None
-        Summing to `tolerance`; none at all where there is no stage.
+    dict or None
+        Relative errors by the laws' names, summing to `tolerance`; empty where there is no stage.
     """
-    if not laws:
-        return Shares((), ())
-    if tolerance <= math.fsum(law.finest for law in laws):
+    if laws and tolerance <= math.fsum(law.finest for law in laws):
         return None
     if tolerance >= (coarsest := math.fsum(law.coarsest for law in laws)):
-        return Shares(tuple(laws), tuple(law.coarsest * tolerance / coarsest for law in laws))
+        return {law.name: law.coarsest * tolerance / coarsest for law in laws}
     # the least slope at which every stage would still be at its coarsest, and one at which all are at their finest
     low = min(_slope(law, law.coarsest) for law in laws)
     high = max(_slope(law, max(law.finest, 1e-9 * tolerance)) for law in laws)
@@ -113,11 +77,10 @@ def split(tolerance: float, laws: Sequence[CostLaw]) -> Shares | None:
             low = middle
         else:
             high = middle
-    errors = [_share(law, high) for law in laws]
+    errors = {law.name: _share(law, high) for law in laws}
     # what rounding leaves goes to the largest share
-    largest = max(range(len(laws)), key=errors.__getitem__)
-    errors[largest] += tolerance - math.fsum(errors)
-    return Shares(tuple(laws), tuple(errors))
+    errors[max(errors, key=errors.__getitem__)] += tolerance - math.fsum(errors.values())
+    return errors
 
 
 def _slope(law: CostLaw, error: float) -> float:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+import fem
+import gears
 from base import Array, Cost, Integers, Stopwatch, part, quantity, record
-from flankfilm.coupling.loaded_teeth import LoadedTeeth, contact_places
-from flankfilm.coupling.mesh_cycles import checked, loaded_teeth
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.cycle import harmonics
+from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth, contact_places
+from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
-
-if TYPE_CHECKING:
-    import fem
-    from gears import GearPair
 
 POSITIONS = 360
 """Positions of a base pitch; every third of them shows the error of their number."""
@@ -109,7 +106,7 @@ class Verification:
 
     headline = ("torque",)
 
-    pair: GearPair = part("the gears")
+    pair: gears.GearPair = part("the gears")
     torque: float = quantity("N m", "torque of the pinion")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
     position: Array = quantity("1", "position, base pitches from A", "position")
@@ -141,7 +138,7 @@ class Verification:
 
 
 def compare_closed_forms(
-    pair: GearPair,
+    pair: gears.GearPair,
     torque: float,
     tolerance: float = 0.005,
     compliance: fem.Compliance | None = None,
@@ -174,14 +171,13 @@ def compare_closed_forms(
     >>> round(found.difference("potential energy, Sainsot body", "without hub wind-up and coupling"), 2)
     -0.17
     """
-    asked = resolution_of(checked(tolerance, torque=torque), film="none")
-    teeth = loaded_teeth(pair, torque, asked, compliance=compliance)
+    teeth, _ = resolved(LoadedTeeth(pair, torque, compliance=compliance), tolerance)
     assert teeth.compliance is not None
     return verification_of(pair, torque, teeth.compliance, beyond_path)
 
 
 def verification_of(
-    pair: GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool = True
+    pair: gears.GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool = True
 ) -> Verification:
     """Compare from a compliance; arguments as of `compare_closed_forms`.
 
@@ -209,30 +205,18 @@ def verification_of(
     )
 
 
-def stations(pair: GearPair) -> Array:
+def stations(pair: gears.GearPair) -> Array:
     """Curvature radii of the pinion's flank from A to E, with C among them, (POINTS + 1,) [m]."""
     points = pair.points
     return np.sort(np.append(np.linspace(points.A, points.E, POINTS), points.C))
 
 
-def _closed_form_curves(pair: GearPair, torque: float) -> Iterator[Curves]:
+def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]:
     """Evaluate every closed form, its pairs independent as closed forms have them."""
     from gears import closed_form as forms
 
-    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
     for model in CLOSED_FORMS:
-        watch = Stopwatch()
-        teeth = LoadedTeeth(pair, torque, model, "independent")
-        single = single_pair_stiffness(pair, teeth.force, stations(pair), model)
-        cycle = teeth.cycle(POSITIONS)
-        yield Curves(
-            MODELS[model],
-            single,
-            cycle.secant_stiffness,
-            cycle.transmission_error,
-            pairs,
-            Cost(watch.seconds),
-        )
+        yield _curves(MODELS[model], LoadedTeeth(pair, torque, model, "independent"))
     watch = Stopwatch()
     iso = forms.iso6336(pair, force=pair.normal_force(torque))
     means = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
@@ -243,32 +227,28 @@ def _closed_form_curves(pair: GearPair, torque: float) -> Iterator[Curves]:
 
 
 def _reference_curves(
-    pair: GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool
+    pair: gears.GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool
 ) -> Iterator[Curves]:
     """Evaluate finite elements with all parts, and with the parts left out that closed forms lack."""
-    import fem
-
-    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
     for label, (whole, left_out) in REFERENCES.items():
         if whole and not beyond_path:
             continue  # the next one is the same
-        watch = Stopwatch()
         parts = compliance.without(*left_out)
-        cycle = fem.mesh_cycle(pair, torque=torque, positions=POSITIONS, compliance=parts, beyond_path=whole)
-        single = single_pair_stiffness(pair, pair.normal_force(torque), stations(pair), "fem", parts)
-        yield Curves(
-            label,
-            single,
-            cycle.secant_stiffness,
-            cycle.transmission_error,
-            pairs,
-            Cost(watch.seconds),
-            error=compliance.error,
-            left_out=left_out,
-        )
+        teeth = LoadedTeeth(pair, torque, compliance=parts, flanks=Flanks(beyond_path=whole))
+        yield replace(_curves(label, teeth), error=compliance.error, left_out=left_out)
 
 
-def figures(pair: GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
+def _curves(label: str, teeth: LoadedTeeth) -> Curves:
+    """Stiffness of a single pair and of the mesh by one model."""
+    watch, pair = Stopwatch(), teeth.pair
+    cycle = teeth.cycle(POSITIONS)
+    single = single_pair_stiffness(pair, teeth.force, stations(pair), teeth.model, teeth.compliance)
+    cost = Cost(watch.seconds)
+    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
+    return Curves(label, single, cycle.secant_stiffness, cycle.transmission_error, pairs, cost)
+
+
+def figures(pair: gears.GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
     """Figures of a model in the units of `UNITS`; nan where it has none.
 
     Parameters
@@ -284,7 +264,7 @@ def figures(pair: GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
     rho1, middle = stations(pair), slice(every // 2, None, every)
     single, secant = curves.single_stiffness, curves.secant_stiffness[middle]
     two = curves.pairs[middle] == 2
-    spectrum = 2 * np.abs(np.fft.rfft(secant)) / secant.sum()
+    spectrum = harmonics(secant)
     found |= {
         "one pair, at C": scale * float(np.interp(pair.points.C, rho1, single)),
         "one pair, largest": scale * float(single.max()),
@@ -293,10 +273,10 @@ def figures(pair: GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
         "mesh, mean": scale * float(secant.mean()),
         "transmission error, peak to peak": 1e6 * float(np.ptp(curves.transmission_error[middle])),
     }
-    return found | {f"harmonic {j} over mean": float(spectrum[j]) for j in (1, 2, 3)}
+    return found | {f"harmonic {j} over mean": float(spectrum[j - 1]) for j in (1, 2, 3)}
 
 
-def figure_errors(pair: GearPair, curves: Curves) -> dict[str, float]:
+def figure_errors(pair: gears.GearPair, curves: Curves) -> dict[str, float]:
     """Estimate the relative numerical error of each figure by finite elements.
 
     The error e of the compliance holds at each position. If the errors of different positions had opposite
@@ -320,7 +300,7 @@ def figure_errors(pair: GearPair, curves: Curves) -> dict[str, float]:
 
 
 def _differences(
-    pair: GearPair, references: tuple[Curves, ...], models: tuple[Curves, ...]
+    pair: gears.GearPair, references: tuple[Curves, ...], models: tuple[Curves, ...]
 ) -> list[Difference]:
     found = []
     for reference in references:

@@ -18,7 +18,7 @@ from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
 from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
-from flankfilm.stages.decisions import decisions
+from flankfilm.plan.decisions import decisions
 
 if TYPE_CHECKING:
     import xarray as xr

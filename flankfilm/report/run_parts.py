@@ -11,9 +11,9 @@ from flankfilm.report.page import Part, Table
 from flankfilm.report.text import percent, seconds
 
 if TYPE_CHECKING:
+    from flankfilm.plan.decide import Plan
+    from flankfilm.plan.decisions import Decision
     from flankfilm.results import Results
-    from flankfilm.stages.decide import Plan
-    from flankfilm.stages.decisions import Decision
 
 LEAST_SECONDS = 0.005
 """Time of a stage that is listed although it has no error of its own [s]."""
@@ -108,11 +108,11 @@ def _decided(decided: Sequence[Decision]) -> Table:
 
 def _shares(plan: Plan) -> Table:
     return Table.of(
-        zip(plan.shares.laws, plan.shares.errors, strict=True),
+        plan.shares.items(),
         {
-            "share of the tolerance": lambda share: share[0].name,
+            "share of the tolerance": lambda share: share[0],
             "error allowed in the mean stiffness": lambda share: percent(share[1]),
-            "cost foreseen": lambda share: seconds(share[0].cost(share[1])),
+            "cost foreseen": lambda share: seconds(plan.costs[share[0]]),
         },
     )
 

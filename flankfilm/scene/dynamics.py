@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from base import Limit
-from dynamics.limits import OSCILLATOR
+from dynamics.limits import OSCILLATOR as LIMITS
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 
@@ -19,6 +19,13 @@ Several = Annotated[tuple[Positive, ...], Field(strict=False)]
 
 FASTEST = 1e7
 """Upper end of a range of speeds [rpm], or of frequencies."""
+
+DIMENSIONLESS = ("mean_force", "error_amplitude", "half_backlash")
+PHYSICAL = ("error_amplitude_um", "length_scale_um")
+"""Keys of which those of one kind alone are given."""
+
+OSCILLATOR = ("damping_ratio", "error_phase_deg", "one_sided", *DIMENSIONLESS, *PHYSICAL)
+"""Keys that the oscillator takes as they are, in SI."""
 
 _NUMBER = Limit(0.0, 1e6)
 """Of a dimensionless quantity, to catch a number with a unit."""
@@ -34,6 +41,11 @@ class ExtraInertia(Section):
     pinion: float = key("of what turns with the pinion, in kg m2", 0.0, shown=True)
     wheel: float = key("of what turns with the wheel, in kg m2", 0.0, shown=True)
 
+    @property
+    def each(self) -> tuple[float, float]:
+        """Of pinion and wheel."""
+        return self.pinion, self.wheel
+
 
 class SpeedRange(Section):
     """Range of pinion speed, or of the dimensionless mesh frequency."""
@@ -45,13 +57,17 @@ class SpeedRange(Section):
 
     @model_validator(mode="after")
     def _one_range(self) -> SpeedRange:
-        given = [r for r in (self.speed_rpm, self.frequency) if r is not None]
-        if len(given) != 1:
+        if len(self.given("speed_rpm", "frequency")) != 1:
             raise refused("must have either speed_rpm = [from, to] or frequency = [from, to]")
-        low, high = given[0]
+        low, high = self.ends
         if not 0 < low < high <= FASTEST:
             raise refused(f"must rise from above 0, to at most {FASTEST:g}", value=f"[{low:g}, {high:g}]")
         return self
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """From and to, of the one that was given."""
+        return self.speed_rpm or self.frequency or (0.0, 0.0)
 
 
 class SweepSection(SpeedRange):
@@ -73,10 +89,9 @@ class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
     ground: ClassVar[Limits] = {
-        "damping_ratio": replace(OSCILLATOR["damping_ratio"], high=5.0),
-        "transmission_error": Limit(0.0, 0.01, "m"),
+        "damping_ratio": replace(LIMITS["damping_ratio"], high=5.0),
         "error_phase": Limit(-2.0 * math.pi, 2.0 * math.pi, "rad"),
-        "length": Limit.above(0.0, 1.0, "m"),
+        "length_scale": Limit.above(0.0, 1.0, "m"),
         "mean_force": _NUMBER,
         "error_amplitude": _NUMBER,
         "half_backlash": _NUMBER,
@@ -92,7 +107,8 @@ class DynamicsSection(Section):
     error_amplitude_um: float | None = key(
         "unloaded transmission error; the deflection is in the stiffness; 0 if left out",
         None,
-        of="transmission_error",
+        of="error_amplitude",
+        limit=Limit(0.0, 0.01, "m"),
         example=10,
     )
     error_phase_deg: float = key("phase of this error when a pair is at A", 0.0, example=0)
@@ -100,10 +116,7 @@ class DynamicsSection(Section):
         "moments of inertia that turn with the gears", ExtraInertia(), example={"pinion": 0.0, "wheel": 0.0}
     )
     length_scale_um: float | None = key(
-        "length of the dimensionless form; if left out such that the mean force is 0.1",
-        None,
-        of="length",
-        such_as=200,
+        "length of the dimensionless form; if left out such that the mean force is 0.1", None, such_as=200
     )
     mean_force: float | None = key(
         "dimensionless, with the next two instead of the physical keys", None, such_as=0.1
@@ -135,14 +148,12 @@ class DynamicsSection(Section):
 
     @model_validator(mode="after")
     def _one_set_of_units(self) -> DynamicsSection:
-        own = {n: getattr(self, n) for n in ("mean_force", "error_amplitude", "half_backlash")}
-        missing = [n for n, v in own.items() if v is None]
-        if len(missing) == len(own):
+        own = self.given(*DIMENSIONLESS)
+        if not own:
             return self
-        if missing:
+        if missing := [name for name in DIMENSIONLESS if name not in own]:
             raise refused(f"must have {', '.join(missing)} too in the dimensionless form")
-        physical = [n for n in ("error_amplitude_um", "length_scale_um") if getattr(self, n) is not None]
-        if physical:
+        if physical := self.given(*PHYSICAL):
             raise refused(f"must not have {', '.join(physical)} beside the dimensionless {', '.join(own)}")
         for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram)):
             if ranged is not None and ranged.speed_rpm is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import ClassVar, Literal
 
 from pydantic import model_validator
@@ -80,15 +81,13 @@ class LubricantSection(Section):
 
     @model_validator(mode="after")
     def _by_numbers_or_by_grade(self) -> LubricantSection:
-        numbers, grade = (
-            [n for n in names if getattr(self, n) is not None] for names in (BY_NUMBERS, BY_GRADE)
-        )
+        numbers, grade = self.given(*BY_NUMBERS), self.given(*BY_GRADE)
         if numbers and grade:
             raise refused(
                 f"must be given by numbers ({', '.join(numbers)}) or by its grade ({', '.join(grade)}), "
                 "not both ways at once"
             )
-        if grade and (self.iso_vg is None or self.temperature_C is None):
+        if grade and len(self.given("iso_vg", "temperature_C")) < 2:
             raise refused("must have iso_vg and temperature_C for an oil by its grade")
         known = self.pressure_viscosity_per_GPa is not None or self.viscosity_law == "constant"
         if not grade and (self.viscosity_Pa_s is None or not known):
@@ -182,10 +181,8 @@ class FilmSection(Section):
 
     @model_validator(mode="after")
     def _a_supply_with_its_value(self) -> FilmSection:
-        given = [name for names in SUPPLIES.values() for name in names if getattr(self, name) is not None]
-        wanted = SUPPLIES.get(self.supply, ())
-        astray = [name for name in given if name not in wanted]
-        if astray:
+        given, wanted = self.given(*itertools.chain(*SUPPLIES.values())), SUPPLIES.get(self.supply, ())
+        if astray := [name for name in given if name not in wanted]:
             raise refused(f'supply = "{self.supply}" has no {" or ".join(astray)}; leave it out')
         if wanted and len(given) != 1:
             raise refused(f'supply = "{self.supply}" needs {" or ".join(wanted)}, one of them')

@@ -64,7 +64,7 @@ class ProfileSection(Section):
         if angles != values:
             raise refused(f"must have as many roll_deg as material_um, not {angles} and {values}")
         if any(b <= a for a, b in itertools.pairwise(self.roll_deg)):
-            raise refused("must rise from point to point", key="roll_deg")
+            raise refused("must rise from point to point", where="roll_deg")
         return self
 
 
@@ -87,7 +87,7 @@ class DeviationsSection(Section):
 
     @model_validator(mode="after")
     def _one_kind_of_pitch(self) -> DeviationsSection:
-        if self.single_pitch_um is not None and self.cumulative_pitch_um is not None:
+        if len(self.given("single_pitch_um", "cumulative_pitch_um")) > 1:
             raise refused("must have single_pitch_um or cumulative_pitch_um, not both", "Leave one out")
         return self
 
@@ -152,12 +152,8 @@ class GearSection(Section):
         for name in ("single_pitch_um", "cumulative_pitch_um"):
             values = getattr(self.deviations, name, None)
             if values is not None and len(values) != self.teeth:
-                count = f"{len(values)} values"
-                raise refused(
-                    f"must have one value for each of {self.teeth} teeth",
-                    key=f"deviations.{name}",
-                    value=count,
-                )
+                allowed = f"must have one value for each of {self.teeth} teeth"
+                raise refused(allowed, where=f"deviations.{name}", value=f"{len(values)} values")
         return self
 
 
@@ -188,6 +184,11 @@ class PairSection(Section):
         "distance of the axes, if not by the backlash, which then follows", None, such_as=76.0
     )
 
+    @property
+    def each(self) -> tuple[GearSection, GearSection]:
+        """Pinion and wheel."""
+        return self.pinion, self.wheel
+
 
 class ElasticSection(Section):
     """Elastic constants and density of one material."""
@@ -212,13 +213,13 @@ class MaterialSection(Section):
 
     @model_validator(mode="after")
     def _one_material_or_two(self) -> MaterialSection:
-        common = self.youngs_modulus_GPa is not None and self.poisson_ratio is not None
-        if not common and (self.pinion is None or self.wheel is None):
+        common = len(self.given("youngs_modulus_GPa", "poisson_ratio")) == 2
+        if not common and len(self.given("pinion", "wheel")) < 2:
             raise refused(
                 "must have youngs_modulus_GPa and poisson_ratio for both gears, "
                 "or both [material.pinion] and [material.wheel]"
             )
-        if self.si() and (self.pinion is not None or self.wheel is not None):
+        if self.si() and self.given("pinion", "wheel"):
             raise refused(
                 "must be one material for both gears or one each, not both at once", "Leave one out"
             )

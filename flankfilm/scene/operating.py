@@ -13,6 +13,9 @@ from flankfilm.scene.section import Limits, Section, refused
 
 TORQUE = Limit(1e-9, 1e9, "N m")
 
+GIVEN = ("mean_N_per_m", "amplitudes", "phases_deg")
+"""Keys of a given stiffness."""
+
 
 class OperatingSection(Section):
     """Load and speed; the pinion drives, anticlockwise."""
@@ -72,8 +75,7 @@ class StiffnessSection(Section):
 
     @model_validator(mode="after")
     def _numbers_of_a_given_stiffness(self) -> StiffnessSection:
-        listed = [n for n in ("mean_N_per_m", "amplitudes", "phases_deg") if getattr(self, n) is not None]
-        if self.model != "given" and listed:
+        if self.model != "given" and (listed := self.given(*GIVEN)):
             raise refused(f'must not have {", ".join(listed)}, of model = "given" alone; leave them out')
         if self.model == "given":
             if self.amplitudes is None:

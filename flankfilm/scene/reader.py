@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from base import Fault, InputError
+from base import InputError
 from flankfilm.folder import content_of
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.needs import faults_between_sections
@@ -79,7 +79,7 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
         remedy = "'flankfilm new' writes a scene to start from"
         raise InputError.at(name, "", f"must be TOML: {fault}", remedy) from fault
     except RecursionError as fault:
-        raise InputError([_too_deep(name)]) from fault
+        raise _too_deep(name) from fault
     bounded(raw, name)
     return raw
 
@@ -95,11 +95,11 @@ def bounded(raw: dict[str, Any], name: str) -> None:
         level = [value for value in inside if isinstance(value, dict | list)]
         if not level:
             return
-    raise InputError([_too_deep(name)])
+    raise _too_deep(name)
 
 
-def _too_deep(name: str) -> Fault:
-    return Fault(name, "", "is nested too deeply", "a scene has four levels at most")
+def _too_deep(name: str) -> InputError:
+    return InputError.at(name, "", "is nested too deeply", "a scene has four levels at most")
 
 
 def read_text(path: Path) -> str:
@@ -114,13 +114,13 @@ def read_text(path: Path) -> str:
 def validated(raw: dict[str, Any]) -> Scene:
     """Check the keys of a scene; see `read_scene`."""
     refuse_long_lists(raw)
+    between = faults_between_sections(raw)
     try:
         scene = Scene.model_validate(raw)
     except ValidationError as error:
-        listed = explain_all(error.errors(), Scene)
-        raise InputError([*listed, *faults_between_sections(raw)]) from error
-    if missing := faults_between_sections(raw):
-        raise InputError(missing)
+        raise InputError([*explain_all(error.errors(), Scene), *between]) from error
+    if between:
+        raise InputError(between)
     return scene
 
 

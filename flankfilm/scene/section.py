@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, ConfigDict
 
 from base import InputError, Limit
 from flankfilm.scene.key import key_of
 
-__all__ = ["Limits", "Section", "refused"]
+__all__ = ["Limits", "Section", "refused", "required"]
+
+T = TypeVar("T")
 
 Limits = Mapping[str, Limit]
 
@@ -22,6 +24,10 @@ class Section(BaseModel):
 
     ground: ClassVar[Limits] = {}
     """What the ground allows for the quantities that the section's keys give, in SI."""
+
+    def given(self, *names: str) -> list[str]:
+        """Those of the keys that were given."""
+        return [name for name in names if getattr(self, name) is not None]
 
     def si(self, *names: str) -> dict[str, Any]:
         """Keyword arguments for the ground: its names, in SI; what was not given is left to the ground's default.
@@ -45,14 +51,38 @@ class Section(BaseModel):
         return key_of(type(self).model_fields[name]).si(given) if convert else given
 
 
-def refused(allowed: str, remedy: str = "", *, key: str = "", value: str = "") -> InputError:
-    """Fault of keys that do not go together, to be raised by a section's validator.
+def refused(allowed: str, remedy: str = "", *, where: str = "", value: str = "") -> InputError:
+    """Error of a single fault, such as of keys that do not go together.
 
     Parameters
     ----------
     allowed, remedy, value : str
         See `base.Fault`.
-    key : str
-        The key at fault; empty for the section.
+    where : str
+        The key or file at fault; empty for the section whose validator raises it.
     """
-    return InputError.at(key, value, allowed, remedy)
+    return InputError.at(where, value, allowed, remedy)
+
+
+def required(value: T | None, where: str, by: str = "", remedy: str = "") -> T:
+    """Value that a scene must have given.
+
+    Parameters
+    ----------
+    value : any or None
+    where : str
+        Its section or key: ``[pair]``.
+    by : str
+        What needs it.
+    remedy : str
+        To add the section unless given.
+
+    Raises
+    ------
+    InputError
+        Where it is None.
+    """
+    if value is None:
+        allowed = f"is required by {by}" if by else "is required"
+        raise InputError.at(where, "", allowed, remedy or f"Add the section {where}")
+    return value

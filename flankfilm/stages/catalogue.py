@@ -1,4 +1,4 @@
-"""All stages, each from the scene to plain arguments, and which of them the wanted outputs ask for.
+"""All stages, each from the scene to plain arguments.
 
 What a stage depends on stands with it: sections of the scene, other stages, decisions, packages.
 """
@@ -6,56 +6,31 @@ What a stage depends on stands with it: sections of the scene, other stages, dec
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from base import InputError, SolverError
+import dynamics
+import fem
+import gears
 from flankfilm import coupling
 from flankfilm.build import deviations, gear_pair, pinion_speed, pinion_torque, supports, tip_roundings
 from flankfilm.build_film import film_model, lubricant
-from flankfilm.scene import Scene
+from flankfilm.coupling.believed import believed
+from flankfilm.plan.decide import Plan, decide
+from flankfilm.plan.film_choice import foreseen_change
+from flankfilm.plan.options import FilmChange
+from flankfilm.scene.dynamics import OSCILLATOR, DynamicsSection
 from flankfilm.scene.ground import under_keys
-from flankfilm.stages import film_choice
-from flankfilm.stages.decide import Plan, decide
-from flankfilm.stages.engine import Engine, Stage, stage
-from flankfilm.stages.plain_gears import held_on_hubs, plain_flanks
+from flankfilm.scene.operating import GIVEN
+from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
+from flankfilm.scene.section import required
+from flankfilm.stages.engine import Engine, stage
 
-if TYPE_CHECKING:
-    import fem
-    from flankfilm.coupling import (
-        LoadedFields,
-        LoadedTeeth,
-        LubricatedCycle,
-        MeshCycle,
-        MeshSeries,
-        PairOscillator,
-        RootStresses,
-        SinglePairs,
-        SpeedDiagram,
-        SpeedSweep,
-        TorqueCurves,
-        Verification,
-    )
-    from flankfilm.scene.dynamics import DynamicsSection
-    from gears import GearPair
-
-
-def _sections(*names: str) -> Callable[[Scene], Mapping[str, Any]]:
-    """Sections of a scene, or single keys of them, as plain values."""
-
-    def pick(scene: Scene) -> Mapping[str, Any]:
-        found = {}
-        for name in names:
-            section, _, key = name.partition(".")
-            value = getattr(scene, section)
-            value = getattr(value, key) if key else value
-            found[name] = value.model_dump() if hasattr(value, "model_dump") else value
-        return found
-
-    return pick
+TEETH = "stiffness.pairs stiffness.contact_beyond_path operating tolerance"
+"""Keys of all that is loaded."""
 
 
 def _decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Mapping[str, Any]]:
@@ -63,14 +38,13 @@ def _decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Ma
     return lambda run: {} if run.scene.stiffness.model == "given" else what(run[PLAN])
 
 
-_TEETH = _sections("stiffness.pairs", "stiffness.contact_beyond_path", "operating", "tolerance")
 _TEETH_DECIDED = _decided(
     lambda plan: {"stiffness model": plan.stiffness.choice, "sampling": plan.resolution.sampling}
 )
 
 
-@stage("pair", "geometry", _sections("pair", "material"), packages=("gears",))
-def PAIR(run: Engine) -> GearPair:
+@stage("pair", "geometry", "pair material")
+def PAIR(run: Engine) -> gears.GearPair:
     """Geometry of the scene's pair."""
     return gear_pair(run.scene)
 
@@ -78,23 +52,21 @@ def PAIR(run: Engine) -> GearPair:
 @stage(
     "film foreseen",
     "what the film will change",
-    _sections("operating", "lubricant", "stiffness.pairs"),
+    "operating lubricant stiffness.pairs",
     PAIR,
-    packages=("gears", "ehl", "flankfilm"),
-    kept=True,
+    kept="gears ehl flankfilm",
 )
-def FILM_FORESEEN(run: Engine) -> film_choice.FilmChange | None:
+def FILM_FORESEEN(run: Engine) -> FilmChange | None:
     """What the cheapest models say that a film changes."""
-    return film_choice.foreseen_change(run.scene)
+    return foreseen_change(run.scene)
 
 
 @stage(
     "plan",
     "choice of models, split of the tolerance",
-    _sections("stiffness", "film", "lubricant", "roughness", "operating", "dynamics", "wants", "tolerance"),
+    "stiffness film lubricant roughness operating dynamics wants tolerance",
     PAIR,
     FILM_FORESEEN,
-    packages=("flankfilm",),
 )
 def PLAN(run: Engine) -> Plan:
     """Models of the run and shares of its tolerance."""
@@ -104,33 +76,29 @@ def PLAN(run: Engine) -> Plan:
 @stage(
     "bodies",
     "tooth compliance by finite elements",
-    lambda scene: _sections("pair", "material", "stiffness.plane")(plain_flanks(scene)),
-    packages=("gears", "meshes", "fem"),
-    kept=True,
+    "pair material stiffness.plane",
+    kept="gears meshes fem",
+    of=plain_flanks,
     settings=_decided(lambda plan: {"compliance": plan.resolution.compliance}),
 )
 def BODIES(run: Engine) -> fem.Compliance:
     """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges."""
-    import fem
-
     scene = run.scene
     pair, tolerance = gear_pair(plain_flanks(scene)), run[PLAN].resolution.compliance
     with under_keys(scene.pair, "pair"):
         found = fem.compliance(
             pair, tolerance=tolerance, plane=scene.stiffness.plane, supports=supports(scene)
         )
-    if not found.converged:
-        raise SolverError(f"tooth compliance: {found.message}")
-    return found
+    return believed(found, "tooth compliance")
 
 
-@stage("compliance", "compliance with relief", _sections(), PAIR, BODIES, packages=("fem",))
+@stage("compliance", "compliance with relief", "", PAIR, BODIES)
 def COMPLIANCE(run: Engine) -> fem.Compliance:
     """Everything about the teeth that does not depend on load, by finite elements."""
     return replace(run[BODIES], pair=run[PAIR])
 
 
-def loaded_teeth(run: Engine, *, by_elements: bool = False, pitch: bool = False) -> LoadedTeeth:
+def loaded_teeth(run: Engine, *, by_elements: bool = False, pitch: bool = False) -> coupling.LoadedTeeth:
     """Pair under the scene's torque with its model; with deviations of the pitches where every tooth counts."""
     scene, pair = run.scene, run[PAIR]
     model = "fem" if by_elements else run[PLAN].stiffness.choice
@@ -144,49 +112,35 @@ def loaded_teeth(run: Engine, *, by_elements: bool = False, pitch: bool = False)
     return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)
 
 
-@stage(
-    "closed forms",
-    "closed forms",
-    _sections("operating", "wants"),
-    PAIR,
-    COMPLIANCE,
-    packages=("gears", "flankfilm"),
-    settings=_TEETH_DECIDED,
-)
-def CLOSED_FORMS(run: Engine) -> SinglePairs:
+@stage("closed forms", "closed forms", "operating wants", PAIR, COMPLIANCE, settings=_TEETH_DECIDED)
+def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
     """Closed forms along the path, beside finite elements where the scene has them anyway."""
     beside = "stiffness" in run.scene.wants and run[PLAN].stiffness.choice == "fem"
     return coupling.single_pairs(run[PAIR], pinion_torque(run.scene), run[COMPLIANCE] if beside else None)
 
 
-@stage(
-    "verification",
-    "closed forms against finite elements",
-    _sections("operating", "stiffness.contact_beyond_path"),
-    COMPLIANCE,
-    packages=("gears", "flankfilm"),
-)
-def VERIFICATION(run: Engine) -> Verification:
+@stage("verification", "closed forms against finite elements", TEETH, COMPLIANCE)
+def VERIFICATION(run: Engine) -> coupling.Verification:
     """Every closed form beside finite elements."""
     beyond = run.scene.stiffness.contact_beyond_path
     return coupling.verification_of(run[PAIR], pinion_torque(run.scene), run[COMPLIANCE], beyond)
 
 
-@stage("dry cycle", "mesh cycle without film", _TEETH, COMPLIANCE, settings=_TEETH_DECIDED)
-def DRY_CYCLE(run: Engine) -> MeshCycle:
+@stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, settings=_TEETH_DECIDED)
+def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness without film, at as few positions as mean stiffness and transmission error need."""
     asked = run[PLAN].resolution
     return loaded_teeth(run).sampled(asked.sampling, asked.transmission_error)
 
 
-@stage("torques", "mesh cycles over torque", _TEETH, COMPLIANCE, DRY_CYCLE)
-def TORQUES(run: Engine) -> TorqueCurves:
+@stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, DRY_CYCLE)
+def TORQUES(run: Engine) -> coupling.TorqueCurves:
     """Mesh cycles at the scene's torques from one compliance."""
     torques = run.scene.operating.torques_Nm if run.scene.operating else ()
     return coupling.torque_curves(loaded_teeth(run, by_elements=True), torques, run[DRY_CYCLE].position.size)
 
 
-@stage("revolution", "mesh cycle tooth by tooth", _TEETH, COMPLIANCE)
+@stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE)
 def REVOLUTION(run: Engine) -> fem.MeshCycle:
     """Mesh cycle tooth by tooth, with pitch deviations."""
     operating = run.scene.operating
@@ -195,8 +149,8 @@ def REVOLUTION(run: Engine) -> fem.MeshCycle:
     return coupling.revolution(teeth, operating.pitches, operating.first_teeth)
 
 
-@stage("other cycles", "mesh cycle by the other models", _TEETH, DRY_CYCLE, packages=("gears",))
-def OTHER_CYCLES(run: Engine) -> tuple[MeshCycle, ...]:
+@stage("other cycles", "mesh cycle by the other models", TEETH, DRY_CYCLE)
+def OTHER_CYCLES(run: Engine) -> tuple[coupling.MeshCycle, ...]:
     """Mesh cycles by the models that the scene did not choose: independent pairs added, without film."""
     return loaded_teeth(run).others(run[DRY_CYCLE].position.size)
 
@@ -204,13 +158,12 @@ def OTHER_CYCLES(run: Engine) -> tuple[MeshCycle, ...]:
 @stage(
     "film",
     "oil film in series with the teeth",
-    _sections("film", "lubricant", "roughness", "operating", "tolerance"),
+    "film lubricant roughness operating tolerance",
     DRY_CYCLE,
-    packages=("gears", "meshes", "fem", "ehl", "flankfilm"),
-    kept=True,
+    kept="gears meshes fem ehl flankfilm",
     settings=_decided(lambda plan: {"model": plan.film.choice, "film": plan.film_tolerance}),
 )
-def FILM(run: Engine) -> LubricatedCycle:
+def FILM(run: Engine) -> coupling.LubricatedCycle:
     """Films and load share in agreement, and the mesh cycle with them."""
     scene, plan, teeth, dry = run.scene, run[PLAN], loaded_teeth(run), run[DRY_CYCLE]
     model = film_model(scene, plan.film.choice)
@@ -222,12 +175,12 @@ def FILM(run: Engine) -> LubricatedCycle:
 @stage(
     "mesh",
     "mesh stiffness of the motion",
-    _sections(),
+    "",
     DRY_CYCLE,
     FILM,
     settings=_decided(lambda plan: {"model": plan.film.choice}),
 )
-def MESH(run: Engine) -> MeshCycle:
+def MESH(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness that the motion uses: with the film where there is one."""
     return run[DRY_CYCLE] if run[PLAN].film.choice == "none" else run[FILM]
 
@@ -235,9 +188,9 @@ def MESH(run: Engine) -> MeshCycle:
 @stage(
     "fillets",
     "root stress per load by finite elements",
-    lambda scene: _sections("pair", "material", "stiffness.plane", "tolerance")(plain_flanks(scene)),
-    packages=("gears", "meshes", "fem"),
-    kept=True,
+    "pair material stiffness.plane tolerance",
+    kept="gears meshes fem",
+    of=plain_flanks,
 )
 def FILLETS(run: Engine) -> fem.Fillets:
     """What loads anywhere on the flanks do to the fillets."""
@@ -247,14 +200,14 @@ def FILLETS(run: Engine) -> fem.Fillets:
     )
 
 
-@stage("root stress", "root stress over the mesh cycle", _sections(), MESH, FILLETS, PAIR)
-def ROOT_STRESS(run: Engine) -> RootStresses:
+@stage("root stress", "root stress over the mesh cycle", "", MESH, FILLETS, PAIR)
+def ROOT_STRESS(run: Engine) -> coupling.RootStresses:
     """Stress at the fillets with the forces of the mesh cycle, with the film where there is one."""
     return coupling.root_stresses(run[PAIR], loaded_contact(run), run[FILLETS])
 
 
-@stage("fields", "stress and displacement fields", _TEETH, MESH)
-def FIELDS(run: Engine) -> LoadedFields:
+@stage("fields", "stress and displacement fields", TEETH, MESH)
+def FIELDS(run: Engine) -> coupling.LoadedFields:
     """Fields with a pair at the pitch point."""
     return coupling.pitch_point_fields(run[PAIR], loaded_contact(run), run[COMPLIANCE])
 
@@ -269,28 +222,20 @@ def loaded_contact(run: Engine) -> fem.MeshCycle:
 @stage(
     "fourier",
     "Fourier stiffness",
-    _sections("stiffness", "dynamics"),
+    "stiffness dynamics",
     MESH,
-    packages=("dynamics",),
     settings=_decided(lambda plan: {"series": plan.series}),
 )
-def FOURIER(run: Engine) -> MeshSeries:
+def FOURIER(run: Engine) -> coupling.MeshSeries:
     """Series of the mesh stiffness, or the given one."""
-    scene, given, section = run.scene, run.scene.stiffness, run.scene.dynamics
-    if given.model == "given":
-        kappa = given.amplitudes or ()
-        phases = given.value("phases_deg") or (0.0,) * len(kappa)
-        return coupling.given_series(given.mean_N_per_m or 1.0, kappa, phases)
+    scene, section = run.scene, run.scene.dynamics
+    if scene.stiffness.model == "given":
+        return coupling.given_series(**scene.stiffness.si(*GIVEN))
     if section is None:
         return coupling.mesh_series(run[MESH], order=1)
-    return coupling.mesh_series(
-        run[MESH],
-        section.stiffness,
-        None if section.fourier_order == "auto" else section.fourier_order,
-        run[PLAN].series or scene.tolerance,
-        _frequency_range(run, section),
-        section.damping_ratio,
-    )
+    order = None if section.fourier_order == "auto" else section.fourier_order
+    share, bounds = run[PLAN].series or scene.tolerance, _frequency_range(run, section)
+    return coupling.mesh_series(run[MESH], section.stiffness, order, share, bounds, section.damping_ratio)
 
 
 def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
@@ -301,145 +246,55 @@ def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, floa
     ends = [end for ranged in asked for end in ranged.frequency or ()]
     if not section.dimensionless:
         mean = float(run[MESH].curve(section.stiffness).mean())
-        scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, *_scaling_of(section))
+        extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
+        scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
         ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
     return min(ends), max(ends)
 
 
-def _scaling_of(section: DynamicsSection) -> tuple[tuple[float, float], float | None]:
-    """Inertias that turn with the gears [kg m2], and the length scale [m]."""
-    extra = section.extra_inertia_kg_m2
-    return (extra.pinion, extra.wheel), section.value("length_scale_um")
-
-
-@stage(
-    "scaling",
-    "physical to dimensionless",
-    _sections("operating", "dynamics", "pair", "material"),
-    FOURIER,
-)
-def SCALING(run: Engine) -> PairOscillator:
+@stage("scaling", "physical to dimensionless", "operating dynamics pair material", FOURIER)
+def SCALING(run: Engine) -> coupling.PairOscillator:
     """Oscillator of the scene at its speed, or at the start of the sweep."""
-    section, series = _dynamics(run), run[FOURIER]
-    ranged, phase = section.sweep or section.diagram, section.value("error_phase_deg")
+    section, series, operating = _dynamics(run), run[FOURIER], run.scene.operating
+    ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
     if section.dimensionless:
-        from dynamics import GearOscillator
-
-        assert section.error_amplitude is not None
-        assert section.half_backlash is not None
-        assert section.mean_force is not None
-        oscillator = GearOscillator(
-            stiffness=series.stiffness.normalised(),
-            damping_ratio=section.damping_ratio,
-            mean_force=section.mean_force,
-            error_amplitude=section.error_amplitude,
-            frequency=ranged.frequency[0] if ranged and ranged.frequency else 1.0,
-            half_backlash=section.half_backlash,
-            error_phase=phase,
-            one_sided=section.one_sided,
+        start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
+        oscillator = dynamics.GearOscillator(
+            stiffness=series.stiffness.normalised(), frequency=start, **given
         )
         return coupling.PairOscillator(oscillator, None, series)
-    rpm = run.scene.operating.pinion_speed_rpm if run.scene.operating else None
+    rpm = operating.pinion_speed_rpm if operating else None
     if rpm is None:
         rpm = ranged.speed_rpm[0] if ranged and ranged.speed_rpm else 60.0
-    extra, scale = _scaling_of(section)
+    given["extra_inertia"] = section.extra_inertia_kg_m2.each
     return coupling.pair_oscillator(
-        run[PAIR],
-        series,
-        pinion_torque(run.scene),
-        rpm * math.pi / 30.0,
-        damping_ratio=section.damping_ratio,
-        error_amplitude=section.value("error_amplitude_um") or 0.0,
-        error_phase=phase,
-        extra_inertia=extra,
-        length_scale=scale,
-        one_sided=section.one_sided,
+        run[PAIR], series, pinion_torque(run.scene), rpm * math.pi / 30.0, **given
     )
 
 
 def _dynamics(run: Engine) -> DynamicsSection:
-    section = run.scene.dynamics
-    if section is None:
-        raise InputError.at("[dynamics]", "", "is required by the motion", "add the section")
-    return section
+    return required(run.scene.dynamics, "[dynamics]", "the motion")
 
 
-@stage(
-    "sweep",
-    "sweep up and down",
-    _sections("dynamics"),
-    FOURIER,
-    SCALING,
-    packages=("dynamics", "flankfilm"),
-    kept=True,
-)
-def SWEEP(run: Engine) -> SpeedSweep:
+@stage("sweep", "sweep up and down", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm")
+def SWEEP(run: Engine) -> coupling.SpeedSweep:
     """Sweep of the speed up and down over the scene's range."""
     section, motion = _dynamics(run), run[SCALING]
-    asked = section.sweep
-    if asked is None:
-        raise InputError.at("dynamics.sweep", "", "is required by the sweep", "add the range")
+    asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
     wanted = list(section.portraits_frequency)
     if motion.scales is not None:
         wanted += [motion.scales.frequency_from_rpm(rpm) for rpm in section.portraits_rpm]
-    if asked.speed_rpm is not None:
-        speed = np.linspace(*asked.speed_rpm, asked.points) * math.pi / 30.0
-        return coupling.speed_sweep(motion, speed, portraits=wanted)
-    assert asked.frequency is not None
-    frequency = np.linspace(*asked.frequency, asked.points)
-    return coupling.speed_sweep(motion, frequency=frequency, portraits=wanted)
+    values = np.linspace(*asked.ends, asked.points)
+    if asked.frequency is not None:
+        return coupling.speed_sweep(motion, frequency=values, portraits=wanted)
+    return coupling.speed_sweep(motion, values * math.pi / 30.0, portraits=wanted)
 
 
-@stage(
-    "diagram",
-    "every branch of motions",
-    _sections("dynamics"),
-    FOURIER,
-    SCALING,
-    packages=("dynamics", "flankfilm", "gears"),
-    kept=True,
-)
-def DIAGRAM(run: Engine) -> SpeedDiagram:
+@stage("diagram", "every branch of motions", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm gears")
+def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
     """Every branch of motions over the scene's range, with the jumps."""
-    asked = _dynamics(run).diagram
-    if asked is None:
-        raise InputError.at("dynamics.diagram", "", "is required by the diagram", "add the range")
+    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
     speed = asked.speed_rpm and (asked.speed_rpm[0] * math.pi / 30.0, asked.speed_rpm[1] * math.pi / 30.0)
     return coupling.jump_speeds(
         run[SCALING], speed, frequency=asked.frequency, searches=asked.searches, max_period=asked.max_period
     )
-
-
-STAGES: tuple[Stage[Any], ...] = (
-    PAIR, FILM_FORESEEN, PLAN, BODIES, COMPLIANCE, CLOSED_FORMS, VERIFICATION, DRY_CYCLE, TORQUES, REVOLUTION,
-    OTHER_CYCLES, FILM, MESH, FILLETS, ROOT_STRESS, FIELDS, FOURIER, SCALING, SWEEP, DIAGRAM,
-)  # fmt: skip
-"""All of them, in an order in which each comes after what it needs."""
-
-
-def goals(scene: Scene) -> tuple[Stage[Any], ...]:
-    """Stages that the scene's wants ask for; those that these need follow by themselves."""
-    return tuple(dict.fromkeys(_goals(scene, set(scene.wants), scene.stiffness.model == "given")))
-
-
-def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
-    if "geometry" in wants:
-        yield PAIR
-    if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
-        yield CLOSED_FORMS
-    if wants & {"stiffness", "film"} and not given:
-        yield from (PLAN, DRY_CYCLE)
-        if wants & {"closed-forms", "report"}:
-            yield OTHER_CYCLES
-        if scene.film.model != "none" or "film" in wants:
-            yield MESH
-    yield from (wanted for wanted in (TORQUES, REVOLUTION) if wanted.name in wants)
-    if "root-stress" in wants:
-        yield ROOT_STRESS
-    if wants & {"fourier", "sweep", "diagram"}:
-        yield FOURIER
-    for wanted in (SWEEP, DIAGRAM):
-        if wanted.name in wants:
-            yield from (SCALING, wanted)
-    if "vtk" in wants:
-        yield FIELDS

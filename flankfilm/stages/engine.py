@@ -6,11 +6,13 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Any, Generic, TypeVar
 
 from flankfilm.cache import Cache
 from flankfilm.coupling.warned import distinct
 from flankfilm.scene import Scene
+from flankfilm.scene.section import Section
 
 T = TypeVar("T")
 
@@ -35,10 +37,8 @@ class Stage(Generic[T]):
         the stages in `needs` it makes the cache's key.
     needs : tuple of Stage
         Stages that `compute` may ask for.
-    packages : tuple of str
-        Packages whose code decides the result.
-    kept : bool
-        Whether the result is worth a place in the cache.
+    kept : tuple of str
+        Packages whose code decides the result, of one that is worth a place in the cache; none for all others.
     settings : callable
         What decisions of other stages hand to this one, as plain values; in the cache's key like `inputs`. Of a
         stage that is decided on it has no more than what was decided, so that a change elsewhere in the scene
@@ -50,22 +50,38 @@ class Stage(Generic[T]):
     compute: Callable[[Engine], T]
     inputs: Inputs
     needs: tuple[Stage[Any], ...] = ()
-    packages: tuple[str, ...] = ()
-    kept: bool = False
+    kept: tuple[str, ...] = ()
     settings: Settings = lambda engine: {}
 
 
 def stage(
     name: str,
     title: str,
-    inputs: Inputs,
+    keys: str,
     *needs: Stage[Any],
-    packages: tuple[str, ...] = (),
-    kept: bool = False,
+    kept: str = "",
+    of: Callable[[Scene], Scene] = lambda scene: scene,
     settings: Settings = lambda engine: {},
 ) -> Callable[[Callable[[Engine], T]], Stage[T]]:
-    """Make a stage of the function that computes it; arguments as of `Stage`."""
-    return lambda compute: Stage(name, title, compute, inputs, needs, packages, kept, settings)
+    """Make a stage of the function that computes it.
+
+    Parameters
+    ----------
+    name, title, needs, settings
+        As of `Stage`.
+    keys : str
+        Sections of the scene, or single keys of them, that the result depends on, separated by blanks.
+    kept : str
+        As of `Stage`, separated by blanks.
+    of : callable
+        Leaves out of the scene what makes no difference to the result.
+    """
+
+    def inputs(scene: Scene) -> dict[str, Any]:
+        values = {key: reduce(getattr, key.split("."), of(scene)) for key in keys.split()}
+        return {key: v.model_dump() if isinstance(v, Section) else v for key, v in values.items()}
+
+    return lambda compute: Stage(name, title, compute, inputs, needs, tuple(kept.split()), settings)
 
 
 @dataclass(frozen=True)
@@ -149,4 +165,4 @@ class Engine:
 
 def packages_of(stage: Stage[Any]) -> tuple[str, ...]:
     """Packages whose code decides a stage's result: its own, those of what it needs, and the ground of all."""
-    return tuple(sorted({"base", *stage.packages, *(p for need in stage.needs for p in packages_of(need))}))
+    return tuple(sorted({"base", *stage.kept, *(p for need in stage.needs for p in packages_of(need))}))

@@ -18,8 +18,9 @@ from base import Figure
 from base.results import figures
 from base.units import factor
 from flankfilm.build import pinion_speed
+from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.lubricated import FilmAlongPath, LubricatedCycle
+from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.single_pairs import CLOSED_FORMS
 from flankfilm.figures.drawn import Path
 from flankfilm.figures.reading import PER_FACE

@@ -41,10 +41,10 @@ def verify_scene(
     SolverError
         Where the compliance misses its share of the tolerance.
     """
-    lacking = [name for name in ("pair", "material", "operating") if getattr(scene, name) is None]
+    lacking = [f"[{name}]" for name in ("pair", "material", "operating") if not scene.given(name)]
     if lacking:
         raise InputError(
-            [Fault(f"[{name}]", "", "is required to verify", f"Add the section [{name}]") for name in lacking]
+            Fault(name, "", "is required to verify", f"Add the section {name}") for name in lacking
         )
     if folder is not None:
         claim(folder)

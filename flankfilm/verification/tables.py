@@ -41,11 +41,8 @@ def table(found: Verification, reference: Curves) -> Table:
 
 def costs(found: Verification) -> str:
     """What each model cost."""
-    parts = [f"finite elements {found.cost.seconds:.2f} s once, then"]
-    parts.append(
-        ", ".join(f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*found.references, *found.models))
-    )
-    return " ".join(parts)
+    each = ", ".join(f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*found.references, *found.models))
+    return f"finite elements {found.cost.seconds:.2f} s once, then {each}"
 
 
 def dataset(found: Verification, scene: Scene) -> xr.Dataset:
@@ -88,17 +85,17 @@ def write_verification(found: Verification, scene: Scene, folder: Path) -> list[
     return [*_write_tables(found, folder), *files, write_verification_page(found, held, folder)]
 
 
+def _column(name: str, found: Verification) -> list[Any]:
+    """One figure of all differences, in per cent where its name says so."""
+    values = [getattr(difference, name.removesuffix("_percent")) for difference in found.differences]
+    return [100 * value for value in values] if name.endswith("_percent") else values
+
+
 def _write_tables(found: Verification, folder: Path) -> list[Path]:
-    names = ("figure", "unit", "reference", "reference_value", "reference_error_percent", "model", "value")
-    columns: dict[str, Any] = {
-        name: [getattr(d, name) for d in found.differences] for name in names if not name.endswith("percent")
-    }
-    columns["reference_error_percent"] = [100 * d.reference_error for d in found.differences]
-    columns["difference_percent"] = [100 * d.difference for d in found.differences]
-    ordered = {name: columns[name] for name in (*names, "difference_percent")}
+    names = "figure unit reference reference_value reference_error_percent model value difference_percent"
     curves = {identifier(c.label): c for c in (*found.references, *found.models) if c.single_stiffness.size}
-    files = {
-        "verify": ordered,
+    files: dict[str, dict[str, Any]] = {
+        "verify": {name: _column(name, found) for name in names.split()},
         "verify_one_pair": {
             "travel_from_A_mm": 1e3 * (found.rho1 - found.pair.points.A),
             **{f"{name}_N_per_m": one.single_stiffness for name, one in curves.items()},

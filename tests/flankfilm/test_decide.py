@@ -18,16 +18,16 @@ from flankfilm.build import gear_pair
 from flankfilm.cache import Cache
 from flankfilm.check import check_scene
 from flankfilm.coupling.series import LeftOut, MeshSeries, least_order, left_out
+from flankfilm.plan.decide import Plan, decide
+from flankfilm.plan.decisions import Decision, order_decision
+from flankfilm.plan.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
+from flankfilm.plan.stiffness_choice import LARGEST_DIFFERENCE
 from flankfilm.report.contents import summary
 from flankfilm.running import run_scene
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN
-from flankfilm.stages.decide import Plan, decide
-from flankfilm.stages.decisions import Decision, order_decision
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
-from flankfilm.stages.stiffness_choice import LARGEST_DIFFERENCE
 
 TOLERANCES = (0.4, 0.2, 0.05, 0.01, 0.005, 0.001, 1e-4)
 

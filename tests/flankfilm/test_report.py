@@ -25,8 +25,9 @@ from flankfilm.report.contents import write_report
 from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
 from flankfilm.results import Results
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import FIELDS, VERIFICATION, goals
+from flankfilm.stages.catalogue import FIELDS, VERIFICATION
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.goals import goals
 from flankfilm.studies.files import dataset as study_dataset
 from flankfilm.studies.plan import StudyFile, plan_of
 from flankfilm.studies.row import RowResult

@@ -15,10 +15,10 @@ from closed_form_scatter import ordinary
 
 from base import InputError, SolverError
 from flankfilm.cache import Cache, keep_compiled_code
+from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import DRY_CYCLE, FILM
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.film_choice import foreseen_change
 
 
 def lubricated(random: np.random.Generator) -> dict:

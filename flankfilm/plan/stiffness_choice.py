@@ -9,17 +9,16 @@ that nothing could be saved after it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import gears
 from flankfilm.build import pinion_torque
 from flankfilm.coupling.resolution import stiffness_laws
-from flankfilm.coupling.tolerance import CostLaw
+from flankfilm.plan.options import Option, Options
 from flankfilm.scene.needs import needs_of_finite_elements
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
-    from gears import GearPair
 
 LARGEST_DIFFERENCE = {
     ("potential-energy", "coupled"): 0.37,
@@ -41,44 +40,35 @@ RANGES = {
 """Where the comparison holds: gears of one material, cut by the rack ISO 53 A, with plain tips, in plane strain."""
 
 
-@dataclass(frozen=True)
-class Option:
-    """A model, the error of its simplification (None: unknown, and not counted), and its stages."""
-
-    name: str
-    effect: float | None
-    laws: tuple[CostLaw, ...]
-    text: str
-
-
-def options(scene: Scene, pair: GearPair) -> tuple[tuple[Option, ...], str]:
-    """Models that a scene may have, and why there are no more of them; the last is what all are compared with."""
+def teeth(scene: Scene, pair: gears.GearPair) -> Options:
+    """Models of the teeth that a scene may have; the last is what all are compared with."""
     asked, pairs = scene.stiffness.model, scene.stiffness.pairs
-    elements = Option("fem", 0.0, stiffness_laws("fem", pairs), "finite elements")
+    elements = Option("fem", 0.0, stiffness_laws("fem", pairs), text="finite elements")
     if asked == "fem":
-        return (elements,), 'the scene asks for stiffness.model = "fem"'
+        return Options((elements,), 'the scene asks for stiffness.model = "fem"')
     if asked != "auto":
         reason = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
-        return (Option(asked, None, stiffness_laws(asked, pairs), asked),), reason
+        return Options((Option(asked, None, stiffness_laws(asked, pairs)),), reason)
     if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
-        return (elements,), f"finite elements, which {' and '.join(needed)} needs"
+        return Options((elements,), f"finite elements, which {' and '.join(needed)} needs")
     if outside := _outside(scene, pair):
-        return (elements,), f"finite elements; closed forms were not compared where {outside}"
+        return Options((elements,), f"finite elements; closed forms were not compared where {outside}")
     closed = tuple(
-        Option(model, effect, stiffness_laws(model, pairs), f"closed form ({model})")
+        Option(model, effect, stiffness_laws(model, pairs), text=f"closed form ({model})")
         for (model, kind), effect in LARGEST_DIFFERENCE.items()
         if kind == pairs
     )
-    return (*closed, elements), ""
+    return Options((*closed, elements))
 
 
-def _outside(scene: Scene, pair: GearPair) -> str:
+def _outside(scene: Scene, pair: gears.GearPair) -> str:
     """Where a scene lies outside the comparison; empty where it does not."""
     modulus = min(m.youngs_modulus for m in pair.materials)
     force = pair.normal_force(pinion_torque(scene))
+    both = (pair.pinion, pair.wheel)
     of_gears: dict[str, list[float]] = {
-        "teeth": [gear.teeth for gear in (pair.pinion, pair.wheel)],
-        "profile shift": [gear.profile_shift for gear in (pair.pinion, pair.wheel)],
+        "teeth": [gear.teeth for gear in both],
+        "profile shift": [gear.profile_shift for gear in both],
         "bore over root radius": [b / r for b, r in zip(pair.bore_radii, pair.root_radii, strict=True)],
         "force over face width, module and Young's modulus": [
             force / (pair.face_width * pair.module * modulus)

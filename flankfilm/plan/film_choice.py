@@ -9,16 +9,16 @@ How far it may be off was measured over many oils, speeds and torques (by
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from base import InputError, SolverError
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque
 from flankfilm.build_film import lubricant
 from flankfilm.coupling.resolution import ASSUMED_CHANGE, COARSEST_FILMS, LEAST_CHANGE, film_law_of_cost
-from flankfilm.coupling.tolerance import CostLaw
+from flankfilm.plan.options import FilmChange, Option, Options
 from flankfilm.scene import Scene
-from flankfilm.stages.plain_gears import plain_flanks
+from flankfilm.scene.plain_gears import plain_flanks
 
 MOST_OF_FORESEEN = 2.5
 """Largest change of the mean stiffness by films solved, secant or tangent, over that foreseen; of 40 scenes."""
@@ -30,104 +30,46 @@ FINE = 3e-3
 """Tolerance from which on all stages are at their coarsest, whatever the film changes."""
 
 
-@dataclass(frozen=True)
-class FilmChange:
-    """What the cheapest models say that a film changes, relative.
-
-    Attributes
-    ----------
-    mean : float
-        Of the mean secant stiffness; negative.
-    transmission_error : float
-        Of the transmission error, peak to peak: no sum of errors, but the figure that a film left out changes most.
-    """
-
-    mean: float
-    transmission_error: float
+_LEFT_OUT = Option("none", None)
+_BY_FORMULA = Option("dowson", None, seconds=0.07)
 
 
-@dataclass(frozen=True)
-class Option:
-    """A film model.
-
-    Attributes
-    ----------
-    name : str
-    effect : float or None
-        Relative error of the mean stiffness by its simplification, at most; None where the scene asks for it.
-    seconds : float
-        Cost that no tolerance changes [s].
-    law : CostLaw or None
-        Of the films' error in the mean stiffness, where they are solved.
-    change : float
-        Relative change of the mean stiffness by the film that the law assumes.
-    """
-
-    name: str
-    effect: float | None
-    seconds: float
-    law: CostLaw | None = None
-    change: float = ASSUMED_CHANGE
-
-
-@dataclass(frozen=True)
-class Foreseen:
-    """Options of a scene's film, why there are no more, and the change of the mean stiffness that was foreseen."""
-
-    options: tuple[Option, ...]
-    why: str
-    change: FilmChange | None
-
-
-def foresee(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Foreseen:
+def films(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Options:
     """Film models that a scene may have; what the cheapest models foresee is asked for where it decides."""
-    asked, tolerance = scene.film.model, scene.tolerance
+    asked, tolerance, wanted = scene.film.model, scene.tolerance, "film" in scene.wants
     # a scene without [film] has "none", and may still want the film; one that says "none" may not
-    if "film" in scene.wants and asked in ("auto", "none"):
-        return _only(_solved(ASSUMED_CHANGE, tolerance), "solved; the film itself is wanted")
+    if wanted and asked in ("auto", "none"):
+        return Options((_solved(tolerance=tolerance),), "solved; the film itself is wanted")
     if asked == "none":
-        return _only(_LEFT_OUT, 'left out; the scene asks for film.model = "none"')
+        return Options((_LEFT_OUT,), 'left out; the scene asks for film.model = "none"')
     if asked == "dowson":
-        return _only(_BY_FORMULA, 'by formula; the scene asks for film.model = "dowson"')
+        return Options((_BY_FORMULA,), 'by formula; the scene asks for film.model = "dowson"')
     unknown = _unknown_to_formulas(scene)
     if asked == "ehl":
         reason = 'solved; the scene asks for film.model = "ehl"'
-        if "film" in scene.wants or unknown or tolerance >= FINE:
-            return _only(_solved(ASSUMED_CHANGE, tolerance if "film" in scene.wants else 1.0), reason)
-        known = foreseen()
-        if known is None:
-            return _only(_solved(ASSUMED_CHANGE), reason)
-        return Foreseen((_solved(MOST_OF_FORESEEN * abs(known.mean)),), reason, known)
+        if wanted or unknown or tolerance >= FINE or (known := foreseen()) is None:
+            return Options((_solved(tolerance=tolerance if wanted else 1.0),), reason)
+        return Options((_solved(MOST_OF_FORESEEN * abs(known.mean)),), reason, known)
     if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
-        return _only(_LEFT_OUT, "left out; the scene has no lubricant or no speed")
+        return Options((_LEFT_OUT,), "left out; the scene has no lubricant or no speed")
     if unknown:
-        reason = f"solved; the formula that would foresee its part does not know {unknown}"
-        return _only(_solved(ASSUMED_CHANGE), reason)
-    change = foreseen()
-    if change is None:
-        return _only(
-            _solved(ASSUMED_CHANGE),
-            "solved; the cheapest models, which would foresee its part, have no answer",
+        return Options(
+            (_solved(),), f"solved; the formula that would foresee its part does not know {unknown}"
         )
-    left_out = replace(_LEFT_OUT, effect=MOST_OF_FORESEEN * abs(change.mean))
-    formula = replace(_BY_FORMULA, effect=FORMULA_OFF * abs(change.mean))
-    solved = _solved(MOST_OF_FORESEEN * abs(change.mean))
+    if (change := foreseen()) is None:
+        return Options(
+            (_solved(),), "solved; the cheapest models, which would foresee its part, have no answer"
+        )
+    most, off = MOST_OF_FORESEEN * abs(change.mean), FORMULA_OFF * abs(change.mean)
     # a definition of film stiffness that the formula has not leaves the solver alone
-    return Foreseen((left_out, *((formula,) if scene.film.stiffness is None else ()), solved), "", change)
+    formula = (replace(_BY_FORMULA, effect=off),) if scene.film.stiffness is None else ()
+    return Options((replace(_LEFT_OUT, effect=most), *formula, _solved(most)), foreseen=change)
 
 
-_LEFT_OUT = Option("none", None, 0.0)
-_BY_FORMULA = Option("dowson", None, 0.07)
-
-
-def _only(option: Option, why: str) -> Foreseen:
-    return Foreseen((option,), why, None)
-
-
-def _solved(change: float, tolerance: float = 1.0) -> Option:
+def _solved(change: float = ASSUMED_CHANGE, tolerance: float = 1.0) -> Option:
     """Films solved: their relative error, at most `tolerance`, counts by what they change of the stiffness."""
     change = max(change, LEAST_CHANGE)
-    return Option("ehl", 0.0, 0.0, film_law_of_cost(change, tolerance), change)
+    return Option("ehl", 0.0, (film_law_of_cost(change, tolerance),), change=change)
 
 
 def _unknown_to_formulas(scene: Scene) -> str:

@@ -1,0 +1,28 @@
+"""Scenes with simpler gears, for results that do not depend on what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from flankfilm.scene.gears import GearSection
+from flankfilm.scene.schema import Scene
+
+
+def plain_flanks(scene: Scene) -> Scene:
+    """Give the scene with gears that have no relief, deviations or rounded edges: no mesh shows them."""
+    return _changed(scene, lambda gear: {"tip_relief": None, "deviations": None, "tip_rounding_um": 0.0})
+
+
+def held_on_hubs(scene: Scene) -> Scene:
+    """Give the scene with bores as large as the rigid hubs: what a hub fills carries no stress."""
+    return _changed(scene, lambda gear: {"bore_mm": gear.hub.hub_mm} if gear.hub and gear.hub.hub_mm else {})
+
+
+def _changed(scene: Scene, change: Callable[[GearSection], dict[str, Any]]) -> Scene:
+    """Scene with other values of some keys of either gear."""
+    if scene.pair is None:
+        return scene
+    pinion, wheel = (gear.model_copy(update=change(gear)) for gear in scene.pair.each)
+    pair = scene.pair.model_copy(update={"pinion": pinion, "wheel": wheel})
+    return scene.model_copy(update={"pair": pair})

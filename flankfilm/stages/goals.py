@@ -1,0 +1,38 @@
+"""Which stages the wanted outputs of a scene ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from flankfilm.scene import Scene
+from flankfilm.stages import catalogue as of
+from flankfilm.stages.engine import Stage
+
+
+def goals(scene: Scene) -> tuple[Stage[Any], ...]:
+    """Stages that the scene's wants ask for; those that these need follow by themselves."""
+    return tuple(dict.fromkeys(_goals(scene, set(scene.wants), scene.stiffness.model == "given")))
+
+
+def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
+    if "geometry" in wants:
+        yield of.PAIR
+    if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
+        yield of.CLOSED_FORMS
+    if wants & {"stiffness", "film"} and not given:
+        yield from (of.PLAN, of.DRY_CYCLE)
+        if wants & {"closed-forms", "report"}:
+            yield of.OTHER_CYCLES
+        if scene.film.model != "none" or "film" in wants:
+            yield of.MESH
+    yield from (wanted for wanted in (of.TORQUES, of.REVOLUTION) if wanted.name in wants)
+    if "root-stress" in wants:
+        yield of.ROOT_STRESS
+    if wants & {"fourier", "sweep", "diagram"}:
+        yield of.FOURIER
+    for wanted in (of.SWEEP, of.DIAGRAM):
+        if wanted.name in wants:
+            yield from (of.SCALING, wanted)
+    if "vtk" in wants:
+        yield of.FIELDS
