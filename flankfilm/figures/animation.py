@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Fault, InputError, SolverError, shorten
+from base import Faults, InputError, SolverError, shorten
 from base.files import replacing
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
@@ -148,17 +148,14 @@ def _render(
 
 def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None:
     """Refuse, all at once, what cannot lead to a picture."""
-    faults = []
+    faults = Faults()
     if target is not None and target.suffix not in suffixes:
-        faults.append(
-            Fault(str(target), "", f"must end in {' or '.join(suffixes)}", "The suffix is the format")
-        )
+        faults.add(str(target), "", f"must end in {' or '.join(suffixes)}", "The suffix is the format")
     missing = [name for name in ("results.nc", "mesh_cycle.pvd") if not (folder / name).is_file()]
     if missing:
         lacks = f"holds no {' and no '.join(missing)}"
-        faults.append(Fault(str(folder), "", lacks, 'Run a scene that wants "vtk" into it'))
-    if faults:
-        raise InputError(faults)
+        faults.add(str(folder), "", lacks, 'Run a scene that wants "vtk" into it')
+    faults.raise_if_any()
 
 
 def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tuple[str, ...] = ()) -> View:

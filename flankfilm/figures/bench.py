@@ -60,12 +60,9 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
 
 def _groups(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     """Quantities that share a row of panels: all where each series has one of its own, else each alone."""
-    of_series: dict[str, set[str]] = {}
-    for row in rows:
-        if row.quantity:
-            of_series.setdefault(row.series, set()).add(row.quantity)
+    pairs = {(r.series, r.quantity) for r in rows if r.quantity}
     quantities = tuple(dict.fromkeys(r.quantity for r in rows if r.quantity))
-    alone = all(len(q) == 1 for q in of_series.values()) and len(quantities) == len(of_series)
+    alone = len(pairs) == len(quantities) == len({series for series, _ in pairs})
     return [quantities] if alone and quantities else [(q,) for q in quantities] or [("",)]
 
 
@@ -111,7 +108,7 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
 
 def _ticks(axes: Axes) -> None:
     """Give an axis of less than two decades room, and ticks at 1, 2 and 5 that carry plain numbers."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+    from matplotlib.ticker import LogLocator, NullLocator
 
     low, high = axes.get_xlim()
     if high > 100.0 * low:
@@ -121,9 +118,7 @@ def _ticks(axes: Axes) -> None:
         axes.set_xlim(middle / half, middle * half)
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.xaxis.set_major_formatter(
-        FuncFormatter(lambda value, place: f"{value:.3g}" if value < 1000 else f"{value:.0f}")
-    )
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}" if value < 1000 else f"{value:.0f}")
 
 
 def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> None:
@@ -131,9 +126,8 @@ def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> N
 
     entries: dict[str, Artist] = {}
     for over_time in panels:
-        entries |= {
-            label: handle for handle, label in zip(*over_time.get_legend_handles_labels(), strict=True)
-        }
+        handles, labels = over_time.get_legend_handles_labels()
+        entries |= zip(labels, handles, strict=True)
     error: dict[str, Any] = {"color": "#444444", "marker": "o", "markersize": 5}
     entries["true error"] = Line2D([], [], **error)
     entries["own estimate"] = Line2D([], [], **error, linestyle="--", markerfacecolor="white")

@@ -12,18 +12,10 @@ def view(
     results: Path,
     /,
     *,
-    field: Annotated[
-        str, Parameter(help="Field of the files for ParaView, such as von_mises_Pa, displacement_m.")
-    ] = "von_mises_Pa",
-    position: Annotated[
-        float | None, Parameter(help="Base pitches from A; a pair at the pitch point if left out.")
-    ] = None,
-    scale: Annotated[
-        float | None, Parameter(help="Factor of the displacements; so that they show if left out.")
-    ] = None,
-    out: Annotated[
-        Path | None, Parameter(help="Write a picture, .png, .jpg or .webp, instead of opening a window.")
-    ] = None,
+    field: str = "von_mises_Pa",
+    position: float | None = None,
+    scale: float | None = None,
+    out: Path | None = None,
 ) -> int:
     """Show the fields in the folder RESULTS on the deformed teeth, in a window with a slider over the mesh cycle.
 
@@ -31,6 +23,14 @@ def view(
     ----------
     results : Path
         Folder of a run that wants vtk.
+    field : str
+        Field of the files for ParaView, such as von_mises_Pa, displacement_m.
+    position : float
+        Base pitches from A; a pair at the pitch point if left out.
+    scale : float
+        Factor of the displacements; so that they show if left out.
+    out : Path
+        Write a picture, .png, .jpg or .webp, instead of opening a window.
     """
     from flankfilm.figures.animation import Frame, tooth_picture, view_cycle
 
@@ -46,9 +46,7 @@ def animate(
     results: Path,
     /,
     *,
-    out: Annotated[
-        Path | None, Parameter(help="File to write, .gif or .webp; mesh_cycle.gif in RESULTS if left out.")
-    ] = None,
+    out: Path | None = None,
     seconds: Annotated[float, Parameter(validator=validators.Number(gte=0.1, lte=600))] = 2.0,
     width: Annotated[int, Parameter(validator=validators.Number(gte=120, lte=4000))] = 720,
 ) -> int:
@@ -58,6 +56,8 @@ def animate(
     ----------
     results : Path
         Folder of a run that wants vtk.
+    out : Path
+        File to write, .gif or .webp; mesh_cycle.gif in RESULTS if left out.
     seconds : float
         Length of the animation.
     width : int

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from base import Array, Quantity, quantity, record
+from base import Array, Figure, Quantity
 from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from fem.fields import GearField
     from flankfilm.coupling.motion import Portrait
     from gears import GearPair
 
-__all__ = ["Path", "near_mesh", "outlines", "path", "portraits"]
+__all__ = ["SLIDING", "near_mesh", "outlines", "path", "points", "portraits"]
 
 OUTLINE = 12
 """Points of each part of a tooth's outline: straight sides between them do not show."""
@@ -29,18 +29,8 @@ PICTURED = 2.7
 """Half-width of the pictured part of the mesh, in pitches."""
 
 
-@record
-class Path:
-    """Path of contact: its points by name and place, curvature and velocities of the flanks along it."""
-
-    point: tuple[str, ...] = quantity("", "points of the path of contact", "point")
-    point_rho1: Array = quantity("m", "curvature radius of the pinion's flank there", "point", shown="mm")
-    point_place: Array = quantity("m", "place in the frame of the outlines", "point axis", shown="mm")
-    rho1: Array = quantity("m", "curvature radius of the pinion's flank", "station", shown="mm")
-    rho2: Array = quantity("m", "curvature radius of the wheel's flank", "station", shown="mm")
-    radius: Array = quantity("m", "radius of relative curvature", "station", shown="mm")
-    entrainment: Array | None = quantity("m/s", "entrainment, (u1 + u2)/2", "station", default=None)
-    sliding: Array | None = quantity("m/s", "sliding, u1 - u2", "station", default=None)
+SLIDING = Figure("m/s", "sliding, u1 - u2", ("station",))
+"""Sliding of the flanks along the path of contact."""
 
 
 def outlines(pair: GearPair) -> tuple[Quantity, ...]:
@@ -60,8 +50,20 @@ def outlines(pair: GearPair) -> tuple[Quantity, ...]:
     )
 
 
-def path(pair: GearPair, speed: float | None = None) -> Path:
-    """Follow the path of contact from A to E.
+def points(pair: GearPair) -> Iterator[Quantity]:
+    """Points of the path of contact, in the frame of the outlines."""
+    rho1 = np.array([getattr(pair.points, name) for name in "ABCDE"])
+    places = np.array([pair.placement(rho).contact_point for rho in rho1])
+    meaning = "curvature radius of the pinion's flank there"
+    yield figure_of("point", "", "points of the path of contact", "point", tuple("ABCDE"))
+    yield figure_of("point_rho1", "m", meaning, "point", rho1, shown="mm")
+    yield figure_of(
+        "point_place", "m", "place in the frame of the outlines", "point axis", places, shown="mm"
+    )
+
+
+def path(pair: GearPair, speed: float | None = None) -> Iterator[Quantity]:
+    """Follow the path of contact from A to E: its points, and curvature and velocities of the flanks along it.
 
     Parameters
     ----------
@@ -69,19 +71,18 @@ def path(pair: GearPair, speed: float | None = None) -> Path:
     speed : float or None
         Of the pinion [rad/s]; no velocities without it.
     """
-    names = tuple("ABCDE")
-    rho1 = np.array([getattr(pair.points, name) for name in names])
     along = pair.path_of_contact(n=STATIONS)
-    return Path(
-        point=names,
-        point_rho1=rho1,
-        point_place=np.array([pair.placement(rho).contact_point for rho in rho1]),
-        rho1=along.rho1,
-        rho2=along.rho2,
-        radius=along.radius,
-        entrainment=None if speed is None else along.entrainment(speed),
-        sliding=None if speed is None else along.sliding(speed),
-    )
+    yield from points(pair)
+    for name, meaning in (
+        ("rho1", "curvature radius of the pinion's flank"),
+        ("rho2", "curvature radius of the wheel's flank"),
+        ("radius", "radius of relative curvature"),
+    ):
+        yield figure_of(name, "m", meaning, "station", getattr(along, name), shown="mm")
+    if speed is not None:
+        mean = along.entrainment(speed)
+        yield figure_of("entrainment", "m/s", "entrainment, (u1 + u2)/2", "station", mean)
+        yield Quantity("sliding", SLIDING, along.sliding(speed))
 
 
 def near_mesh(pair: GearPair, fields: tuple[GearField, GearField]) -> tuple[Quantity, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -85,7 +85,7 @@ def film_profiles(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         need(results, SOLVED, "film_profile_C_x")
     with sheet(style, 2, height=4.4, legend=5) as (drawn, (upper, lower)):
         for name, look in zip(points, looks(len(points)), strict=True):
-            _through(upper, lower, results, name, {"label": name.replace("_", " "), **look})
+            _through(upper, lower, results, name, name.replace("_", " "), look)
         from_zero(upper)
         lower.set(xlabel=THROUGH, xlim=(-2.0, 1.5), ylim=(0, 3 * _thickest(lower)))
     return drawn
@@ -109,7 +109,7 @@ def film_families(
     with sheet(style, 2, 2, width=7.6, height=4.4) as (drawn, (pressure, hertz, thickness, along)):
         for (label, results), look in zip(family.items(), looks(len(family)), strict=True):
             need(results, SOLVED, f"film_profile_{name}_x", "film_rho1")
-            _through(pressure, thickness, results, name, {"label": label, **look})
+            _through(pressure, thickness, results, name, label, look)
             for axes, what in ((hertz, "film_hertz_pressure"), (along, "film_minimum_thickness")):
                 curves(axes, travel(results, "film_rho1"), {label: read(results, what)}, **look)
         from_zero(pressure, hertz, along)
@@ -119,20 +119,20 @@ def film_families(
     return drawn
 
 
-def _through(upper: Axes, lower: Axes, results: xr.Dataset, point: str, look: Mapping[str, object]) -> None:
+def _through(
+    upper: Axes, lower: Axes, results: xr.Dataset, point: str, label: str, look: Mapping[str, Any]
+) -> None:
     """Draw pressure and film through the contact at a point over the place in half-widths."""
     name = f"film_profile_{point}"
     x = results[f"{name}_x"].values / float(results[f"{name}_half_width"])
     for axes, what in ((upper, "pressure"), (lower, "thickness")):
-        shown = read(results, f"{name}_{what}")
-        axes.plot(x, shown.values, **look)  # type: ignore[arg-type]
-        axes.set(ylabel=shown.label)
+        curves(axes, x, {label: read(results, f"{name}_{what}")}, **look)
 
 
 def _thickest(axes: Axes) -> float:
     """Largest film on the line of centres among the curves of a panel."""
-    curves = (np.asarray(line.get_xydata()).T for line in axes.lines)
-    return max(float(np.interp(0.0, x, thickness)) for x, thickness in curves)
+    drawn = (np.asarray(line.get_xydata()).T for line in axes.lines)
+    return max(float(np.interp(0.0, x, thickness)) for x, thickness in drawn)
 
 
 def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:

@@ -156,9 +156,7 @@ def to_svg(drawn: Figure, prefix: str) -> str:
         FigureCanvasSVG(drawn).print_svg(text, metadata={"Date": None, "Creator": None})
     svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
-    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
-    svg = re.sub(r"url\(#", f"url(#{prefix}-", svg)
-    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
+    svg = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{prefix}-", svg)
     return re.sub(r"(?<=[:\s])#[0-9a-f]{6}\b", lambda found: _themed(found.group()), svg)
 
 

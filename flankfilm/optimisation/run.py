@@ -59,11 +59,6 @@ class Optimum:
         """One line: points, those that are best, seconds."""
         return f"Optimum({len(self.evaluations)} points, {len(self.best)} best, {self.seconds:.3g} s)"
 
-    def objectives(self) -> Array:
-        """Objectives as they are, (evaluations, m); NaN where one failed."""
-        m = len(self.task.objectives)
-        return np.array([e.result.values[:m] for e in self.evaluations])
-
 
 @dataclass
 class _Evaluator:
@@ -96,25 +91,22 @@ class _Evaluator:
         for point in points:
             self.asked.setdefault(point, self.known[point])
         results = [self.known[point] for point in points]
-        return _objectives(self.task, results), _limits(self.task, results)
+        return _judged(self.task, results)
 
 
-def _objectives(task: Task, results: list[RowResult]) -> Array:
-    """Objectives with the sign of minimisation; a failed point is the worst of all."""
-    m = len(task.signs)
-    values = np.array([result.values[:m] for result in results]).reshape(-1, m) * np.array(task.signs)
-    return np.where(np.isfinite(values), values, FAILED)
+def _judged(task: Task, results: list[RowResult]) -> tuple[Array, Array]:
+    """Objectives with the sign of minimisation, and limits, allowed where <= 0, relative to their bounds.
 
-
-def _limits(task: Task, results: list[RowResult]) -> Array:
-    """Limits, allowed where <= 0, relative to their bounds."""
-    place = {name: i for i, name in enumerate(task.outputs)}
-    columns = [
-        sign * (np.array([r.values[place[name]] for r in results]) - bound) / (abs(bound) or 1.0)
+    A failed point is the worst of all.
+    """
+    values = np.array([result.values for result in results]).reshape(-1, len(task.outputs))
+    limits = [
+        sign * (values[:, task.outputs.index(name)] - bound) / (abs(bound) or 1.0)
         for name, sign, bound in task.limits
     ]
-    values = np.column_stack(columns) if columns else np.zeros((len(results), 0))
-    return np.where(np.isfinite(values), values, FAILED)
+    both = values[:, : len(task.signs)] * np.array(task.signs), np.array(limits).reshape(-1, len(results)).T
+    objectives, kept = (np.where(np.isfinite(one), one, FAILED) for one in both)
+    return objectives, kept
 
 
 def optimise(
@@ -163,8 +155,9 @@ def optimise(
 def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
     results = [e.result for e in evaluations]
     fine = np.array([e.tolerance == task.tolerances[1] for e in evaluations])
-    good = np.all(_limits(task, results) <= 0, axis=1) & np.array([not r.fault for r in results])
-    found = front(_objectives(task, results), fine & good)
+    objectives, limits = _judged(task, results)
+    good = np.all(limits <= 0, axis=1) & np.array([not r.fault for r in results])
+    found = front(objectives, fine & good)
     return found[:1] if len(task.objectives) == 1 else found
 
 

@@ -40,16 +40,17 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
     """Differential evolution (Storn and Price, doi:10.1023/A:1008202821328); the last population."""
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
-    d = len(task.asked.vary)
-    held = NonlinearConstraint(lambda x: _limits(evaluate, x, tolerance), -np.inf, 0.0)
+    def limits(x: Array) -> Array:
+        return evaluate(np.atleast_2d(x.T), tolerance)[1].T.reshape(-1, *x.shape[1:])
+
     # the stubs know neither objectives of many points at once nor plain lists of bounds
     evolve: Any = differential_evolution
     found = evolve(
         lambda x: evaluate(np.atleast_2d(x.T), tolerance)[0][:, 0],
-        [(0.0, 1.0)] * d,
+        [(0.0, 1.0)] * len(task.asked.vary),
         maxiter=_generations(task, evaluations),
         init=_latin(task) if start is None else start,
-        constraints=(held,) if task.limits else (),
+        constraints=NonlinearConstraint(limits, -np.inf, 0.0) if task.limits else (),
         rng=task.asked.seed,
         polish=False,
         tol=1e-6,
@@ -58,11 +59,6 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
     )
     population: Array = np.clip(found.population, 0.0, 1.0)
     return population
-
-
-def _limits(evaluate: Evaluate, x: Array, tolerance: float) -> Array:
-    many = evaluate(np.atleast_2d(x.T), tolerance)[1].T
-    return many if x.ndim == 2 else many[:, 0]
 
 
 def _latin(task: Task) -> Array:

@@ -33,6 +33,8 @@ CONTACTS = ("unloaded_transmission_error", "hertz_pressure", "half_width")
 THROUGH = ("x", "pressure", "thickness", "central_thickness", "minimum_thickness")
 """Figures of whole films."""
 
+GEARS = ("pinion", "wheel")
+
 CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
 
 
@@ -67,14 +69,11 @@ TABLES: Mapping[str, Table] = {
         "position",
         ("position", "transmission_error", "unloaded_transmission_error", "secant_stiffness"),
     ),
-    "root_stress_pinion": Table("root_pinion", "travel", axis="instant"),
-    "fillet_stress_pinion": Table("fillet_pinion", "arc", axis="arc"),
-    "root_stress_wheel": Table("root_wheel", "travel", axis="instant"),
-    "fillet_stress_wheel": Table("fillet_wheel", "arc", axis="arc"),
+    **{f"root_stress_{gear}": Table(f"root_{gear}", "travel", axis="instant") for gear in GEARS},
+    **{f"fillet_stress_{gear}": Table(f"fillet_{gear}", "arc", axis="arc") for gear in GEARS},
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
     "film_along_path": Table("film", "rho1", axis="point"),
-    "sweep_up": Table("sweep", "up", ("speed", "frequency", "up", "up_label")),
-    "sweep_down": Table("sweep", "down", ("speed", "frequency", "down", "down_label")),
+    **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
     "diagram": Table("diagram", "frequency", axis="point"),
     "special_points": Table("special", "frequency", axis="point"),
     "jumps": Table("jump", "frequency", axis="jump"),
@@ -125,7 +124,7 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
             yield of_record(prefix, found)
     if (pair := values.get("pair")) is not None:
         yield of_quantities("outline", drawn.outlines(pair))
-        yield of_record("path", drawn.path(pair, speed))
+        yield of_quantities("path", drawn.path(pair, speed))
     if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
         yield of_record("dry", dry.contact, CONTACTS)
         yield of_quantities("dry", _sliding(dry.contact, speed))
@@ -188,7 +187,8 @@ def _fourier(series: MeshSeries) -> xr.Dataset:
 
 def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
     """Root stress of a passing tooth and along the fillets of both gears, and nominal stress."""
-    for name, gear in (("pinion", found.stress.pinion), ("wheel", found.stress.wheel)):
+    for name in GEARS:
+        gear = getattr(found.stress, name)
         yield of_quantities(f"root_{name}", passage(gear))
         yield of_quantities(f"fillet_{name}", fillet_stress(gear))
     if found.iso is not None:

@@ -57,7 +57,8 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
     (('dry_position',), {'units': 'm', 'long_name': 'deflection', 'display_units': 'um'})
     """
     known = quantities(record).values()
-    return of_quantities(prefix, (q for q in known if names is None or q.name in names), _errors(record))
+    wanted = (one for one in known if names is None or one.name in names)
+    return of_quantities(prefix, wanted, _errors(record, known))
 
 
 def of_quantities(
@@ -191,13 +192,11 @@ def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, Figur
         yield f"{name}_{identifier(key)}", replace(figure, meaning=f"{figure.meaning}: {key}"), one
 
 
-def _errors(record: object) -> dict[str, float]:
+def _errors(record: object, known: Iterable[Quantity]) -> dict[str, float]:
     """Relative errors of a record's figures, where they are known."""
     whole = getattr(record, "error", None)
     found = dict.fromkeys(getattr(type(record), "headline", ()), whole)
-    for quantity in quantities(record).values():
-        if quantity.figure.error:
-            found[quantity.name] = getattr(record, quantity.figure.error)
+    found |= {one.name: getattr(record, one.figure.error) for one in known if one.figure.error}
     return {
         name: float(error)
         for name, error in found.items()

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.run import held_as_it_is
-from flankfilm.report.page import Headline, Part, Table, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -24,20 +25,11 @@ HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
     stage = cycle.film
-    verdict = (
-        f"In series with the teeth, before load sharing, the film changes the mean secant stiffness by "
-        f"{100 * cycle.secant_stiffness_change:+.3f} % and the mean tangent stiffness by "
-        f"{100 * cycle.stiffness_change:+.3f} %."
-    )
+    secant, tangent = (100 * one for one in (cycle.secant_stiffness_change, cycle.stiffness_change))
+    verdict = said("film_changes", secant=secant, tangent=tangent)
     if abs(cycle.secant_stiffness_change) < tolerance:
-        verdict += (
-            f" That is less than the tolerance of {percent(tolerance)}: for the stiffness the film could be "
-            "left out."
-        )
-    rounds = (
-        f"Films and load share agree after {cycle.rounds} rounds; the last changed a pair's force by "
-        f"{cycle.mismatch:.1e} of the whole."
-    )
+        verdict += said("film_left_out", tolerance=percent(tolerance))
+    rounds = said("film_rounds", cycle=cycle)
     tables = (*((_otherwise(cycle),) if cycle.otherwise else ()), _definitions(stage))
     return Part(
         "film",
@@ -106,26 +98,24 @@ def _otherwise(lubricated: LubricatedCycle) -> Table:
     return Table(("mesh stiffness with", *means), rows, "Stiffness in N/m at the whole face.")
 
 
-def _supply(stage: FilmAlongPath) -> tuple[str, ...]:
-    if stage.starvation is None or stage.inlet is None or stage.oil_layer is None:
-        return ()
-    layer = read_figure(stage, "oil_layer")
-    return (
-        f"{HELD[stage.supply]} stays as it is when the load changes. Along the path the central film is "
-        f"{stage.starvation.min():.3f} to {stage.starvation.max():.3f} of the flooded one, the gap fills "
-        f"{-stage.inlet.max():.4f} to {-stage.inlet.min():.4f} half-widths ahead of the contact's middle, and "
-        f"a layer of {layer.values.min():.3g} to {layer.values.max():.3g} {layer.unit} passes.",
-    )
+def _supply(stage: FilmAlongPath) -> Iterator[str]:
+    if stage.starvation is not None and stage.inlet is not None and stage.oil_layer is not None:
+        layer = read_figure(stage, "oil_layer")
+        starved, inlet, passing = (_ends(curve) for curve in (stage.starvation, -stage.inlet, layer.values))
+        yield said(
+            "supply", held=HELD[stage.supply], starved=starved, inlet=inlet, layer=passing, unit=layer.unit
+        )
 
 
-def _mixed(stage: FilmAlongPath) -> tuple[str, ...]:
-    if stage.film_ratio is None or stage.asperity_share is None:
-        return ()
-    return (
-        f"Between the rough flanks Lambda is {stage.film_ratio.min():.3g} to {stage.film_ratio.max():.3g}; the "
-        f"asperities carry {percent(stage.asperity_share.min())} to {percent(stage.asperity_share.max())} of "
-        "the load. Film and asperities are springs in parallel, and both in series with the teeth.",
-    )
+def _mixed(stage: FilmAlongPath) -> Iterator[str]:
+    if stage.film_ratio is not None and stage.asperity_share is not None:
+        least, largest = (percent(share) for share in _ends(stage.asperity_share))
+        yield said("mixed", ratio=_ends(stage.film_ratio), least=least, largest=largest)
+
+
+def _ends(curve: Array) -> tuple[float, float]:
+    """Least and largest value."""
+    return float(curve.min()), float(curve.max())
 
 
 def headlines(cycle: LubricatedCycle) -> list[Headline]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.figures.reading import read, read_figure, travel
-from flankfilm.report.page import Headline, Part, Table, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -85,12 +85,7 @@ def stiffness(
     if single is not None:
         shown.insert(0, "single_pairs")
         tables.append(iso_table(single.iso))
-    notes = (
-        *changes,
-        "The error of a closed form against the real tooth is unknown until it is compared with finite "
-        "elements; the column shows numerical error alone.",
-    )
-    drawn = pictures(results, *shown, model=cycles[0].label)
+    drawn, notes = pictures(results, *shown, model=cycles[0].label), (*changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
 
@@ -131,10 +126,7 @@ def iso_table(iso: Any) -> Table:
 def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
-    note = (
-        f"Largest von Mises stress, under the contact: {number(1e-6 * peak)} MPa. The file mesh_cycle.pvd holds the "
-        "mesh cycle for ParaView; colour by von_mises_Pa."
-    )
+    note = said("peak", peak=number(1e-6 * peak))
     drawn = pictures(results, "tooth_stress")
     return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
 
@@ -169,10 +161,7 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))
-        note = (
-            "ISO 6336-3 puts the whole force on one pair at D and knows neither neighbours nor the bore; its error "
-            "is unknown."
-        )
+        note = said("iso6336_3")
     drawn = pictures(results, "root_stress")
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=(note,))
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from base.units import factor
 from flankfilm.figures.reading import read_figure, unit_text
-from flankfilm.report.page import Headline, Part, Table, pictures
+from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
 
 if TYPE_CHECKING:
@@ -32,15 +32,11 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
         (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
         for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
     )
-    notes = ["Phases refer to tau = 0, the instant when a pair is at A."]
+    notes = [said("phases")]
     if stage.fit is not None:
-        notes += [
-            f"The series of order {len(series.amplitudes)} leaves out {percent(stage.fit.remainder_rms)} of the "
-            f"mean (root mean square; at most {percent(stage.fit.remainder_max)}). A higher "
-            "dynamics.fourier_order keeps more.",
-            "The tangent stiffness belongs to small vibration about the load, the secant to motion with "
-            "separation.",
-        ]
+        rms, largest = percent(stage.fit.remainder_rms), percent(stage.fit.remainder_max)
+        series_note = said("series", order=len(series.amplitudes), rms=rms, largest=largest)
+        notes += [series_note, said("tangent_or_secant")]
     drawn = pictures(results, *(["fourier"] if stage.fit else []), source=stage.source)
     mean = f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}."
     table = Table(("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]"), rows)
@@ -71,13 +67,8 @@ def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
         at = ", ".join(f"{g:.6g}" for g in stage.grazings)
         if (rpm := _speed(stage)) is not None:
             at += " (" + ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + " rpm)"
-        notes.append(f"The orbit that never leaves contact touches the edge of the backlash at omega = {at}.")
-    notes += [
-        f"Each state is the exact solution of the piecewise linear oscillator, to {stage.error:.0e} a "
-        f"period; {stage.cost.periods:,} periods were followed.",
-        "The model takes the same stiffness on the back flank, and the same damping in the backlash.",
-        *stage.messages,
-    ]
+        notes.append(said("grazing", at=at))
+    notes += [said("exact", stage=stage), said("same_law"), *stage.messages]
     return Part("motion", "Motion", figures=drawn, notes=tuple(notes))
 
 
@@ -145,31 +136,19 @@ def _share(source: str, jump: Jump) -> str:
 
 
 def _notes(stage: SpeedDiagram) -> list[str]:
-    notes = [
-        f"Contact is lost by a stable motion {_ranges(stage, stage.separated)}; the back flank is touched "
-        f"{_ranges(stage, stage.back_contact)}. {'' if stage.jumps else 'Jump speeds: none in range.'}"
-    ]
+    separated, back = (_ranges(stage, one) for one in (stage.separated, stage.back_contact))
+    none = "" if stage.jumps else "Jump speeds: none in range."
+    notes = [said("contact_lost", separated=separated, back=back, jumps=none)]
     if stage.force_factor.size:
         i = int(np.argmax(stage.force_factor))
         curves = (stage.force_frequency, stage.force_factor, stage.force_factor_iso6336)
         value, force, standard = (float(curve[i]) for curve in curves)
-        beside = (
-            f"; ISO 6336-1, method B, has K_v = {standard:.3g} there (pitch deviation: the error's peak-to-peak "
-            "value, profile deviation 0)"
-            if np.isfinite(standard)
-            else ""
-        )
-        notes.append(
-            f"Greatest force: {force:.3g} times the mean force at {_shown(stage, value)}{beside}. It holds the "
-            "variation of the stiffness under the mean load too, which K_v does not."
-        )
+        beside = said("standard_force", standard=standard) if np.isfinite(standard) else ""
+        at = _shown(stage, value)
+        notes.append(said("greatest_force", force=force, at=at, standard=beside))
     if any(j.budget for j in stage.jumps):
         second = ", ".join(f"{100 * j.second:+.2g} %" for j in stage.jumps)
-        notes.append(
-            "The error budget carries the errors of the stages through the exact derivatives of the jump: mean "
-            "stiffness by finite elements and film, harmonics that the series leaves out, and the flow. The first "
-            f"of those harmonics alone would move the jumps by {second}, to first order."
-        )
+        notes.append(said("jump_budget", second=second))
     notes += [f"Not followed: {text}." for text in stage.diagram.left_out[:8]]
     branches = enumerate(stage.diagram.branches)
     return notes + [f"Branch {i} of period {b.periods}: {b.message}." for i, b in branches if not b.converged]

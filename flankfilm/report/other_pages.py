@@ -15,7 +15,7 @@ from flankfilm import figures
 from flankfilm.coupling.verification import UNITS
 from flankfilm.figures.reading import titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
-from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, write_page
+from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import number, percent, seconds
 
@@ -89,15 +89,9 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     if len(chosen) == 1:
         keys = zip(task.keys, first.values, strict=True)
         headlines += [Headline(key, _cell(value), "at the optimum") for key, value in keys]
-    caption = (
-        "The objective of every point, in the order in which they were computed."
-        if one
-        else "Each two objectives of every point; the front is what no other point betters in all."
-    )
-    note = (
-        f"Far from the optimum points were computed at a tolerance of {percent(task.tolerances[0])}, near it at the "
-        f"scene's own {percent(task.tolerances[1])}. The scene of the first row is in optimum.toml."
-    )
+    caption = said("optimum_of_one" if one else "optimum_of_several")
+    coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
+    note = said("two_tolerances", coarse=coarse, fine=fine)
     facts = [
         Fact(f"{len(points)} points", "points"),
         _work(data),

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from flankfilm import figures
 from flankfilm.figures.style import to_svg
@@ -113,8 +113,17 @@ def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: 
 
 def pictures(results: xr.Dataset, *names: str, **words: str) -> tuple[Drawing, ...]:
     """Draw results with several of `flankfilm.figures`, each with its caption, into which `words` are filled."""
-    captions = tomllib.loads(_text("captions.toml"))
+    captions = _prose()["captions"]
     return tuple(picture(getattr(figures, name), results, captions[name].format(**words)) for name in names)
+
+
+def said(note: str, **words: Any) -> str:
+    """Give a note of ``prose.toml`` with `words` filled in."""
+    return _prose()["notes"][note].format(**words)
+
+
+def _prose() -> dict[str, dict[str, str]]:
+    return tomllib.loads(_text("prose.toml"))
 
 
 def _text(name: str) -> str:

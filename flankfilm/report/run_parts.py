@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flankfilm.coupling.cycle import sampling_error
-from flankfilm.report.page import Part, Table
+from flankfilm.report.page import Part, Table, said
 from flankfilm.report.text import percent, seconds
 
 if TYPE_CHECKING:
@@ -43,10 +43,8 @@ def costs(results: Results) -> Part:
             "time": lambda row: "kept from an earlier run" if row[0].cached else seconds(row[0].seconds),
         },
     )
-    text = (
-        f"The scene's tolerance is {percent(results.scene.tolerance)} on the wanted figures. The run took "
-        f"{seconds(results.seconds)}, of which {seconds(sum(run.seconds for run, _ in listed))} in the stages listed."
-    )
+    whole, spent = seconds(results.seconds), seconds(sum(run.seconds for run, _ in listed))
+    text = said("costs", tolerance=percent(results.scene.tolerance), whole=whole, listed=spent)
     return Part("costs", "Error and cost", (text,), tables=(table,))
 
 

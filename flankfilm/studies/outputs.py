@@ -22,7 +22,7 @@ from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.single_pairs import CLOSED_FORMS
-from flankfilm.figures.drawn import Path
+from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.tables import spelt
 from flankfilm.output.variables import sentence
@@ -191,7 +191,7 @@ OUTPUTS: Mapping[str, Output] = dict(
         ),
         _output(
             "sliding_speed",
-            figures(Path)["sliding"],
+            SLIDING,
             "geometry",
             lambda engine: np.abs(_ends(engine).sliding(pinion_speed(engine.scene))).max(),
             "largest {}, A to E",

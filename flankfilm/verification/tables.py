@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.verification import Curves, Verification
-from flankfilm.figures.drawn import outlines, path
+from flankfilm.figures.drawn import outlines, points
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
 
@@ -61,7 +61,7 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     parts = (
         of_record("pair", found.pair),
         of_quantities("outline", outlines(found.pair)),
-        of_record("path", path(found.pair), ("point", "point_rho1", "point_place")),
+        of_quantities("path", points(found.pair)),
         of_record("path", found, ("rho1",)),
         of_record("mesh", found, ("position",)),
         of_models(

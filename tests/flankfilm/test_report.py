@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import itertools
 import re
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -228,6 +229,14 @@ def test_every_function_says_what_it_takes():
     for name in figures.__all__:
         text = inspect.getdoc(getattr(figures, name)) or ""
         assert "Parameters" in text, name
+
+
+def test_every_text_of_the_pages_belongs_to_something():
+    report = Path(figures.__file__).parents[1] / "report"
+    prose = tomllib.loads((report / "prose.toml").read_text(encoding="utf-8"))
+    assert prose["captions"].keys() <= set(figures.__all__)
+    code = "".join(source.read_text(encoding="utf-8") for source in report.glob("*.py"))
+    assert [name for kind in prose.values() for name in kind if f'"{name}"' not in code] == []
 
 
 def test_pages_are_small(made):
