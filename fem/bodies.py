@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,10 @@ import numpy as np
 from base import Array, Cost, Faults, described, part, quantity, record
 from fem.flamant import hertz_half_width, hertz_indentation
 from fem.gear_compliance import GearCompliance
+from fem.gear_shape import MeshedShape, shapes
 from fem.local_law import HertzApproach
-from fem.ring import Ring, mesh_and_factor
+from fem.ring import Ring
+from fem.solved_gear import Gears
 from fem.support import FIXED, Support, held_profiles
 from fem.tip_strips import TipStrips
 
@@ -37,7 +40,6 @@ class Compliance:
     plane: str = part('"strain" or "stress"')
     pinion: GearCompliance = part("of the pinion, held at the bore or hub")
     wheel: GearCompliance = part("of the wheel, likewise")
-    tips: tuple[TipStrips, TipStrips] = part("tip edges of both gears, for contact outside the path")
     refinements: int = quantity("1", "refinements of the mesh in use")
     sizes: Sizes = part("of the mesh before it was refined")
     reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
@@ -47,20 +49,48 @@ class Compliance:
     message: str
     supports: tuple[Support, Support] = part("how the bores of both are held", default=(FIXED, FIXED))
     left_out: frozenset[str] = part("names of what was left out", default=frozenset())
-    kept_rings: tuple[Ring, Ring] | None = part(
-        "meshes and factors; kept in the process that computed them alone", default=None
+    tip_strips: tuple[TipStrips, TipStrips] | None = part(
+        "tip edges of both gears; None before contact outside the path has asked for them", default=None
     )
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
-        return {**self.__dict__, "kept_rings": None}
+        return {one.name: getattr(self, one.name) for one in fields(self)}
+
+    @property
+    def _meshed(self) -> tuple[MeshedShape, MeshedShape]:
+        profiles = held_profiles(self.pair, self.supports)
+        first, second = shapes(self.pair, profiles, self.plane)
+        return (
+            MeshedShape(first, self.sizes, self.refinements),
+            MeshedShape(second, self.sizes, self.refinements),
+        )
+
+    @cached_property
+    def tips(self) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears, for contact outside the path; solved where they were not."""
+        return self.tip_strips or self.tips_of(Gears())
+
+    def tips_of(self, gears: Gears) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears from where solved gears are."""
+        first, second = (
+            gears.tips(meshed).scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
 
     def rings(self) -> tuple[Ring, Ring]:
-        """Meshed and factorised gears: those that were kept, or computed anew from the same mesh sizes."""
-        if self.kept_rings is not None:
-            return self.kept_rings
-        profiles = held_profiles(self.pair, self.supports)
-        return mesh_and_factor(self.pair, self.plane, self.sizes, self.refinements, profiles)
+        """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
+        return self._rings
+
+    @cached_property
+    def _rings(self) -> tuple[Ring, Ring]:
+        gears = Gears()
+        first, second = (
+            gears.rings(meshed)[1].scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
 
     def without(self, *parts: str) -> Compliance:
         """Leave parts out, to compare with models that do not have them.

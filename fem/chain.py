@@ -14,6 +14,8 @@ exact, at a cost that grows as the logarithm of z.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from base import Array, Fault, InputError, record
@@ -42,6 +44,10 @@ class RingOfLinks:
     back: Array
     forth_start: Array
     back_start: Array
+
+    def stiffer(self, factor: float) -> RingOfLinks:
+        """Answer of links that are stiffer by a factor."""
+        return replace(self, forth_start=self.forth_start / factor, back_start=self.back_start / factor)
 
     def influence(self, j: int) -> Array:
         """Displacements of end j (any whole number) by unit forces on end 0, (n, n) array."""

@@ -36,18 +36,27 @@ class Condensation:
         S + k in Cartesian components.
     stiffness : (cut, cut) array
         S.
+    modulus : float
+        Over that of what was factorised.
     """
 
     factor: Any
     order: Integers
     sprung: Array
     stiffness: Array
+    modulus: float = 1.0
+
+    def stiffer(self, factor: float) -> Condensation:
+        """Condensation of a sector that is stiffer by a factor."""
+        return Condensation(
+            self.factor, self.order, self.sprung * factor, self.stiffness * factor, self.modulus * factor
+        )
 
     def solve(self, inner: Array, cut: Array) -> tuple[Array, Array]:
         """Displacements of inner unknowns and cuts (..., loads) with the springs, by forces on both."""
         force = np.concatenate([inner, cut])
         moved = np.empty_like(force)
-        moved[self.order] = self.factor.solve(force[self.order])
+        moved[self.order] = self.factor.solve(force[self.order]) / self.modulus
         return moved[: len(inner)], moved[len(inner) :]
 
 

@@ -138,7 +138,9 @@ def mesh_cycle(
     given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding, friction)
     _check(given, torque, compliance, reference)
     watch = Stopwatch()
-    bodies = compliance if compliance is not None else _compliance(pair, tolerance, plane)
+    bodies = (
+        compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
+    )
     ready = watch.seconds
     contact = solve(given, bodies, torque / pair.base_radii[0], film)
     before = Cost(0.0) if compliance is not None else bodies.cost

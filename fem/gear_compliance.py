@@ -83,6 +83,24 @@ class GearCompliance:
     hub_windup: float
     fit_error: float
 
+    def scaled(self, module: float, law: PlaneElasticity) -> GearCompliance:
+        """Give a gear in modules and E* its size [m] and modulus."""
+        modulus = law.plane_modulus
+        low, high = self.rho_range
+        return GearCompliance(
+            (low * module, high * module),
+            self.rho_end * module,
+            self.base_radius * module,
+            module,
+            law,
+            self.logarithm / modulus,
+            self.own_series / modulus,
+            {tooth: series / modulus for tooth, series in self.cross_series.items()},
+            {tooth: series / modulus for tooth, series in self.corner_series.items()},
+            self.hub_windup / modulus,
+            self.fit_error / modulus,
+        )
+
     def _unit(self, rho: Array) -> Array:
         low, high = self.rho_range
         return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
@@ -209,10 +227,9 @@ class FlankSamples:
     corner: Array
 
 
-def sample_places(profile: ToothProfile, rho_low: float, count: int) -> Array:
-    """Chebyshev points in rho, stretched to include both ends of the flank that contact reaches (count,) [m]."""
-    rho_form, rho_end = profile.flank_rho
-    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
+def sample_places(profile: ToothProfile, count: int) -> Array:
+    """Chebyshev points in rho, stretched to include both ends of the flank, whatever the mate reaches (count,) [m]."""
+    low, high = profile.flank_rho[0], profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
     unit = -np.cos(np.pi * (np.arange(count) + 0.5) / count)
     return np.asarray(np.clip(low + 0.5 * (high - low) * (1 - unit / unit[0]), low, high))
 

@@ -8,22 +8,22 @@ it: with the order p, the finer one's error is their difference over 2^p - 1.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil, floor, log2
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, Limit, Stopwatch, record
+from base import Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.flamant import hertz_indentation
-from fem.gear_compliance import FlankSamples, GearCompliance, gear_compliance, sample_places, sampled
-from fem.ring import Ring, ring_of
+from fem.gear_shape import MeshedShape, shapes
+from fem.solved_gear import Gears, Kept, SolvedFlanks
 from fem.support import Support, held_profiles, on_both
-from fem.tip_strips import tip_strips
 
 if TYPE_CHECKING:
-    from gears import GearPair, ToothProfile
+    from gears import GearPair
     from meshes import Sizes
 
 __all__ = ["Compliance", "compliance"]
@@ -43,24 +43,8 @@ SAMPLES = (20, 32, 48, 64)
 """Loads along a flank: more of them where the fit leaves too much."""
 
 
-@record
-class _Gear:
-    """One gear on one mesh: fitted compliance, change of the samples from the coarser mesh."""
-
-    ring: Ring
-    fine: GearCompliance
-    samples: FlankSamples
-    coarse: FlankSamples
-    cost: Cost
-
-    def change(self, rho: Array) -> Array:
-        """By how much ``own`` grew from the coarser mesh at rho (n,) [m] [m per N/m]."""
-        return np.interp(rho, self.samples.rho, self.samples.own - self.coarse.own)
-
-    @property
-    def cross_change(self) -> float:
-        """Largest change of a cross term [m per N/m]."""
-        return float(np.max(np.abs(self.samples.cross - self.coarse.cross), initial=0.0))
+STEPS = 4
+"""Of the edge length when it is halved for a tolerance: so few meshes are tried that pairs share their gears'."""
 
 
 def compliance(
@@ -70,12 +54,19 @@ def compliance(
     sizes: Sizes | None = None,
     refinements: int | None = None,
     supports: Support | tuple[Support, Support] | None = None,
+    *,
+    tip_edges: bool = False,
+    kept: Kept | None = None,
 ) -> Compliance:
     """Compliance of both gears, on the coarsest mesh that meets a tolerance.
 
     Two nested meshes are solved and the finer one is used. Its error is taken from the difference of the two
     with the order of convergence 3, plus what the fit along the flank leaves out. Where that is above the
     tolerance, edge lengths and number of loads follow from it for the next attempt.
+
+    Each gear is solved in modules and E*, by itself. The process keeps what it has solved: a gear of the same shape,
+    held at the same radius and with the same Poisson's ratio is used again, to the last bit, in any pair, of any size,
+    modulus, face width and mate (`fem.forget_gears` forgets them).
 
     Parameters
     ----------
@@ -90,6 +81,11 @@ def compliance(
         Fixes the mesh instead of the tolerance: 1 to 5.
     supports : Support or (Support, Support), optional
         Rigid hubs of both gears, or of pinion and wheel; held on the bores unless given.
+    tip_edges : bool
+        Solve the tip edges now. Contact outside the path needs them; they are solved when it first does.
+    kept : callable, optional
+        Where solved gears are kept beyond the process: called with a name, with plain inputs, and with what computes
+        the record where it has none.
 
     Returns
     -------
@@ -120,16 +116,16 @@ def compliance(
     watch = Stopwatch()
     held = on_both(supports)
     profiles = held_profiles(pair, held)
-    # every tooth that may touch together with another one, tip edges outside the path at both ends included
-    reach = ceil(pair.contact_ratio) + 1
+    both = shapes(pair, profiles, plane)
+    laws = [PlaneElasticity.of(material, plane) for material in pair.materials]
     sizes, level = sizes or Sizes(), refinements or 1
-    cost = Cost(0.0)
+    gears = Gears(kept)
     while True:
-        gears = [
-            _solved(pair, gear, profiles[gear], plane, sizes, level, tolerance, reach) for gear in (0, 1)
-        ]
-        cost = sum((gear.cost for gear in gears), cost)
-        mesh_error, fit_error = _errors(pair, (gears[0], gears[1]))
+        first, second = (
+            _fitted(gears, MeshedShape(shape, sizes, level), tolerance).scaled(pair.module, law)
+            for shape, law in zip(both, laws, strict=True)
+        )
+        mesh_error, fit_error = _errors(pair, (first, second))
         error = mesh_error + fit_error
         finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance))
         if refinements is not None or error <= tolerance or finer is None:
@@ -141,75 +137,49 @@ def compliance(
         message = (
             f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
         )
-    rings = gears[0].ring, gears[1].ring
-    started = watch.seconds
-    first, second = (tip_strips(*both) for both in zip(rings, profiles, strict=True))
-    cost = Cost(
-        watch.seconds,
-        sum(len(ring.inner) + len(ring.cut) for ring in rings),
-        parts={**cost.parts, "tips": watch.seconds - started},
-        counts={"annulus_unknowns": sum(ring.unknowns for ring in rings)},
-    )
-    return Compliance(
+    bodies = Compliance(
         pair,
         plane,
-        gears[0].fine,
-        gears[1].fine,
-        (first, second),
+        first.flexible,
+        second.flexible,
         level,
         sizes,
-        reach,
+        # every tooth that may touch together with another one, tip edges outside the path at both ends included
+        min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
         error,
-        cost,
+        Cost(0.0),
         converged,
         message,
         supports=held,
-        kept_rings=rings,
     )
+    tips = bodies.tips_of(gears) if tip_edges else None
+    parts = sum(gears.costs, Cost(0.0)).parts
+    counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}
+    cost = Cost(watch.seconds, first.unknowns + second.unknowns, parts=parts, counts=counts)
+    return replace(bodies, tip_strips=tips, cost=cost)
 
 
-def _solved(
-    pair: GearPair,
-    gear: int,
-    profile: ToothProfile,
-    plane: str,
-    sizes: Sizes,
-    level: int,
-    tolerance: float,
-    reach: int,
-) -> _Gear:
-    """Solve one gear on two nested meshes."""
-    from meshes import mesh_sector
-
-    watch = Stopwatch()
-    mesh = mesh_sector(profile, sizes, level)
-    meshed = watch.seconds
-    assert mesh.coarser is not None
-    law = PlaneElasticity.of(pair.materials[gear], plane)
-    rings = [ring_of(one, law) for one in (mesh.coarser, mesh)]
-    started = watch.seconds
-    # tip edges touch the flanks inside A..E too (fem.tip_contact): no flank is loaded below these ends
-    low = (pair.points.A, pair.line_of_action - pair.points.E)[gear]
-    local = float(hertz_indentation(0.1 * pair.module, law, pair.module))
+def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks:
+    """Solve one gear in modules and E*, with as many loads as the fit needs."""
+    local = float(hertz_indentation(0.1, meshed.shape.law, 1.0))
     for count in SAMPLES:
-        samples = sampled(rings[1], sample_places(profile, low, count), reach)
-        fine = gear_compliance(rings[1], profile, samples)
-        if fine.fit_error <= 0.1 * tolerance * (local + float(np.min(samples.own))):
+        found = gears.flanks(meshed, count)
+        least = local + float(np.min(found.flexible.own(found.rho)))
+        if found.flexible.fit_error <= 0.1 * tolerance * least:
             break
-    coarse = sampled(rings[0], samples.rho, reach)
-    own = Cost(watch.seconds, parts={"mesh": meshed, "solve": watch.seconds - started})
-    return _Gear(rings[1], fine, samples, coarse, sum((ring.cost for ring in rings), own))
+    return found
 
 
-def _errors(pair: GearPair, gears: tuple[_Gear, _Gear]) -> tuple[float, float]:
+def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks]) -> tuple[float, float]:
     """Errors by the mesh and by the fit, relative to the deflection of a pair, largest along the path."""
     rho1 = np.linspace(pair.points.A, pair.points.E, 60)
     own, change = np.zeros_like(rho1), np.zeros_like(rho1)
     for gear, rho in zip(gears, (rho1, pair.line_of_action - rho1), strict=True):
-        own += gear.fine.own(rho) + hertz_indentation(0.1 * pair.module, gear.fine.law, pair.module)
-        change += gear.change(rho)
+        flexible = gear.flexible
+        own += flexible.own(rho) + hertz_indentation(0.1 * pair.module, flexible.law, pair.module)
+        change += gear.change_at(rho)
     crossed = sum(gear.cross_change for gear in gears) / float(np.min(own))
-    fit = sum(gear.fine.fit_error for gear in gears) / float(np.min(own))
+    fit = sum(gear.flexible.fit_error for gear in gears) / float(np.min(own))
     return max(float(np.max(np.abs(change / own))), crossed) / (2**ORDER - 1), fit
 
 
@@ -219,6 +189,7 @@ def _finer(sizes: Sizes, level: int, error: float, tolerance: float) -> tuple[Si
         return None
     factor = (0.6 * tolerance / error) ** (1 / ORDER) if np.isfinite(error) else 0.5
     halvings = max(0, floor(-log2(factor) + 0.3))
+    factor = 2 ** (floor(STEPS * log2(factor)) / STEPS)
     if level + halvings > FINEST:
         return None
     return sizes.scaled(min(factor * 2**halvings, 1.0)), level + halvings

@@ -11,6 +11,7 @@ left; the hub (bore) is held.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -70,6 +71,19 @@ class Ring:
     def unknowns(self) -> int:
         """Unknowns of the whole annulus that this ring stands for."""
         return self.mesh.teeth * (len(self.inner) + len(self.cut) // 2)
+
+    def scaled(self, module: float, law: PlaneElasticity) -> Ring:
+        """Give a gear in modules and E* its size [m] and modulus; plane stiffness does not depend on size."""
+        modulus = law.plane_modulus
+        return replace(
+            self,
+            mesh=self.mesh.scaled(module),
+            law=law,
+            condensed=self.condensed.stiffer(modulus),
+            by_border=self.by_border * modulus,
+            schur=self.schur * modulus,
+            links=self.links.stiffer(modulus),
+        )
 
     @cached_property
     def inner_by_cut(self) -> Array:

@@ -71,6 +71,22 @@ class TipStrips:
     base_radius: float
     hub_windup: float
 
+    def scaled(self, module: float, law: PlaneElasticity) -> TipStrips:
+        """Give the tip of a gear in modules and E* its size [m] and modulus."""
+        modulus = law.plane_modulus
+        return TipStrips(
+            self.distance * module,
+            self.width * module,
+            self.rho * module,
+            self.kernel / modulus,
+            self.mixed / modulus,
+            self.tangential / modulus,
+            law,
+            module,
+            self.base_radius * module,
+            self.hub_windup / modulus,
+        )
+
     def leaning(self, angle: Array) -> Array:
         """Kernels for forces and displacements that lean from the inward normals away from the tip.
 

@@ -91,6 +91,17 @@ class Curve:
     at: Callable[[Array], Array]
     size: Callable[[Array], Array]
 
+    def scaled(self, factor: float) -> Curve:
+        """Curve of a gear that is larger by a factor; a parameter that is a length grows with it."""
+        stretch = factor if self.name.startswith(("flank", "side")) else 1.0
+        return Curve(
+            self.name,
+            self.start * stretch,
+            self.end * stretch,
+            lambda t: factor * self.at(t / stretch),
+            lambda points: factor * self.size(points / factor),
+        )
+
 
 def arc(name: str, radius: float, start: float, end: float, size: Callable[[Array], Array]) -> Curve:
     """Curve about the gear's axis, between polar angles [rad]."""

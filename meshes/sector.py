@@ -59,6 +59,37 @@ class SectorMesh:
         """Displacement components of the sector."""
         return 2 * len(self.points)
 
+    def scaled(self, factor: float) -> SectorMesh:
+        """Mesh of a gear that is larger by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            Of all lengths.
+
+        Examples
+        --------
+        >>> from gears import Gear, GearPair
+        >>> from meshes import mesh_sector
+        >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+        >>> mesh_sector(pair.teeth_profiles[0]).scaled(0.5).module
+        0.001
+        """
+        curves = {name: curve.scaled(factor) for name, curve in self.curves.items()}
+        parameters = {
+            name: t * (factor if name.startswith(("flank", "side")) else 1.0)
+            for name, t in self.parameters.items()
+        }
+        return replace(
+            self,
+            points=self.points * factor,
+            parameters=MappingProxyType(parameters),
+            curves=MappingProxyType(curves),
+            module=self.module * factor,
+            base_radius=self.base_radius * factor,
+            coarser=None if self.coarser is None else self.coarser.scaled(factor),
+        )
+
     def side_nodes(self, side: str) -> Integers:
         """Nodes of a cut to the neighbour (``"left"`` or ``"right"``) from the bore outwards."""
         nodes = np.unique(self.facets[f"side_{side}"])

@@ -78,16 +78,25 @@ def PLAN(run: Engine) -> Plan:
     "tooth compliance by finite elements",
     "pair material stiffness.plane",
     kept="gears meshes fem",
+    by_parts=True,
     of=plain_flanks,
     settings=_decided(lambda plan: {"compliance": plan.resolution.compliance}),
 )
 def BODIES(run: Engine) -> fem.Compliance:
-    """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges."""
+    """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges.
+
+    What the cache keeps are the gears: pairs of other mates, sizes or moduli have them too.
+    """
     scene = run.scene
     pair, tolerance = gear_pair(plain_flanks(scene)), run[PLAN].resolution.compliance
     with under_keys(scene.pair, "pair"):
         found = fem.compliance(
-            pair, tolerance=tolerance, plane=scene.stiffness.plane, supports=supports(scene)
+            pair,
+            tolerance=tolerance,
+            plane=scene.stiffness.plane,
+            supports=supports(scene),
+            tip_edges=scene.stiffness.contact_beyond_path,
+            kept=run.parts,
         )
     return believed(found, "tooth compliance")
 

@@ -43,6 +43,8 @@ class Stage(Generic[T]):
         What decisions of other stages hand to this one, as plain values; in the cache's key like `inputs`. Of a
         stage that is decided on it has no more than what was decided, so that a change elsewhere in the scene
         which leaves the decision as it was leaves the result in the cache.
+    by_parts : bool
+        Whether `compute` keeps parts of the result by `Engine.parts`, and the cache nothing of the whole.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Stage(Generic[T]):
     needs: tuple[Stage[Any], ...] = ()
     kept: tuple[str, ...] = ()
     settings: Settings = lambda engine: {}
+    by_parts: bool = False
 
 
 def stage(
@@ -62,12 +65,13 @@ def stage(
     kept: str = "",
     of: Callable[[Scene], Scene] = lambda scene: scene,
     settings: Settings = lambda engine: {},
+    by_parts: bool = False,
 ) -> Callable[[Callable[[Engine], T]], Stage[T]]:
     """Make a stage of the function that computes it.
 
     Parameters
     ----------
-    name, title, needs, settings
+    name, title, needs, settings, by_parts
         As of `Stage`.
     keys : str
         Sections of the scene, or single keys of them, that the result depends on, separated by blanks.
@@ -81,7 +85,7 @@ def stage(
         values = {key: reduce(getattr, key.split("."), of(scene)) for key in keys.split()}
         return {key: v.model_dump() if isinstance(v, Section) else v for key, v in values.items()}
 
-    return lambda compute: Stage(name, title, compute, inputs, needs, tuple(kept.split()), settings)
+    return lambda compute: Stage(name, title, compute, inputs, needs, tuple(kept.split()), settings, by_parts)
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,7 @@ class StageRun:
     seconds : float
         Time of this stage alone, without those it asked for [s].
     cached : bool
-        Whether the result was read from the cache.
+        Whether the result, or all kept parts that it asked for, were read from the cache.
     warnings : tuple of str
         What the ground floors warned of meanwhile.
     """
@@ -103,6 +107,34 @@ class StageRun:
     seconds: float
     cached: bool
     warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class KeptPart:
+    """Keeps parts of a stage's result in the cache, and notes which of them it held.
+
+    Attributes
+    ----------
+    cache : Cache
+    packages : tuple of str
+        Whose code decides the parts.
+    found : list of bool
+        Grows by one with each part asked for.
+    """
+
+    cache: Cache
+    packages: tuple[str, ...]
+    found: list[bool]
+
+    def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
+        """Part of a name with plain inputs, from the cache or computed."""
+        key = self.cache.key(name, inputs, self.packages)
+        value: T | None = self.cache.get(key)
+        self.found.append(value is not None)
+        if value is None:
+            value = compute()
+            self.cache.put(key, value)
+        return value
 
 
 @dataclass
@@ -115,6 +147,7 @@ class Engine:
     runs: dict[str, StageRun] = field(default_factory=dict)
     _values: dict[str, Any] = field(default_factory=dict)
     _elsewhere: list[float] = field(default_factory=list)
+    _parts: list[KeptPart] = field(default_factory=list)
 
     def __getitem__(self, stage: Stage[T]) -> T:
         """Return the result of a stage, computed when first asked for."""
@@ -140,11 +173,18 @@ class Engine:
         self.runs[name] = StageRun(name, title, time.perf_counter() - start, cached=False)
         return done
 
+    @property
+    def parts(self) -> KeptPart:
+        """Keeper of parts of the running stage's result that other scenes have too, such as a gear of another pair."""
+        return self._parts[-1]
+
     def _obtain(self, stage: Stage[T]) -> T:
         start = time.perf_counter()
         self._elsewhere.append(0.0)
-        key = self.cache.key(stage.name, self.inputs(stage), packages_of(stage)) if stage.kept else ""
-        value: T | None = self.cache.get(key) if stage.kept else None
+        packages, whole_kept = packages_of(stage), bool(stage.kept) and not stage.by_parts
+        self._parts.append(KeptPart(self.cache, packages, []))
+        key = self.cache.key(stage.name, self.inputs(stage), packages) if whole_kept else ""
+        value: T | None = self.cache.get(key) if whole_kept else None
         cached = value is not None
         caught: list[warnings.WarningMessage] = []
         if value is None:
@@ -152,8 +192,10 @@ class Engine:
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 value = stage.compute(self)
-            if stage.kept:
+            if whole_kept:
                 self.cache.put(key, value)
+        found = self._parts.pop().found
+        cached = cached or (bool(found) and all(found))
         whole = time.perf_counter() - start
         own = whole - self._elsewhere.pop()
         if self._elsewhere:

@@ -150,8 +150,9 @@ def test_results_travel_between_processes(article_pair, article_bodies):
 
 def test_factorised_gears_are_kept_in_the_process_and_come_back_after_travel(article_bodies):
     assert article_bodies.rings() is article_bodies.rings()
+    fem.forget_gears()
     back = pickle.loads(pickle.dumps(article_bodies))
-    assert back.kept_rings is None
+    assert len(pickle.dumps(article_bodies)) < 1e6
     for kept, again in zip(article_bodies.rings(), back.rings(), strict=True):
         np.testing.assert_array_equal(again.mesh.points, kept.mesh.points)
         np.testing.assert_array_equal(again.schur, kept.schur)
@@ -166,8 +167,9 @@ def test_all_faults_at_once(article_pair):
     assert [fault.where for fault in caught.value.faults] == ["force", "rho1"]
 
 
-def test_cost_says_what_was_solved(article_bodies):
-    cost = article_bodies.cost
+def test_cost_says_what_was_solved(article_pair):
+    fem.forget_gears()
+    cost = fem.compliance(article_pair, tip_edges=True).cost
     assert {"mesh", "assemble", "factor", "condense", "solve", "tips"} <= set(cost.parts)
     assert sum(cost.parts.values()) <= cost.seconds
     assert cost.counts["annulus_unknowns"] > 30 * cost.unknowns

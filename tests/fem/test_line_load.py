@@ -197,7 +197,7 @@ def test_wedge_coefficient(degrees, number):
 
 
 def test_fit_along_the_flank(ring, loads):
-    places = sample_places(PROFILE, PAIR.points.A, 20)
+    places = sample_places(PROFILE, 20)
     flexible = gear_compliance(ring, PROFILE, sampled(ring, places))
     own = loads.regular_at_load()
     least = own.min() + hertz_indentation(0.1 * PROFILE.module, LAW, PROFILE.module)

@@ -187,3 +187,25 @@ def test_sampling_error_bounds_the_error_of_a_step():
         ]
         estimate = sampling_error(np.where(phase < 0.37, 2.0, 1.0))
         assert 0.5 < estimate / np.sqrt(np.mean(np.square(errors))) < 2.5
+
+
+def test_parts_of_a_result_are_kept_for_other_scenes(tmp_path):
+    computed = []
+
+    def compute(run: Engine) -> list[str]:
+        def part(name: str) -> str:
+            return run.parts("part", {"of": name}, lambda: computed.append(name) or name.upper())
+
+        return [part(name) for name in run.scene.title.split()]
+
+    stage = Stage("whole", "whole", compute, lambda s: {}, (), ("gears",), by_parts=True)
+
+    def run(title: str) -> Engine:
+        engine = Engine(scene().model_copy(update={"title": title}), Cache(tmp_path))
+        assert engine[stage] == title.upper().split()
+        return engine
+
+    assert not run("a b").runs["whole"].cached
+    assert not run("b c").runs["whole"].cached
+    assert run("c a").runs["whole"].cached
+    assert computed == ["a", "b", "c"]

@@ -40,7 +40,7 @@ def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypat
             tip, "RESOLVED", min(0.01, 0.2 * width / article_pair.module) if width > 1e-6 else 0.01
         )
         tips = [tip.tip_strips(*both) for both in zip(rings, article_pair.teeth_profiles, strict=True)]
-        cycle = fem.mesh_cycle(article_pair, 600.0, 200, replace(bodies, tips=tuple(tips)))
+        cycle = fem.mesh_cycle(article_pair, 600.0, 200, replace(bodies, tip_strips=tuple(tips)))
         k, edge = at_pitch_point(article_pair, cycle)
         stiffness.append(k)
         force.append(edge)

@@ -1,0 +1,124 @@
+"""A gear in modules and E*: all that decides its flexibility, and nothing else.
+
+In lengths over the module and stresses over E* the plane problem of a gear knows its shape, the radius at which it is
+held and nu* alone: neither module nor modulus, face width, load or mate. A displacement per line load, u E*, is a
+number of the shape; logarithms count lengths in modules.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from math import ceil
+from typing import TYPE_CHECKING, Any
+
+from fem.elasticity import PlaneElasticity
+from gears import BasicRack, Gear
+
+if TYPE_CHECKING:
+    from gears import GearPair, ToothProfile
+    from meshes import Sizes
+
+__all__ = ["GearShape", "MeshedShape", "shapes"]
+
+DIGITS = 12
+"""Of lengths over the module: gears that differ in size alone have the same numbers, whatever the last bits are."""
+
+
+@dataclass(frozen=True)
+class GearShape:
+    """One gear, free of size and modulus.
+
+    Attributes
+    ----------
+    gear : gears.Gear
+        All lengths in modules, the bore where the gear is held; without relief, which no mesh shows.
+    rack : gears.BasicRack
+    poisson : float
+        nu*, in which plane strain and plane stress are one.
+    """
+
+    gear: Gear
+    rack: BasicRack
+    poisson: float
+
+    @property
+    def profile(self) -> ToothProfile:
+        """Tooth of module 1."""
+        from gears.profile import generate
+
+        found = generate(self.gear, 1.0, self.rack)
+        assert found is not None  # the pair that it comes from has teeth
+        return found
+
+    @property
+    def law(self) -> PlaneElasticity:
+        """Elasticity with E* = 1."""
+        return PlaneElasticity("stress", 1.0, self.poisson)
+
+    @property
+    def reach(self) -> int:
+        """Neighbours that may be in contact together with a tooth, whatever the mate."""
+        low, high = self.profile.flank_rho
+        base_pitch = self.profile.pitch_angle * self.profile.base_radius
+        return ceil((high - low) / base_pitch) + 1
+
+
+@dataclass(frozen=True)
+class MeshedShape:
+    """A gear's shape and the mesh in use, which is solved together with the one that it refines.
+
+    Attributes
+    ----------
+    shape : GearShape
+    sizes : meshes.Sizes
+        Before the mesh is refined.
+    refinements : int
+    """
+
+    shape: GearShape
+    sizes: Sizes
+    refinements: int
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as numbers and names, for keys of caches."""
+
+        def numbers(part: Any) -> Any:
+            if isinstance(part, dict):
+                return {name: numbers(value) for name, value in part.items()}
+            return part if part is None or isinstance(part, str) else float(part)
+
+        found: dict[str, Any] = numbers(asdict(self))
+        return found
+
+
+def shapes(
+    pair: GearPair, profiles: tuple[ToothProfile, ToothProfile], plane: str
+) -> tuple[GearShape, GearShape]:
+    """Pinion and wheel of a pair, each held at the bore of its profile.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    profiles : (gears.ToothProfile, gears.ToothProfile)
+        Whose bores are where the gears are held.
+    plane : {"strain", "stress"}
+    """
+
+    def modules(length: float) -> float:
+        return float(f"{length / pair.module:.{DIGITS}g}")
+
+    first, second = (
+        GearShape(
+            replace(
+                gear,
+                bore_radius=modules(profile.bore_radius),
+                thickness_allowance=modules(gear.thickness_allowance),
+                tip_chamfer=modules(gear.tip_chamfer),
+                tip_relief=None,
+            ),
+            pair.rack,
+            PlaneElasticity.of(material, plane).plane_poisson,
+        )
+        for gear, profile, material in zip((pair.pinion, pair.wheel), profiles, pair.materials, strict=True)
+    )
+    return first, second

@@ -1,0 +1,163 @@
+"""Gears that this process has solved, in modules and E*, to be used again by any pair that has one of them.
+
+A study of N pinions and M wheels so costs N + M gears, and equal gears of a pair are solved once. What is kept is
+small and refuses writing; factors are large and kept for the two gears in use alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+
+from base import Array, Cost, Stopwatch, record
+from fem.elasticity import PlaneElasticity
+from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
+from fem.gear_shape import MeshedShape
+from fem.memo import Memo, read_only
+from fem.ring import Ring, ring_of
+from fem.tip_strips import TipStrips, tip_strips
+
+__all__ = ["Gears", "Kept", "SolvedFlanks", "forget_gears"]
+
+T = TypeVar("T")
+
+MOST_RECORDS, MOST_RINGS = 512, 2
+
+_RECORDS: Memo[Any] = Memo(MOST_RECORDS)
+_RINGS: Memo[tuple[Ring, Ring]] = Memo(MOST_RINGS)
+
+
+def forget_gears() -> None:
+    """Forget all gears that this process has solved, such as before a measurement of what they cost.
+
+    Examples
+    --------
+    >>> from fem import forget_gears
+    >>> forget_gears()
+    """
+    _RECORDS.clear()
+    _RINGS.clear()
+
+
+class Kept(Protocol):
+    """Where a caller keeps parts of a result beyond the process, as `fem.compliance` asks for them."""
+
+    def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
+        """Give what was kept under a name for these plain inputs; else compute it, and keep it."""
+
+
+@record
+class SolvedFlanks:
+    """A gear's flanks on one mesh, and what the coarser one differs by.
+
+    Attributes
+    ----------
+    flexible : GearCompliance
+    rho : (n,) array
+        Curvature radii of the loads [m].
+    change : (n,) array
+        By how much ``own`` grew there from the coarser mesh [m per N/m].
+    cross_change : float
+        Largest change of a cross term [m per N/m].
+    unknowns, annulus_unknowns : int
+        Of the sector, and of the annulus that it stands for.
+    """
+
+    flexible: GearCompliance
+    rho: Array
+    change: Array
+    cross_change: float
+    unknowns: int
+    annulus_unknowns: int
+
+    def change_at(self, rho: Array) -> Array:
+        """Growth of ``own`` from the coarser mesh at rho (n,) [m] [m per N/m]."""
+        return np.interp(rho, self.rho, self.change)
+
+    def scaled(self, module: float, law: PlaneElasticity) -> SolvedFlanks:
+        """Give the flanks of a gear in modules and E* their size [m] and modulus."""
+        return SolvedFlanks(
+            self.flexible.scaled(module, law),
+            self.rho * module,
+            self.change / law.plane_modulus,
+            self.cross_change / law.plane_modulus,
+            self.unknowns,
+            self.annulus_unknowns,
+        )
+
+
+class Gears:
+    """Gives solved gears in modules and E*, and notes what those cost that it had to solve.
+
+    Parameters
+    ----------
+    kept : Kept, optional
+        Asked for records that this process does not have.
+
+    Attributes
+    ----------
+    costs : list of Cost
+    """
+
+    def __init__(self, kept: Kept | None = None) -> None:
+        self.kept = kept
+        self.costs: list[Cost] = []
+
+    def flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
+        """Flanks with loads at a number of places."""
+        return self._record("flanks", meshed, samples, lambda: self._flanks(meshed, samples))
+
+    def tips(self, meshed: MeshedShape) -> TipStrips:
+        """Answer of the tip edges."""
+        return self._record("tips", meshed, 0, lambda: self._tips(meshed))
+
+    def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
+        """Factorised gears, the coarser one first."""
+        return _RINGS.obtain(meshed, lambda: self._rings(meshed))
+
+    def _record(self, name: str, meshed: MeshedShape, samples: int, compute: Callable[[], T]) -> T:
+        kept = self.kept
+
+        def missing() -> T:
+            if kept is None:
+                return compute()
+            return kept(f"gear {name}", {"gear": meshed.plain(), "samples": samples}, compute)
+
+        found: T = _RECORDS.obtain((name, meshed, samples), lambda: read_only(missing()))
+        return found
+
+    def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
+        from meshes import mesh_sector
+
+        watch = Stopwatch()
+        mesh = mesh_sector(meshed.shape.profile, meshed.sizes, meshed.refinements)
+        assert mesh.coarser is not None
+        own = Cost(watch.seconds, parts={"mesh": watch.seconds})
+        coarse, fine = (ring_of(one, meshed.shape.law) for one in (mesh.coarser, mesh))
+        self.costs += [own, coarse.cost, fine.cost]
+        return coarse, fine
+
+    def _flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
+        coarse, fine = self.rings(meshed)
+        watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
+        places = sample_places(profile, samples)
+        there, before = sampled(fine, places, reach), sampled(coarse, places, reach)
+        found = SolvedFlanks(
+            gear_compliance(fine, profile, there),
+            places,
+            there.own - before.own,
+            float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
+            len(fine.inner) + len(fine.cut),
+            fine.unknowns,
+        )
+        self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
+        return found
+
+    def _tips(self, meshed: MeshedShape) -> TipStrips:
+        ring = self.rings(meshed)[1]
+        watch = Stopwatch()
+        found = tip_strips(ring, meshed.shape.profile)
+        self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
+        return found
