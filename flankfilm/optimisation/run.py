@@ -104,9 +104,10 @@ def _judged(task: Task, results: list[RowResult]) -> tuple[Array, Array]:
         sign * (values[:, task.outputs.index(name)] - bound) / (abs(bound) or 1.0)
         for name, sign, bound in task.limits
     ]
-    both = values[:, : len(task.signs)] * np.array(task.signs), np.array(limits).reshape(-1, len(results)).T
-    objectives, kept = (np.where(np.isfinite(one), one, FAILED) for one in both)
-    return objectives, kept
+    objectives = values[:, : len(task.signs)] * np.array(task.signs)
+    # the search asks for no point at all where none keeps the limits
+    kept = np.array(limits).reshape(len(limits), len(results)).T
+    return np.where(np.isfinite(objectives), objectives, FAILED), np.where(np.isfinite(kept), kept, FAILED)
 
 
 def optimise(

@@ -41,7 +41,7 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
     def limits(x: Array) -> Array:
-        return evaluate(np.atleast_2d(x.T), tolerance)[1].T.reshape(-1, *x.shape[1:])
+        return evaluate(np.atleast_2d(x.T), tolerance)[1].T.reshape(len(task.limits), *x.shape[1:])
 
     # the stubs know neither objectives of many points at once nor plain lists of bounds
     evolve: Any = differential_evolution
