@@ -4,8 +4,9 @@ from .attraction import basins as basins
 from .boundary import BasinBoundary as BasinBoundary
 from .boundary import basin_boundary as basin_boundary
 from .branch import Branch as Branch
+from .branch import SpecialPoint as SpecialPoint
 from .continuation import continue_branch as continue_branch
-from .continuation import follow_branch as follow_branch
+from .continuation import doubled_orbit as doubled_orbit
 from .crises import Crisis as Crisis
 from .crises import boundary_crises as boundary_crises
 from .crises import boundary_crisis as boundary_crisis
@@ -39,14 +40,12 @@ from .multi_sweeps import MultiSweep as MultiSweep
 from .multi_sweeps import multi_sweep as multi_sweep
 from .oscillator import GearOscillator as GearOscillator
 from .protocol import MapResult as MapResult
-from .robustness import special_sensitivities as special_sensitivities
 from .scaling import Scaling as Scaling
 from .shooting import Orbit as Orbit
 from .shooting import find_orbit as find_orbit
-from .special import SpecialPoint as SpecialPoint
 from .stepwise.oscillator import SmoothOscillator as SmoothOscillator
 from .stepwise.oscillator import restoring_force as restoring_force
 from .stiffness import FourierStiffness as FourierStiffness
 from .sweeps import SweepResult as SweepResult
 from .sweeps import sweep as sweep
-from .switching import doubled_orbit as doubled_orbit
+from .tracking import special_sensitivities as special_sensitivities

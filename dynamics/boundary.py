@@ -14,7 +14,7 @@ from dynamics.homes import Homes
 from dynamics.limits import CONFIDENCE, RADIUS
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
-from dynamics.regions import Region, checked_region
+from dynamics.states import Region, checked_region
 
 __all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
 

@@ -1,39 +1,47 @@
-"""What stepping along a branch of periodic orbits asks of a flow."""
+"""What stepping along a curve of periodic orbits asks of a flow."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, ClassVar, Self
 
 import numpy as np
+import numpy.typing as npt
 
 from base import Array, Faults
+from dynamics.branch import SpecialPoint
 from dynamics.limits import MAX_POINTS, STEP, ordered
-from dynamics.special import SpecialPoint
 
-__all__ = ["BranchProblem", "PlanePoint", "Steps", "checked_range", "match_extrema"]
+__all__ = ["BranchProblem", "MapPoint", "Steps", "checked_range", "match_extrema"]
 
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
 
-class PlanePoint:
-    """What points of branches have in common.
+@dataclass(frozen=True, eq=False)
+class MapPoint:
+    """A state and its image under the map of n periods, at certain values of the parameters.
 
-    Attributes
+    Parameters
     ----------
     u : ndarray, shape (2 + m,)
-        X and V over the scale, each parameter as a fraction of its range.
+        Unknowns: X and V over the scale, each parameter as a fraction of its range.
     values : ndarray, shape (m,)
         The parameters.
+    period : float
+        Excitation period, in tau.
+    image : ndarray, shape (2,)
+        Image of X and V over the scale.
     derivative : ndarray, shape (2, 2 + m)
         Of the image with respect to the unknowns; its first two columns are the Jacobian.
     determinant : float
         Of the Jacobian.
     counts : tuple of int
         p and q.
+    levels : ndarray, shape (1,) or (2,)
+        Values of X at which crossings are counted: D and, where there is a second flank, -D.
     extrema : ndarray, shape (k, 3)
         Phase in [0, 1) of the orbit's period, X, X'' at every extremum of X.
     iterations : int
@@ -42,11 +50,14 @@ class PlanePoint:
 
     u: Array
     values: Array
+    period: float
+    image: Array
     derivative: Array
     determinant: float
     counts: tuple[int, int]
+    levels: Array
     extrema: Array
-    iterations: int
+    iterations: int = 0
 
     @property
     def value(self) -> float:
@@ -68,6 +79,11 @@ class PlanePoint:
         """Product of (1 + multiplier): zero at a period doubling."""
         return 1.0 + self.determinant + self.trace
 
+    @property
+    def torus(self) -> float:
+        """Product of the multipliers less 1: zero at a Neimark-Sacker point, if they are a pair."""
+        return self.determinant - 1.0
+
     def tangent(self, along: Array) -> Array:
         """Unit vector along the branch of one parameter, turned to the side of `along`."""
         (a, b, c), (d, e, f) = self.derivative.tolist()
@@ -79,7 +95,7 @@ class PlanePoint:
         return normal / (size if normal @ along >= 0.0 else -size)
 
 
-def match_extrema(a: PlanePoint, b: PlanePoint) -> list[tuple[int, int]]:
+def match_extrema(a: MapPoint, b: MapPoint) -> list[tuple[int, int]]:
     """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
     if len(a.extrema) == 0 or len(b.extrema) == 0:
         return []
@@ -90,60 +106,89 @@ def match_extrema(a: PlanePoint, b: PlanePoint) -> list[tuple[int, int]]:
     return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
 
 
-class BranchProblem(Protocol):
-    """A flow seen by the steps; its points and crossings are its own.
+@dataclass(frozen=True, eq=False)
+class BranchProblem(ABC):
+    """Periodic orbits of n periods in dependence on one parameter or several.
 
-    Attributes
+    Parameters
     ----------
-    parameter : str
-        What is varied.
+    oscillator : Oscillator
+        What moves; its own values of the parameters are not used.
+    parameters : tuple of str
+        As in `Oscillator.with_parameter`.
     periods : int
-        Of the orbits.
+        n.
+    low, high : ndarray, shape (m,)
+        Range of each parameter.
     scale : float
-        Size of the motion.
-    maps : int
-        Period maps that a Newton iteration takes.
+        Size of the motion, by which the state is measured.
     """
 
-    @property
-    def parameter(self) -> str: ...  # noqa: D102
+    oscillator: Any
+    parameters: tuple[str, ...]
+    periods: int
+    low: Array
+    high: Array
+    scale: float
+
+    maps: ClassVar = 1
+    """Period maps that a Newton iteration takes."""
 
     @property
-    def periods(self) -> int: ...  # noqa: D102
+    def parameter(self) -> str:
+        """The first parameter."""
+        return self.parameters[0]
 
-    @property
-    def scale(self) -> float: ...  # noqa: D102
+    def values(self, u: Array) -> Array:
+        """Parameters of the unknowns."""
+        return np.asarray(self.low + u[2:] * (self.high - self.low))
 
-    @property
-    def maps(self) -> int: ...  # noqa: D102
+    def at(self, u: Array) -> Any:
+        """Oscillator of the unknowns.
 
-    def unknowns(self, state: Array, value: float) -> Array:
-        """Unknowns of a state and a value of the parameter."""
-        ...
+        Raises
+        ------
+        InputError
+            If a value is not allowed.
+        """
+        here = self.oscillator
+        for name, value in zip(self.parameters, self.values(u), strict=True):
+            here = here.with_parameter(name, float(value))
+        return here
 
+    def unknowns(self, state: Array, values: npt.ArrayLike) -> Array:
+        """Unknowns of a state and the parameter values."""
+        fraction = (np.atleast_1d(np.asarray(values, dtype=np.float64)) - self.low) / (self.high - self.low)
+        return np.concatenate([np.asarray(state) / self.scale, fraction])
+
+    @abstractmethod
     def correct(self, guess: Array, across: Array) -> Any:
         """Orbit in the plane across . (u - guess) = 0; None if Newton's method does not arrive."""
-        ...
+
+    @abstractmethod
+    def states(self, point: Any) -> Array:
+        """X and V over the scale after 1, 2, .. n periods, shape (n, 2)."""
 
     def phases(self, point: Any) -> list[list[float]]:
-        """Unknowns of a point, its orbit taken from each excitation period on."""
-        ...
+        """Unknowns of a point, its orbit taken from each excitation period on, one row each."""
+        rest = np.broadcast_to(point.u[2:], (self.periods, len(point.u) - 2))
+        rows: list[list[float]] = np.hstack([np.roll(self.states(point), 1, axis=0), rest]).tolist()
+        return rows
 
     def half_way(self, point: Any) -> Array:
-        """X and V over the scale after half the orbit's period; asked for even periods only."""
-        ...
-
-    def crossings(self, last: Any, new: Any) -> tuple[Sequence[Any], bool]:
-        """What changes sign between two neighbours, and whether that explains the change of the counts."""
-        ...
+        """X and V over the scale after half the orbit's period; n must be even."""
+        return np.asarray(self.states(point)[self.periods // 2 - 1])
 
     def locate(self, last: Any, new: Any, crossing: Any) -> tuple[SpecialPoint | None, bool]:
-        """Special point of a crossing, None if it turns out to be none; and whether the search arrived."""
-        ...
+        """Special point of a crossing, None if it turns out to be none; and whether the search arrived.
 
-    def magnified(self, factor: float) -> BranchProblem | None:
-        """The same with a larger scale; None if it cannot be changed."""
-        ...
+        Where orbits are not followed over one parameter nothing is located.
+        """
+        return None, False
+
+    def magnified(self, factor: float) -> Self:
+        """The same with a larger scale."""
+        return replace(self, scale=factor * self.scale)
 
 
 @dataclass(frozen=True)
@@ -171,10 +216,10 @@ class Steps:
 
 
 def checked_range(
-    faults: Faults, bounds: tuple[float, float], parameter: str, value: float
+    faults: Faults, where: str, bounds: tuple[float, float], start: str, parameter: str, value: float
 ) -> tuple[float, float]:
-    """Bounds as numbers; notes if they are none, out of order, or do not hold the value."""
-    low, high = ordered(faults, "bounds", bounds)
+    """Bounds as numbers; notes if they are none, out of order, or do not hold the value of the start."""
+    low, high = ordered(faults, where, bounds)
     if not low <= value <= high:
-        faults.add("orbit", value, f"must have its {parameter} within bounds", "widen the bounds")
+        faults.add(start, value, f"must have its {parameter} within bounds", "widen the bounds")
     return low, high

@@ -1,28 +1,36 @@
-"""Continuation of a branch of periodic orbits in one parameter, through folds and grazings."""
+"""Branches of periodic orbits over a parameter, through folds and grazings, and on from period doublings."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from base import Array, Faults
+from base import Faults
 from dynamics.arclength import follow
-from dynamics.branch import Branch
+from dynamics.branch import Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, Steps, checked_range
-from dynamics.corrector import OrbitProblem, Point
-from dynamics.crossings import Crossing, find_crossings, locate
-from dynamics.flows import unserved
+from dynamics.crossings import ExactBranch
+from dynamics.flows import flow_of, unserved
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Oscillator
-from dynamics.shooting import Orbit
-from dynamics.special import SpecialPoint
+from dynamics.shooting import Orbit, find_orbit
+from dynamics.states import scale_of
 from dynamics.stepwise.flow import TOLERANCE
 from dynamics.stepwise.oscillator import SmoothOscillator
-from dynamics.stepwise.problem import FlowProblem, PeriodMap
+from dynamics.stepwise.problem import FlowProblem
 
-__all__ = ["ExactBranch", "continue_branch", "follow_branch", "orbits_over"]
+__all__ = ["continue_branch", "doubled_orbit", "orbits_over"]
+
+AMPLITUDES = (
+    1e-3,
+    3e-3,
+    1e-2,
+    3e-4,
+    3e-2,
+    1e-4,
+    0.1,
+)  # of a doubled orbit's start, over the size of the motion
 
 
 def continue_branch(
@@ -80,87 +88,14 @@ def continue_branch(
     faults = Faults()
     steps = Steps(step, max_step, min_step, max_points)
     value = orbit.oscillator.get(parameter)
-    low, high = checked_range(faults, bounds, parameter, value)
+    low, high = checked_range(faults, "bounds", bounds, "orbit", parameter, value)
     if not orbit.converged:
         faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
     steps.check(faults)
     faults.raise_if_any()
-    scale = max(float(np.max(np.abs(orbit.state))), orbit.oscillator.floor)
+    scale = scale_of(orbit.oscillator, orbit.state)
     problem = orbits_over(orbit.oscillator, parameter, orbit.periods, (low, high), scale, orbit.tolerance)
     return follow(problem, orbit.state, value, steps, progress)
-
-
-def follow_branch(
-    problem: PeriodMap,
-    state: Array,
-    value: float,
-    steps: tuple[float, float, float] = (0.005, 0.02, 1e-8),
-    *,
-    max_points: int = 5000,
-    progress: Callable[[int, float], None] | None = None,
-) -> Branch:
-    """Do the same for any `PeriodMap`, from a periodic orbit at a value of its parameter.
-
-    Parameters
-    ----------
-    problem : PeriodMap
-        The map.
-    state : ndarray, shape (2,)
-        X and V of the orbit.
-    value : float
-        Of the parameter, there.
-    steps : tuple of float
-        First, largest and smallest step, as of `continue_branch`.
-    max_points : int
-        Points in each direction.
-    progress : callable, optional
-        Called with the number of points and the parameter value.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or Newton's method does not arrive at the start.
-
-    Examples
-    --------
-    >>> from dynamics import FourierStiffness, PowerContact, SmoothOscillator, find_orbit
-    >>> from dynamics.continuation import orbits_over
-    >>> law = PowerContact(stiffness=FourierStiffness(1.0), half_backlash=0.2)
-    >>> orbit = find_orbit(SmoothOscillator(law, 0.05, 0.1, 0.02, 0.5), (0.3, 0.0), tolerance=1e-9)
-    >>> problem = orbits_over(orbit.oscillator, "frequency", 1, (0.49, 0.51), scale=0.3, tolerance=1e-9)
-    >>> follow_branch(problem, orbit.state, 0.5).converged
-    True
-    """
-    faults = Faults()
-    chosen = Steps(*steps, max_points)
-    chosen.check(faults)
-    faults.raise_if_any()
-    return follow(problem, state, value, chosen, progress)
-
-
-@dataclass(frozen=True, eq=False)
-class ExactBranch(OrbitProblem):
-    """Orbits of the exact flow over one parameter, as `dynamics.arclength` takes them."""
-
-    maps = 3
-
-    @property
-    def parameter(self) -> str:
-        """What is varied."""
-        return self.parameters[0]
-
-    def crossings(self, last: Point, new: Point) -> tuple[list[Crossing], bool]:
-        """Changes of sign between neighbours."""
-        return find_crossings(self, last, new)
-
-    def locate(self, last: Point, new: Point, crossing: Crossing) -> tuple[SpecialPoint | None, bool]:
-        """Special point of a crossing."""
-        point = locate(self, last, new, crossing)
-        return point, point is not None
-
-    def magnified(self, factor: float) -> ExactBranch:
-        """With a larger scale."""
-        return replace(self, scale=factor * self.scale)
 
 
 def orbits_over(
@@ -188,10 +123,75 @@ def orbits_over(
     tolerance : float, optional
         Of a step of the stepwise flow; tables of the exact flow are always the full ones.
     """
+    low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
     if isinstance(oscillator, GearOscillator):
-        low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
         return ExactBranch(oscillator, (parameter,), periods, low, high, scale)
     if isinstance(oscillator, SmoothOscillator):
         given = TOLERANCE if tolerance is None else tolerance
-        return FlowProblem(oscillator, parameter, periods, *bounds, scale, given)
+        return FlowProblem(oscillator, (parameter,), periods, low, high, scale, given)
     raise unserved(oscillator)
+
+
+def doubled_orbit(
+    oscillator: Oscillator,
+    parameter: str,
+    point: SpecialPoint,
+    bounds: tuple[float, float],
+    *,
+    tolerance: float | None = None,
+) -> Orbit | None:
+    """Orbit of twice the period next to a period doubling, or None if none is found.
+
+    The doubled orbit leaves the point along the eigenvector of the multiplier -1. A small distance along it is held,
+    and the parameter is one of the unknowns, so that it does not matter to which side the doubled branch goes.
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+        The oscillator; its value of the parameter is not used.
+    parameter : str
+        One of its `parameters`.
+    point : SpecialPoint
+        A period doubling on a branch in this parameter.
+    bounds : tuple of float
+        Range of the parameter.
+    tolerance : float, optional
+        Of the flow, as of `find_orbit`.
+
+    Raises
+    ------
+    InputError
+        If the point is not a period doubling.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, doubled_orbit, find_orbits
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.95, half_backlash=0.2)
+    >>> (orbit,) = find_orbits(osc, (1,)).orbits
+    >>> (doubling,) = continue_branch(orbit, "frequency", (0.88, 0.96)).special("period-doubling")
+    >>> doubled_orbit(osc, "frequency", doubling, (0.88, 0.96)).label
+    '2-2-0'
+    """
+    faults = Faults()
+    if point.kind != "period-doubling":
+        faults.add("point", point.kind, "must be a period-doubling", "take one from Branch.special")
+    faults.raise_if_any()
+    n = point.periods
+    scale = scale_of(oscillator, point.state)
+    problem = orbits_over(oscillator, parameter, 2 * n, bounds, scale, tolerance)
+    here = oscillator.with_parameter(parameter, point.parameter)
+    values, vectors = np.linalg.eig(flow_of(here, tolerance).follow(point.state, n).jacobian)
+    along = np.append(np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]), 0.0)
+    along /= np.linalg.norm(along)
+    origin = problem.unknowns(point.state, point.parameter)
+    for amplitude in AMPLITUDES:
+        found = problem.correct(origin + amplitude * along, along)
+        if found is None or not 0.0 <= found.u[2] <= 1.0 or abs(found.u[2] - origin[2]) > 0.1:
+            continue
+        if float(np.max(np.abs(problem.half_way(found) - found.u[:2]))) < 0.5 * amplitude:
+            continue  # the orbit of half the period
+        there = oscillator.with_parameter(parameter, found.value)
+        orbit = find_orbit(there, found.u[:2] * scale, periods=2 * n, tolerance=tolerance)
+        if orbit.converged and orbit.periods == 2 * n:
+            return orbit
+    return None

@@ -13,9 +13,9 @@ from base import Cost, Faults, Stopwatch, quantity, record
 from dynamics.branch import Branch
 from dynamics.continuation import continue_branch
 from dynamics.diagrams import Diagram
+from dynamics.homoclinic import HomoclinicSearch
 from dynamics.limits import ordered
 from dynamics.manifolds import is_direct_saddle
-from dynamics.passing import Passing
 from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit
 from dynamics.sweeps import sweep
@@ -133,7 +133,7 @@ def boundary_crisis(
     if not runs:
         faults.add("saddle", saddle.label, "must exist over a range of the bounds", "narrow the bounds")
     faults.raise_if_any()
-    search = Passing(saddle.oscillator, branch, runs[0], number, longest)
+    search = HomoclinicSearch(saddle.oscillator, branch, runs[0], number, longest)
     low, high = max(low, float(search.values[0])), min(high, float(search.values[-1]))
     ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
@@ -201,7 +201,7 @@ def boundary_crises(
     runs = [(branch, run) for branch in diagram.branches if branch.periods <= most for run in _runs(branch)]
     found = []
     for done, (branch, run) in enumerate(runs, start=1):
-        search = Passing(diagram.oscillator, branch, run, some, longest)
+        search = HomoclinicSearch(diagram.oscillator, branch, run, some, longest)
         low, high = float(search.values[0]), float(search.values[-1])
         looked = max(LEAST, math.ceil((high - low) / spacing) + 1)
         at = np.linspace(low, high, looked)[1:-1]  # at its ends a saddle is none
@@ -216,7 +216,7 @@ def boundary_crises(
     return sorted(found, key=lambda c: c.parameter)
 
 
-def _again(search: Passing, bounds: tuple[float, float], side: int) -> Crisis | None:
+def _again(search: HomoclinicSearch, bounds: tuple[float, float], side: int) -> Crisis | None:
     """Close in with more points, if the change of sign is still there."""
     watch = Stopwatch()
     fine = replace(search, points=4 * search.points, periods=0)
@@ -225,7 +225,11 @@ def _again(search: Passing, bounds: tuple[float, float], side: int) -> Crisis | 
 
 
 def _closed_in(
-    search: Passing, bounds: tuple[float, float], ends: tuple[float, float], side: int, watch: Stopwatch
+    search: HomoclinicSearch,
+    bounds: tuple[float, float],
+    ends: tuple[float, float],
+    side: int,
+    watch: Stopwatch,
 ) -> Crisis:
     """Root of the overshoot, and the motions on both sides of it."""
     a, b, jump, steps = search.first(bounds, side, 0 if ends[0] < 0.0 else 1)
@@ -241,7 +245,7 @@ def _closed_in(
     return Crisis(at, cost, message, root, side, ends, before, after, abs(b - a) / abs(root), good)
 
 
-def _motion(search: Passing, value: float, side: int) -> str:
+def _motion(search: HomoclinicSearch, value: float, side: int) -> str:
     """Label of the motion that a branch of the unstable manifold leads to."""
     here = search.oscillator.with_parameter(search.parameter, value)
     start = search.beside(value, side)

@@ -8,16 +8,14 @@ import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.branch import KINDS, Branch
+from dynamics.branch import KINDS, Branch, SpecialPoint, Stretch, of_kind, stretches
+from dynamics.branch_tree import BranchTree, Origin
 from dynamics.finding import find_orbits
-from dynamics.gathering import Gathering, Origin
-from dynamics.labelling import Stretch, stretches
 from dynamics.limits import ordered
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.shooting import find_orbit
-from dynamics.special import SpecialPoint, of_kind
 
 __all__ = ["Diagram", "Origin", "diagram"]
 
@@ -161,7 +159,7 @@ def diagram(
     steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
     most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     faults.raise_if_any()
-    builder = Gathering(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
+    builder = BranchTree(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
     unsure = []
     for k in range(number):
         value = low + (k + 0.5) / number * (high - low)
@@ -180,7 +178,7 @@ def diagram(
     return _result(builder, tuple(unsure), watch)
 
 
-def _follow_met(builder: Gathering, met: MultiSweep) -> None:
+def _follow_met(builder: BranchTree, met: MultiSweep) -> None:
     """Follow the periodic motions of sweeps that lie on no branch."""
     builder.periods += met.cost.periods
     for motion in (m for here in met.motions for m in here if 0 < m.periods <= builder.longest):
@@ -190,7 +188,7 @@ def _follow_met(builder: Gathering, met: MultiSweep) -> None:
             builder.follow(orbit, Origin(None, motion.value))
 
 
-def _result(gathered: Gathering, unsure: tuple[float, ...], watch: Stopwatch) -> Diagram:
+def _result(gathered: BranchTree, unsure: tuple[float, ...], watch: Stopwatch) -> Diagram:
     """Assemble the record."""
     branches = tuple(gathered.branches)
     bad = [i for i, b in enumerate(branches) if not b.converged]

@@ -12,9 +12,8 @@ from dynamics.index import index_at_infinity
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
-from dynamics.regions import Region, checked_region
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.states import apart
+from dynamics.states import Region, apart, checked_region
 from dynamics.sweeps import settling_periods
 
 __all__ = ["IndexCount", "OrbitSet", "find_orbits", "reach"]

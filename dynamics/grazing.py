@@ -11,13 +11,13 @@ import numpy.typing as npt
 
 from base import Array, Cost, Fault, Faults, InputError, RangeWarning, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
+from dynamics.branch import SpecialPoint
 from dynamics.flow import tables, turning_points
 from dynamics.limits import ordered
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, exact_only
 from dynamics.shooting import exact_determinant, floquet_multipliers
-from dynamics.special import SpecialPoint
 
 __all__ = ["ContactGrazing", "ContactOrbit", "ResonanceError", "contact_grazing", "contact_orbit"]
 

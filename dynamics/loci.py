@@ -9,16 +9,16 @@ import numpy.typing as npt
 
 from base import Array, Cost, Fault, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.branch_problem import Steps
-from dynamics.conditions import Condition, special_orbit
+from dynamics.branch import SpecialPoint, of_kind
+from dynamics.branch_problem import Steps, checked_range
 from dynamics.corrector import OrbitProblem
-from dynamics.limits import ordered
-from dynamics.locus_tracing import DoublePoint, Tracer
+from dynamics.locus_tracing import DoublePoint, LocusTracer
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.shooting import floquet_multipliers, motion_label
-from dynamics.special import SpecialPoint, of_kind
+from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import scale_of
+from dynamics.tracing import both_ways, joined
 
 __all__ = ["CODIMENSION_TWO", "DoublePoint", "Locus", "continue_locus"]
 
@@ -128,10 +128,10 @@ def continue_locus(
     start = oscillator.with_parameter(parameters[0], point.parameter)
     if parameters[0] == parameters[1]:
         faults.add("parameters", parameters, "must be two different parameters", "name another one")
-    ranges = [ordered(faults, f"bounds[{k}]", bounds[k]) for k in range(2)]
-    for name, (least, most) in zip(parameters, ranges, strict=True):
-        if not least <= start.get(name) <= most and least < most:
-            faults.add("point", start.get(name), f"must have its {name} within bounds", "widen the bounds")
+    ranges = [
+        checked_range(faults, f"bounds[{k}]", bounds[k], "point", name, start.get(name))
+        for k, name in enumerate(parameters)
+    ]
     steps = Steps(step, max_step, min_step, max_points)
     steps.check(faults)
     faults.raise_if_any()
@@ -143,31 +143,15 @@ def continue_locus(
     if first is None:
         allowed, remedy = "must be a point that can be met again", "next to a grazing, start elsewhere"
         raise InputError([Fault("point", f"{point.parameter}", allowed, remedy)])
-    tracers = []
-    for sign in (-1.0, 1.0):
-        tracer = Tracer(problem, condition, first, sign, steps, progress)
-        tracer.run()
-        tracers.append(tracer)
-        if tracer.ended == "closed":
-            break
-    return _locus(problem, condition, tracers, watch)
-
-
-def _locus(problem: OrbitProblem, condition: Condition, tracers: list[Tracer], watch: Stopwatch) -> Locus:
-    """Join the two directions into one record."""
-    back = tracers[0]
-    points, double = back.points[::-1], back.double[::-1]
-    ended = [back.ended]
-    if len(tracers) == 2:
-        points, double = points + tracers[1].points[1:], double + tracers[1].double
-    ended.append(tracers[-1].ended)
+    tracers = both_ways(lambda sign: LocusTracer(problem, condition, first, sign, steps, progress))
+    points, double = joined([t.points for t in tracers], 1), joined([t.double for t in tracers])
+    ended = (tracers[0].ended, tracers[-1].ended)
     good = all(e in ("bound", "closed", "ends at a grazing", "the extremum that touches ends") for e in ended)
-    first, second = problem.parameters
     return Locus(
-        condition.kind, condition.boundary, (first, second), problem.periods,
+        condition.kind, condition.boundary, (parameters[0], parameters[1]), problem.periods,
         np.array([p.values for p in points]), np.array([p.state for p in points]),
         np.array([floquet_multipliers(p.trace, p.determinant) for p in points], dtype=np.complex128),
-        tuple(motion_label(problem.periods, p.counts) for p in points), tuple(double), (ended[0], ended[1]),
+        tuple(motion_label(problem.periods, p.counts) for p in points), tuple(double), ended,
         max((p.error for p in double), default=0.0),
         Cost(watch.seconds, 4, len(points), 4 * problem.periods * len(points)), good,
         f"{len(points)} points, {len(double)} of codimension two; ended: {ended[0]}, {ended[1]}",

@@ -10,12 +10,13 @@ import numpy as np
 
 from base import Array, quantity, record
 from dynamics.branch_problem import Steps, match_extrema
-from dynamics.conditions import Condition, special_orbit
-from dynamics.corrector import OrbitProblem, Point, passes
+from dynamics.corrector import OrbitProblem, Point
 from dynamics.protocol import EPS
 from dynamics.roots import bracketed
+from dynamics.special_orbits import Condition, special_orbit
+from dynamics.tracing import Tracer
 
-__all__ = ["DoublePoint", "Tracer"]
+__all__ = ["DoublePoint", "LocusTracer"]
 
 
 @record
@@ -39,52 +40,27 @@ class DoublePoint:
     )
 
 
-class Tracer:
-    """Steps along a locus in one direction until a reason to end; `points` and `double` are what it met."""
+class LocusTracer(Tracer):
+    """Steps along a locus; `double` are the points of codimension two that they met."""
+
+    flat = 1e-12
 
     def __init__(
         self, problem: OrbitProblem, condition: Condition, start: Point, sign: float,
         steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
-        self.problem, self.condition, self.steps, self.progress = problem, condition, steps, progress
-        self.step = steps.first
-        self.points = [start]
-        self.phases = problem.phases(start)
+        super().__init__(problem, start, steps)
+        self.condition, self.progress = condition, progress
         self.double: list[DoublePoint] = []
-        tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3]))
-        self.tangent = tangent * sign
+        self.tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3])) * sign
         self.null = _cusp(start, np.ones(2))[1]
-        self.ended = ""
 
-    def run(self) -> None:
-        """Step until the locus ends."""
-        while not self.ended:
-            if len(self.points) > self.steps.points:
-                self.ended = f"{self.steps.points} points: raise max_points"
-                return
-            last = self.points[-1]
-            new = self._try(last)
-            if new is None:
-                self.step *= 0.5
-                if self.step < self.steps.least:
-                    self.ended = self._why(last)
-                continue
-            self._accept(last, new)
-            if len(self.points) > 3 and passes(last.u, new.u, self.phases):  # however small the loop
-                self.ended = "closed"
-
-    def _try(self, last: Point) -> Point | None:
-        guess = last.u + self.step * self.tangent
-        row = self.tangent
-        for k in (2, 3):
-            bound = 1.0 if guess[k] > 1.0 else 0.0 if guess[k] < 0.0 else math.nan
-            if not math.isnan(bound):
-                if last.u[k] == bound or abs(self.tangent[k]) < 1e-12:
-                    self.ended = "bound"
-                    return None
-                guess = last.u + (bound - last.u[k]) / self.tangent[k] * self.tangent
-                guess[k] = bound
-                row = np.eye(4)[k]
+    def attempt(self, last: Point) -> Point | None:
+        """Next point; at a bound, the point on it."""
+        aim = self.aimed(last, last.u + self.step * self.tangent)
+        if aim is None:
+            return None
+        guess, row = aim
         new = special_orbit(self.problem, self.condition, guess, row)
         if new is None or float(np.linalg.norm(new.u - last.u)) > 2.0 * self.step:
             return None
@@ -99,21 +75,28 @@ class Tracer:
                 return None
         return new
 
-    def _accept(self, last: Point, new: Point) -> None:
-        tangent = self._tangent(new, new.u - last.u)
-        for kind, before, after in self._tests(last, new):
+    def accept(self, last: Point, found: Point) -> None:
+        """Take a point, mark what changes sign before it, choose the next step."""
+        for kind, before, after in self._tests(last, found):
             if before * after < 0.0:
-                self._mark(kind, last, new, before, after)
-        self.null = _cusp(new, self.null)[1]
-        self.points.append(new)
-        self.tangent = tangent
+                self._mark(kind, last, found, before, after)
+        self.null = _cusp(found, self.null)[1]
+        self.points.append(found)
+        self.tangent = self._tangent(found, found.u - last.u)
         if self.condition.kind == "grazing":
-            self.condition = replace(self.condition, phase=self._phase(new))
-        if np.any((new.u[2:] == 0.0) | (new.u[2:] == 1.0)):
-            self.ended = "bound"
+            self.condition = replace(self.condition, phase=self._phase(found))
         self.step = min(1.3 * self.step, self.steps.most)
         if self.progress is not None:
-            self.progress(len(self.points), new.values)
+            self.progress(len(self.points), found.values)
+
+    def why(self, last: Point) -> str:
+        """What lies beyond."""
+        if self.condition.kind == "grazing":
+            flat = abs(float(last.extrema[self.condition.nearest(last), 2]))
+            return "the extremum that touches ends" if flat < 1e-2 else "Newton's method did not arrive"
+        gaps = (abs(abs(x) - float(last.levels[0])) for x in last.extrema[:, 1].tolist())
+        touching = min(gaps, default=1.0) / self.problem.scale < 1e-4
+        return "ends at a grazing" if touching else "Newton's method did not arrive"
 
     def _phase(self, point: Point) -> float:
         return float(point.extrema[self.condition.nearest(point), 0])
@@ -133,14 +116,13 @@ class Tracer:
         if kind == "grazing":
             tests.append(("saddle-node and grazing", a.fold, b.fold))
             tests.append(("period-doubling and grazing", a.flip, b.flip))
-        floor = [float(self.problem.packed(p.u)[6]) for p in (a, b)]
         own = (self.condition.nearest(a), self.condition.boundary) if kind == "grazing" else None
         name = "double grazing" if kind == "grazing" else f"{kind} and grazing"
-        for i, j in match_extrema(a, b) if min(floor) > 0.0 else []:
-            for boundary in (1,) if self.problem.oscillator.one_sided else (1, -1):
+        for i, j in match_extrema(a, b) if min(a.levels[0], b.levels[0]) > 0.0 else []:
+            for boundary, level_a, level_b in zip((1, -1), a.levels, b.levels, strict=False):
                 if (i, boundary) != own:
-                    before = float(a.extrema[i, 1]) - boundary * floor[0]
-                    tests.append((name, before, float(b.extrema[j, 1]) - boundary * floor[1]))
+                    before, after = a.extrema[i, 1] - level_a, b.extrema[j, 1] - level_b
+                    tests.append((name, float(before), float(after)))
         return tests
 
     def _mark(self, kind: str, a: Point, b: Point, before: float, after: float) -> None:
@@ -174,17 +156,6 @@ class Tracer:
             if name == kind and math.isclose(first, before, rel_tol=1e-6, abs_tol=1e-300):
                 return second
         return math.nan
-
-    def _why(self, last: Point) -> str:
-        """Why no further step was possible."""
-        floor = float(self.problem.packed(last.u)[6])
-        gap = (
-            min((abs(abs(x) - floor) for x in last.extrema[:, 1].tolist()), default=1.0) / self.problem.scale
-        )
-        if self.condition.kind == "grazing":
-            flat = abs(float(last.extrema[self.condition.nearest(last), 2]))
-            return "the extremum that touches ends" if flat < 1e-2 else "Newton's method did not arrive"
-        return "ends at a grazing" if gap < 1e-4 else "Newton's method did not arrive"
 
 
 def _cusp(point: Point, reference: Array) -> tuple[float, Array]:

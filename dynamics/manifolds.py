@@ -16,8 +16,8 @@ from dynamics.limits import POSITIVE
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
-from dynamics.regions import Region, within
 from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
+from dynamics.states import Region, within
 
 __all__ = ["Manifold", "carried", "is_direct_saddle", "is_saddle", "manifold", "reversed_tables"]
 
@@ -87,12 +87,12 @@ def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool 
     backwards : bool
         Whether the tables are those of the reversed oscillator.
     """
-    from dynamics.kernels.carrying import carry
-
     at = np.array(states, dtype=np.float64).reshape(-1, 2)
     turn = np.array([1.0, -1.0 if backwards else 1.0])
     at *= turn
-    carry(table.arrays, at, periods)
+    labels = np.full(len(at), -1, dtype=np.int64)
+    table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
+    at[labels == -2] = np.nan
     return np.asarray(at * turn)
 
 

@@ -11,10 +11,11 @@ from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.flows import flow_of
 from dynamics.limits import PERIODS, POINTS, TRANSIENT
+from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, MapResult, Oscillator
 from dynamics.states import checked_state
 
-__all__ = ["Trajectory", "period_map", "trajectory"]
+__all__ = ["ForceRange", "Trajectory", "force_range", "period_map", "trajectory"]
 
 
 @record
@@ -175,3 +176,56 @@ def trajectory(
         error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
         cost=Cost(watch.seconds, periods=2 * n),
     )
+
+
+@record
+class ForceRange:
+    """Least and greatest force of a motion, over the mean force."""
+
+    headline = ("least", "greatest")
+
+    least: float = quantity("1", "least of K(tau) f(X) / F_m; negative where the back flanks touch")
+    greatest: float = quantity("1", "greatest of K(tau) f(X) / F_m")
+    error: float = quantity("1", "change of the two with half as many samples, the larger one")
+
+
+def force_range(
+    oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
+) -> ForceRange:
+    """Least and greatest force of a motion.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its mean force must not be zero.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    samples : int
+        Samples per period, even; the force is taken there, on the exact motion.
+
+    Raises
+    ------
+    InputError
+        If there is no mean force, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = force_range(osc, find_orbit(osc, (0.35, 0.0)).state)
+    >>> round(found.least, 3), round(found.greatest, 3)
+    (0.182, 2.277)
+    """
+    faults = Faults()
+    number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
+    if oscillator.mean_force == 0.0:
+        faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
+    faults.raise_if_any()
+    motion = trajectory(oscillator, state, periods, number)
+    stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
+    force = stiffness * oscillator.deflection(motion.x) / oscillator.mean_force
+    low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
+    error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
+    return ForceRange(low, high, error)

@@ -9,11 +9,11 @@ from typing import TypeVar
 import numpy as np
 
 from base import Array
-from dynamics.branch_problem import PlanePoint
+from dynamics.branch_problem import MapPoint
 
 __all__ = ["along_chord", "bracketed"]
 
-P = TypeVar("P", bound=PlanePoint)
+P = TypeVar("P", bound=MapPoint)
 
 
 def bracketed(

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, quantity, record
-from dynamics.flow import tables
+from dynamics.corrector import OrbitProblem
 from dynamics.limits import PERIODS
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only, lost_motion
@@ -64,24 +64,18 @@ def map_derivatives(
     InputError
         If an argument is out of range, or the motion grows beyond all bounds.
     """
-    from dynamics.kernels.sensitivity import probe
-    from dynamics.kernels.tables import differentiate
-
     faults = Faults()
     n = faults.whole("periods", periods, *PERIODS)
     faults.raise_if_any()
     at = checked_state(state)
     names = oscillator.parameters if parameters is None else tuple(parameters)
-    table, order = tables(oscillator), oscillator.stiffness.order
-    q = table.packed
-    ways = np.zeros((len(names), len(q)))
-    for row, name in zip(ways, names, strict=True):
-        row[oscillator.place(name)] = 1.0
-    slopes = differentiate(q[:8], q[8 : 8 + order], q[8 + order :], ways, table.coef, table.edge)
-    m = 2 + len(names)
-    lin, second = np.empty((2, m)), np.empty((m, 2, 2))
-    counts, turns = np.empty(2, dtype=np.int64), np.empty((0, 5 + m))
-    flag, _ = probe(table.arrays, slopes, ways, at, n, lin, second, counts, turns)
-    if flag != 0:
+    low = np.array([oscillator.get(name) for name in names])
+    problem = OrbitProblem(
+        oscillator, names, n, low, low + 1.0, 1.0
+    )  # the unknowns are X, V and changes of these
+    point = problem.evaluate(problem.unknowns(at, low))
+    if point is None:
         raise lost_motion(at, "the motion grows without bound")
-    return MapDerivatives(names, at, lin[:, :2], lin[:, 2:], second, (int(counts[0]), int(counts[1])))
+    return MapDerivatives(
+        names, point.image, point.jacobian, point.derivative[:, 2:], point.second, point.counts
+    )

@@ -1,14 +1,20 @@
-"""States: their check, how large motions are, and how far apart states lie."""
+"""States and rectangles of them: their checks, how large motions are, and how far apart states lie."""
 
 from __future__ import annotations
+
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Faults
+from base import Array, Booleans, Faults
+from dynamics.limits import ordered
 from dynamics.protocol import Oscillator
 
-__all__ = ["apart", "checked_state", "scale_of"]
+__all__ = ["Region", "apart", "checked_region", "checked_state", "scale_of", "within"]
+
+Region: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+"""((x0, x1), (v0, v1))"""
 
 
 def scale_of(oscillator: Oscillator, states: npt.ArrayLike) -> float:
@@ -29,3 +35,18 @@ def checked_state(state: npt.ArrayLike, where: str = "state") -> Array:
         faults.add(where, at.tolist(), "must be two finite numbers, X and V", "give the state at tau = 0")
         faults.raise_if_any()
     return at
+
+
+def checked_region(faults: Faults, region: Region) -> Region:
+    """The rectangle as numbers; notes what is none, or out of order."""
+    x, v = (
+        ordered(faults, f"region[{k}]", side, "give ((x0, x1), (v0, v1))") for k, side in enumerate(region)
+    )
+    return x, v
+
+
+def within(region: Region, states: Array) -> Booleans:
+    """Which of some states lie in the rectangle; those that are nan do not."""
+    low, high = np.array(region).T
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.all((states >= low) & (states <= high), axis=1))

@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from base import Array
-from dynamics.conditions import Condition, special_orbit
+from dynamics.branch import SpecialPoint
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.oscillator import GearOscillator
-from dynamics.special import SpecialPoint
+from dynamics.protocol import exact_only
+from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import scale_of
 
-__all__ = ["Mark", "marked"]
+__all__ = ["Mark", "marked", "special_sensitivities"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,3 +103,49 @@ def marked(here: GearOscillator, parameter: str, point: SpecialPoint) -> Mark:
     """Mark of a special point of a branch."""
     condition = Condition.of(here.with_parameter(parameter, point.parameter), point)
     return Mark(here, parameter, condition, point.periods, np.append(point.state, point.parameter))
+
+
+@exact_only
+def special_sensitivities(
+    oscillator: GearOscillator, parameter: str, point: SpecialPoint, names: Sequence[str] | None = None
+) -> dict[str, float]:
+    r"""Derivatives of a special point's parameter value with respect to the other parameters.
+
+    The point solves G = 0: the orbit closes (two equations) and its condition holds. With the columns for X, V and
+    the parameter in A and that for another parameter p in b, the change with p is the last component of
+    :math:`-A^{-1} b`. All entries are exact.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its value of the parameter is not used. A harmonic of amplitude zero may be among its series:
+        the derivative is then what that harmonic would do.
+    parameter : str
+        The parameter in which the point was found.
+    point : SpecialPoint
+        A saddle node, period doubling or grazing.
+    names : sequence of str, optional
+        As in `GearOscillator.with_parameter`. Left out: all others.
+
+    Returns
+    -------
+    dict
+        Name to derivative; nan where the system is singular (a point of codimension two).
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, special_sensitivities
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.64, half_backlash=0.2)
+    >>> branch = continue_branch(find_orbit(osc, (0.35, 0.0)), "frequency", (0.62, 0.67))
+    >>> (fold,) = branch.special("saddle-node")
+    >>> round(special_sensitivities(osc, "frequency", fold, ["mean_force"])["mean_force"], 4)
+    1.6776
+    """
+    mark = marked(oscillator, parameter, point)
+    wanted = [n for n in (oscillator.parameters if names is None else names) if n != parameter]
+    return dict(zip(wanted, mark.slopes(wanted)[2].tolist(), strict=True))

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.branch import SpecialPoint
+from dynamics.branch_tree import BranchTree, Origin
 from dynamics.continuation import continue_branch
 from dynamics.finding import find_orbits
-from dynamics.gathering import Gathering, Origin
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.inverse.refinement import Fit
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.special import SpecialPoint
 from dynamics.tracking import marked
 
 __all__ = ["CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
@@ -67,7 +67,7 @@ class Catalogue:
         problem = self.problem
         asked_for = max((e.periods or LONGEST for e in problem.events), default=1)
         longest = asked_for if depth >= DOUBLED else 1
-        gathered = Gathering(here, problem.parameter, problem.bounds, longest, MOST, STEP, MAX_POINTS)
+        gathered = BranchTree(here, problem.parameter, problem.bounds, longest, MOST, STEP, MAX_POINTS)
         self._gather(gathered, [self._settled(here, problem.bounds[0], 0)])
         if depth >= DOUBLED:
             self._gather(gathered, self._upper(here, problem.bounds[1]))
@@ -121,7 +121,7 @@ class Catalogue:
         self.tally.periods += found.cost.periods
         return [orbit for orbit in found.orbits if event.names(orbit.label)]
 
-    def _gather(self, gathered: Gathering, orbits: Iterable[Orbit]) -> None:
+    def _gather(self, gathered: BranchTree, orbits: Iterable[Orbit]) -> None:
         """Follow orbits that lie on no branch yet."""
         for orbit in orbits:
             if orbit.converged:
@@ -140,7 +140,7 @@ class Catalogue:
         self.tally.periods += found.cost.periods
         return list(found.orbits)
 
-    def _around(self, gathered: Gathering, event: Event) -> None:
+    def _around(self, gathered: BranchTree, event: Event) -> None:
         """Follow the orbits of an event's label to either side of it, until one has such a point."""
         (low, high), width = self.problem.bounds, self.problem.width
         for beside in (0.0, *BESIDE):

@@ -10,10 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from base import Array, Faults, Limit
-from dynamics.branch import KINDS
+from dynamics.branch import KINDS, SpecialPoint
 from dynamics.limits import NUMBER, ordered
 from dynamics.oscillator import GearOscillator
-from dynamics.special import SpecialPoint
 
 __all__ = ["Event", "OneOf", "Problem", "Ranged", "Unknown"]
 

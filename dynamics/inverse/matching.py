@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.branch import SpecialPoint
 from dynamics.inverse.events import Event
-from dynamics.special import SpecialPoint
 
 __all__ = ["Line", "match"]
 

@@ -103,19 +103,6 @@ def frequency(origin: FloatArray, ways: FloatArray, u: FloatArray) -> float:
     return float(value)
 
 
-@kernel
-def evaluate(
-    origin: FloatArray, ways: FloatArray, order: int, cells: int, degree: int, u: FloatArray, scale: float,
-    periods: int, state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
-) -> tuple[int, int, float]:  # fmt: skip
-    """Do as `look`, and give everything with respect to the unknowns and as phases, as `correct` does."""
-    flag, turned, residual = look(
-        origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
-    )
-    scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
-    return flag, turned, residual
-
-
 @helper
 def newton_step(
     u: FloatArray, guess: FloatArray, across: FloatArray, scale: float, state: FloatArray, lin: FloatArray,
@@ -144,6 +131,8 @@ def correct(
 ) -> tuple[int, int, int, float]:  # fmt: skip
     """Newton's method for a periodic orbit in the plane across . (u - guess) = 0, `u` being the guess.
 
+    With a limit of 0 it is the state of the guess that is looked at, with any number of parameters.
+
     Returns flag, number of extrema, iterations and residual over the scale; `u` becomes the orbit, and the rest is
     filled as by `probe`, for the image of the orbit, but with derivatives with respect to the unknowns, over the scale,
     and with phases in [0, 1) of the orbit's period for times.
@@ -152,9 +141,8 @@ def correct(
     matrix, right = np.empty((3, 3)), np.empty(3)
     best, step, done = math.inf, math.inf, 0
     while True:
-        whole = (
-            step < NEARLY
-        )  # the error falls with the square of the step: this is likely to be the last time
+        # the error falls with the square of the step: this is likely to be the last time
+        whole = limit == 0 or step < NEARLY
         flag, turned, size = look(
             origin, ways, order, cells, degree, u, scale, periods, state, lin,
             bend if whole else bend[:0], counts, turns if whole else turns[:0],
@@ -167,6 +155,8 @@ def correct(
             whole = False
             break
         best = size
+        if limit == 0:
+            break
         rest = newton_step(u, guess, across, scale, state, lin, matrix, right) if size > 0.0 else 0.0
         if whole and (size <= 4e-15 * max(1.0, largest(lin, 2)) or step < 1e-11):
             break
@@ -185,7 +175,7 @@ def correct(
             origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
         )
     rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.corrector
-    if not best <= rounding * max(1.0, largest(lin, 2)):
+    if limit > 0 and not best <= rounding * max(1.0, largest(lin, 2)):
         flag = LOST
     scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
     return flag, turned, done, best

@@ -92,27 +92,12 @@ def stays(
 
 
 @helper
-def to_middle(edge: FloatArray, row: int, jac: FloatArray) -> None:
-    """Sensitivities of the state at the middle of the cell from those of the state at its start."""
-    for j in range(2):
-        top = edge[row, 9] * jac[0, j] + edge[row, 10] * jac[1, j]
-        jac[1, j] = edge[row, 11] * jac[0, j] + edge[row, 12] * jac[1, j]
-        jac[0, j] = top
-
-
-@helper
-def from_middle(p0: float, p1: float, q0: float, q1: float, jac: FloatArray) -> None:
-    """Sensitivities at an instant from those at the middle; values p and speeds q of both solutions there."""
+def advance(p0: float, p1: float, q0: float, q1: float, jac: FloatArray) -> None:
+    """Multiply the sensitivities by a matrix with the rows p and q."""
     for j in range(2):
         top = p0 * jac[0, j] + p1 * jac[1, j]
         jac[1, j] = q0 * jac[0, j] + q1 * jac[1, j]
         jac[0, j] = top
-
-
-@helper
-def apply(edge: FloatArray, row: int, jac: FloatArray) -> None:
-    """Multiply the sensitivities by the map of a whole cell."""
-    from_middle(edge[row, 0], edge[row, 1], edge[row, 2], edge[row, 3], jac)
 
 
 @helper
@@ -153,7 +138,7 @@ def cross_cell(
     c0 = edge[row, 9] * y + edge[row, 10] * w + edge[row, 13]
     c1 = edge[row, 11] * y + edge[row, 12] * w + edge[row, 14]
     if want > 0:
-        to_middle(edge, row, jac)
+        advance(edge[row, 9], edge[row, 10], edge[row, 11], edge[row, 12], jac)
     for _ in range(MAX_EVENTS):
         y_end = c0 * edge[row, 21] + c1 * edge[row, 22] + edge[row, 23]
         w_end = c0 * edge[row, 24] + c1 * edge[row, 25] + edge[row, 26]
@@ -177,11 +162,11 @@ def cross_cell(
             s, w = sole_root(b, limit, s, y, w, y_end, w_end)
         if hit == 0:
             if want > 0:
-                from_middle(edge[row, 21], edge[row, 22], edge[row, 24], edge[row, 25], jac)
+                advance(edge[row, 21], edge[row, 22], edge[row, 24], edge[row, 25], jac)
             return region, y_end, w_end, FINE
         if want > 0:
             f0, f1, _, g0, g1, _ = basis(coef, row, s)
-            from_middle(f0, f1, g0, g1, jac)
+            advance(f0, f1, g0, g1, jac)
         old = region
         region, y = enter(region, hit, par)
         fresh = hit
@@ -195,7 +180,7 @@ def cross_cell(
         p, q = y - f2, w - g2
         c0, c1 = (p * g1 - q * f1) / wronskian, (q * f0 - p * g0) / wronskian
         if want > 0:
-            from_middle(g1 / wronskian, -f1 / wronskian, -g0 / wronskian, f0 / wronskian, jac)
+            advance(g1 / wronskian, -f1 / wronskian, -g0 / wronskian, f0 / wronskian, jac)
     return region, y, w, CROWDED
 
 
@@ -228,7 +213,7 @@ def one_period(
             w = edge[row, 2] * y + edge[row, 3] * w + edge[row, 5]
             y = y_new
             if want > 0:
-                apply(edge, row, jac)
+                advance(edge[row, 0], edge[row, 1], edge[row, 2], edge[row, 3], jac)
         else:
             region, y, w, flag = cross_cell(
                 par, coef, edge, cell, region, y, w, want, jac, work, choose, count

@@ -85,3 +85,15 @@ def leave(
             end = t
             hit = side
     return end, hit
+
+
+@helper
+def note_extremum(
+    note: FloatArray, tau: float, rest: FloatArray, region: int, par: FloatArray, h: float
+) -> None:
+    """Time, X, X'', region and its coordinate of the extremum about which `rest` is expanded."""
+    note[0] = tau
+    note[1] = rest[0] + region * par[HALF_BACKLASH]
+    note[2] = 2.0 * rest[2] / (h * h)
+    note[3] = region
+    note[4] = rest[0]

@@ -263,24 +263,24 @@ def direction(a: FloatArray) -> int:
 
 
 @helper
-def next_turn(a: FloatArray, slope: FloatArray, b: FloatArray, end: float) -> float:
-    """Smallest t in (0, end] at which the slope of the polynomial changes sign, -1 if it does not."""
-    sign = -1.0 if direction(a) < 0 else 1.0
-    for k in range(len(a) - 1):
-        slope[k] = sign * (k + 1) * a[k + 1]
-    slope[len(a) - 1] = 0.0
-    return first_exit(slope, b, end, ONE)
-
-
-@helper
-def find_turn(rest: FloatArray, slope: FloatArray, b: FloatArray, end: float, way: int) -> tuple[int, float]:
-    """Way of X just after t = 0 and the time of the next extremum, -1 if there is none up to `end`.
+def find_turn(
+    rest: FloatArray, spare: FloatArray, slope: FloatArray, b: FloatArray, choose: FloatArray, end: float, way: int
+) -> tuple[int, float]:  # fmt: skip
+    """Expand `rest` about its next extremum: way of X after it and time to it, -1 if there is none up to `end`.
 
     `way` is the way just before t = 0, 0 if unknown: an extremum on the joint of two stretches is at t = 0.
     """
-    heading = direction(rest)
-    if heading * way == -1:
-        return way, 0.0
-    way = heading if heading != 0 else way
-    step = next_turn(rest, slope, b, end)
-    return way, step if step > 0.0 else -1.0
+    heading, step = direction(rest), 0.0
+    if heading * way != -1:
+        way = heading if heading != 0 else way
+        sign = -1.0 if heading < 0 else 1.0
+        for k in range(len(rest) - 1):
+            slope[k] = sign * (k + 1) * rest[k + 1]
+        slope[len(rest) - 1] = 0.0
+        step = first_exit(slope, b, end, ONE)
+        if not step > 0.0:
+            return way, -1.0
+    shift(rest, step, choose, spare)
+    copy(spare, rest)
+    rest[1] = 0.0
+    return -way, step

@@ -24,8 +24,8 @@ from dynamics.kernels.compiling import (
     kernel,
 )
 from dynamics.kernels.flow import basis, expand
-from dynamics.kernels.regions import clear, enter, leave, start
-from dynamics.kernels.roots import binomials, copy, find_turn, poly, shift
+from dynamics.kernels.regions import clear, enter, leave, note_extremum, start
+from dynamics.kernels.roots import binomials, copy, find_turn, poly
 
 
 @helper
@@ -106,21 +106,14 @@ def stretch(par: FloatArray, ways: FloatArray, way: int) -> float:
 
 
 @helper
-def note_turn(
-    table: Table, dcoef: FloatArray, ways: FloatArray, region: int, row: int, s: float, done: float, now: float,
-    y: float, w: float, rest: FloatArray, lin: FloatArray, there: FloatArray, none: FloatArray, note: FloatArray,
+def note_slope(
+    table: Table, dcoef: FloatArray, ways: FloatArray, region: int, row: int, s: float, done: float, y: float,
+    w: float, lin: FloatArray, there: FloatArray, none: FloatArray, note: FloatArray,
 ) -> None:  # fmt: skip
-    """Fill one row of `turns`: the extremum at s + done of a stretch that begins at s."""
-    par, coef, edge = table
-    h = 2.0 * math.pi / par[FREQUENCY] / (len(edge) // 2)
-    note[0] = now * h
-    note[1] = rest[0] + region * par[HALF_BACKLASH]
-    note[2] = 2.0 * rest[2] / (h * h)
-    note[3] = region
-    note[4] = rest[0]
+    """Add the derivatives of X to the note of the extremum at s + done of a stretch that begins at s."""
     for k in range(lin.shape[1]):
         there[0, k], there[1, k] = lin[0, k], lin[1, k]
-    flow_derivatives(coef, dcoef, row, s, s + done, y, w, there, none)
+    flow_derivatives(table[1], dcoef, row, s, s + done, y, w, there, none)
     for k in range(lin.shape[1]):
         note[5 + k] = there[0, k] + region * play(ways, k)
 
@@ -154,15 +147,8 @@ def finish(
 
 @helper
 def pass_boundary(
-    ways: FloatArray,
-    old: int,
-    region: int,
-    hit: int,
-    k_old: float,
-    w: float,
-    lin: FloatArray,
-    bend: FloatArray,
-) -> None:
+    ways: FloatArray, old: int, region: int, hit: int, k_old: float, w: float, lin: FloatArray, bend: FloatArray
+) -> None:  # fmt: skip
     """Jumps of the derivatives at an impact; `k_old` is the stiffness there in contact."""
     if len(bend) > 0 and (old == 0 or region == 0):
         k_jump = k_old if old != 0 else -k_old
@@ -224,32 +210,14 @@ def probe(
             done = 0.0
             copy(a, rest)
             while wanted:
-                way, step = find_turn(rest, g, b, t - done, way if done == 0.0 else ZERO)
+                way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
                 if step < 0.0:
                     break
-                way = -way
-                shift(rest, step, choose, spare)
-                copy(spare, rest)
-                rest[1] = 0.0
                 done += step
                 if turned < len(turns):
-                    now = global_cell + s + 0.5 + done
-                    note_turn(
-                        table,
-                        dcoef,
-                        ways,
-                        region,
-                        row,
-                        s,
-                        done,
-                        now,
-                        y,
-                        w,
-                        rest,
-                        lin,
-                        there,
-                        none,
-                        turns[turned],
+                    note_extremum(turns[turned], (global_cell + s + 0.5 + done) * h, rest, region, par, h)
+                    note_slope(
+                        table, dcoef, ways, region, row, s, done, y, w, lin, there, none, turns[turned]
                     )
                 turned += 1
                 if step == 0.0:

@@ -17,8 +17,8 @@ from dynamics.kernels.compiling import (
     kernel,
 )
 from dynamics.kernels.flow import expand
-from dynamics.kernels.regions import enter, leave, start
-from dynamics.kernels.roots import binomials, copy, find_turn, poly, shift
+from dynamics.kernels.regions import enter, leave, note_extremum, start
+from dynamics.kernels.roots import binomials, copy, find_turn, poly
 
 
 @kernel
@@ -62,20 +62,12 @@ def walk(
             done = 0.0
             copy(a, rest)
             while len(turns) > 0:
-                way, step = find_turn(rest, g, b, t - done, way if done == 0.0 else ZERO)
+                way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
                 if step < 0.0:
                     break
-                way = -way
-                shift(rest, step, choose, spare)
-                copy(spare, rest)
-                rest[1] = 0.0
                 done += step
                 if turned < len(turns):
-                    turns[turned, 0] = (now + done) * h
-                    turns[turned, 1] = rest[0] + region * d
-                    turns[turned, 2] = 2.0 * rest[2] / (h * h)
-                    turns[turned, 3] = region
-                    turns[turned, 4] = rest[0]
+                    note_extremum(turns[turned], (now + done) * h, rest, region, par, h)
                 turned += 1
                 if step == 0.0:
                     way, done = ZERO, 0.0

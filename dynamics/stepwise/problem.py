@@ -3,42 +3,26 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from base import Array, InputError
-from dynamics.special import SpecialPoint
-from dynamics.stepwise.crossings import Sign, find_crossings, locate
+from dynamics.branch import SpecialPoint
+from dynamics.branch_problem import BranchProblem, MapPoint
+from dynamics.crossings import Crossing, bracketed_orbit, special_point
 from dynamics.stepwise.flow import NOISE, StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
-from dynamics.stepwise.point import MapPoint
 
 __all__ = ["FlowProblem", "PeriodMap"]
 
+XTOL = 1e-14  # width of the bracket of a special point, over the chord
 
-class PeriodMap(ABC):
-    """A flow seen by the continuation; to be made with `evaluate` and `states`.
 
-    Attributes
-    ----------
-    parameter : str
-        What is varied.
-    periods : int
-        n.
-    low, high : float
-        Range of the parameter.
-    scale : float
-        Size of the motion.
-    """
-
-    parameter: str
-    periods: int
-    low: float
-    high: float
-    scale: float
-    maps: int = 1
+@dataclass(frozen=True, eq=False)
+class PeriodMap(BranchProblem):
+    """A flow over one parameter, to be made with `evaluate` and `states`; attributes as in `BranchProblem`."""
 
     @property
     def noise(self) -> float:
@@ -49,42 +33,24 @@ class PeriodMap(ABC):
     def evaluate(self, u: Array) -> MapPoint | None:
         """Image of the unknowns; None where there is none."""
 
-    @abstractmethod
-    def states(self, point: MapPoint) -> Array:
-        """X and V over the scale after 1, 2, .. n periods, shape (n, 2)."""
-
     def refined(self) -> PeriodMap:
         """The same map, more accurately, for an error estimate."""
         return self
 
-    def magnified(self, factor: float) -> PeriodMap | None:
-        """The same with a larger scale; None if it cannot be changed."""
-        return None
-
-    def unknowns(self, state: Array, value: float) -> Array:
-        """Unknowns of a state and a value of the parameter."""
-        return np.array([*(state / self.scale), (value - self.low) / (self.high - self.low)])
-
-    def phases(self, point: MapPoint) -> list[list[float]]:
-        """Unknowns from each excitation period on."""
-        states = self.states(point)
-        rows: list[list[float]] = np.column_stack(
-            [np.roll(states, 1, axis=0), np.full(len(states), point.u[2])]
-        ).tolist()
-        return rows
-
-    def half_way(self, point: MapPoint) -> Array:
-        """State over the scale after half the orbit's period."""
-        half: Array = self.states(point)[self.periods // 2 - 1]
-        return half
-
-    def crossings(self, last: MapPoint, new: MapPoint) -> tuple[list[Sign], bool]:
-        """Changes of sign between neighbours."""
-        return find_crossings(last, new)
-
-    def locate(self, last: MapPoint, new: MapPoint, crossing: Sign) -> tuple[SpecialPoint | None, bool]:
-        """Special point of a crossing; a determinant of 1 with real multipliers is none."""
-        return locate(self, last, new, crossing)
+    def locate(self, last: MapPoint, new: MapPoint, crossing: Crossing) -> tuple[SpecialPoint | None, bool]:
+        """Special point of a crossing; a determinant of 1 with real multipliers is none, and that is no failure."""
+        found = bracketed_orbit(self, (last, new), crossing, XTOL)
+        if found is None:
+            return None, False
+        point, condition = found
+        if condition.kind == "neimark-sacker" and abs(point.trace) >= 2.0:
+            return None, True
+        finer, error = self.refined(), math.inf
+        row = (new.u - last.u) / np.linalg.norm(new.u - last.u)
+        ends = [p for p in (finer.correct(end.u, row) for end in (last, new)) if p is not None]
+        if len(ends) == 2 and (there := bracketed_orbit(finer, ends, crossing, XTOL)) is not None:
+            error = abs(there[0].value - point.value)
+        return special_point(self, point, condition, (last, new), error), True
 
     def correct(self, guess: Array, across: Array, limit: int = 12) -> MapPoint | None:
         """Periodic orbit in the plane across . (u - guess) = 0, or None if Newton's method does not arrive."""
@@ -112,16 +78,11 @@ class PeriodMap(ABC):
         return None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlowProblem(PeriodMap):
-    """Periodic orbits of the stepwise flow; attributes as in `PeriodMap`."""
+    """Periodic orbits of the stepwise flow; attributes as in `BranchProblem`."""
 
     oscillator: SmoothOscillator
-    parameter: str
-    periods: int
-    low: float
-    high: float
-    scale: float
     tolerance: float
 
     @property
@@ -131,17 +92,15 @@ class FlowProblem(PeriodMap):
 
     def evaluate(self, u: Array) -> MapPoint | None:
         """Image of the unknowns; None if the parameter is not allowed there or the motion is lost."""
-        width = self.high - self.low
-        value = float(self.low + u[2] * width)
         try:
-            here = self.oscillator.with_parameter(self.parameter, value)
+            here = self.at(u)
         except InputError:  # the continuation tries a smaller step
             return None
-        flow = StepwiseFlow(here, self.tolerance, (self.parameter,), extrema=True)
+        flow = StepwiseFlow(here, self.tolerance, self.parameters, extrema=True)
         image = flow.follow(u[:2] * self.scale, self.periods)
         if image.message:
             return None
-        derivative = np.column_stack([image.jacobian, image.slope * (width / self.scale)])
+        derivative = np.column_stack([image.jacobian, image.slope * ((self.high - self.low) / self.scale)])
         turns = image.events[image.events[:, 1] == flow.levels]
         extrema = turns[:, [0, 3, 5]]
         extrema[:, 0] = np.mod(extrema[:, 0] / (2.0 * math.pi * self.periods), 1.0)
@@ -151,21 +110,16 @@ class FlowProblem(PeriodMap):
         levels = np.where(places >= 0, upright[:, 2] * here.law.values[places], 0.0)
         counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return MapPoint(
-            u.copy(), np.array([value]), here.period, image.state / self.scale, derivative,
+            u.copy(), self.values(u), here.period, image.state / self.scale, derivative,
             math.exp(image.log_determinant), counts, levels, extrema,
         )  # fmt: skip
 
     def states(self, point: MapPoint) -> Array:
         """X and V over the scale after each period."""
-        here = self.oscillator.with_parameter(self.parameter, point.value)
-        flow = StepwiseFlow(here, self.tolerance)
+        flow = StepwiseFlow(self.at(point.u), self.tolerance)
         image = flow.follow(point.u[:2] * self.scale, self.periods, derivatives=False)
         return image.states / self.scale
 
     def refined(self) -> FlowProblem:
         """The same with an eighth of the tolerance."""
         return replace(self, tolerance=max(self.tolerance / 8.0, 2e-15))
-
-    def magnified(self, factor: float) -> FlowProblem:
-        """With a larger scale."""
-        return replace(self, scale=factor * self.scale)

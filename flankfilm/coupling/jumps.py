@@ -18,7 +18,7 @@ from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import OTHER
 
 if TYPE_CHECKING:
-    from dynamics.labelling import Stretch
+    from dynamics.branch import Stretch
 
 DROPPED = 4
 """Harmonics beyond the series that the error budget looks at."""
@@ -246,7 +246,7 @@ def _variants(motion: PairOscillator, bounds: tuple[float, float]) -> dict[str, 
 
 def _factors(motion: PairOscillator, found: dynamics.Diagram) -> tuple[Array, Array, Array]:
     """Frequency, greatest force over the mean force along stable branches of period 1 and 2, ISO 6336-1's K_v."""
-    from dynamics.robustness import force_range
+    from dynamics.motions import force_range
 
     rows = []
     for branch in found.branches:

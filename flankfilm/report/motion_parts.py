@@ -16,7 +16,7 @@ from flankfilm.report.text import number, percent
 if TYPE_CHECKING:
     import xarray as xr
 
-    from dynamics.labelling import Stretch
+    from dynamics.branch import Stretch
     from flankfilm.coupling import MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
     from flankfilm.coupling.jumps import Jump
 

@@ -15,8 +15,8 @@ from dynamics import (
     manifold,
     period_map,
 )
+from dynamics.branch import stretches
 from dynamics.flow import tables
-from dynamics.labelling import stretches
 from dynamics.manifolds import carried, reversed_tables
 from tests.validation.article_motion import lubricated, starved
 

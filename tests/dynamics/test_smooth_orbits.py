@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,10 +20,11 @@ from dynamics import (
     Surface,
     TabulatedContact,
 )
+from dynamics.arclength import follow
 from dynamics.branch import MEETS
+from dynamics.branch_problem import MapPoint, Steps
 from dynamics.flow import turning_points
 from dynamics.sensitivity import map_derivatives
-from dynamics.stepwise.point import MapPoint
 from dynamics.stepwise.problem import PeriodMap
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
@@ -84,29 +85,20 @@ def test_doubled_branch():
     assert branch.states[at] == pytest.approx(theirs.state, abs=1e-10)
 
 
-@dataclass(frozen=True)
 class ExactMap(PeriodMap):
     """The exact flow as a `PeriodMap`."""
 
-    oscillator: GearOscillator
-    parameter: str
-    periods: int
-    low: float
-    high: float
-    scale: float
-
     def evaluate(self, u):
-        width, n = self.high - self.low, self.periods
-        here = self.oscillator.with_parameter(self.parameter, self.low + u[2] * width)
-        done = map_derivatives(here, u[:2] * self.scale, (self.parameter,), n)
+        here, n = self.at(u), self.periods
+        done = map_derivatives(here, u[:2] * self.scale, self.parameters, n)
         turns = turning_points(here, u[:2] * self.scale, n)[:, :3]
         turns[:, 0] /= here.period * n
         return MapPoint(
             u.copy(),
-            np.array([self.low + u[2] * width]),
+            self.values(u),
             here.period,
             done.state / self.scale,
-            np.column_stack([done.jacobian, done.slope * width / self.scale]),
+            np.column_stack([done.jacobian, done.slope * (self.high - self.low) / self.scale]),
             math.exp(-2 * here.damping_ratio * here.period * n),
             done.counts,
             np.array([here.half_backlash, -here.half_backlash]),
@@ -114,14 +106,15 @@ class ExactMap(PeriodMap):
         )
 
     def states(self, point):
-        here = self.oscillator.with_parameter(self.parameter, point.value)
-        return dynamics.period_map(here, point.u[:2] * self.scale, self.periods).states / self.scale
+        states = dynamics.period_map(self.at(point.u), point.u[:2] * self.scale, self.periods).states
+        return states / self.scale
 
 
 def test_continuation_serves_any_period_map(exact_branch):
-    problem = ExactMap(exact(), "frequency", 1, 0.5, 0.95, 0.4)
+    problem = ExactMap(exact(), ("frequency",), 1, np.array([0.5]), np.array([0.95]), 0.4)
     start = dynamics.find_orbit(exact(), (0.4, 0.0))
-    assert_same_points(dynamics.follow_branch(problem, start.state, 0.55), exact_branch, 1e-12)
+    branch = follow(problem, start.state, 0.55, Steps(0.005, 0.02, 1e-8, 5000), None)
+    assert_same_points(branch, exact_branch, 1e-12)
 
 
 def test_orbits_are_the_exact_ones():

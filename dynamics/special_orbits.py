@@ -8,11 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array
+from dynamics.branch import SpecialPoint
+from dynamics.branch_problem import BranchProblem, MapPoint
 from dynamics.corrector import OrbitProblem, Point, rounding
 from dynamics.oscillator import GearOscillator
-from dynamics.special import SpecialPoint
 
 __all__ = ["Condition", "special_orbit"]
+
+PRODUCTS = {"saddle-node": "fold", "period-doubling": "flip", "neimark-sacker": "torus"}
+"""Kinds that a function of the multipliers singles out, and the attribute of a point that holds it."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +26,7 @@ class Condition:
     Parameters
     ----------
     kind : str
-        "saddle-node", "period-doubling" or "grazing".
+        "saddle-node", "period-doubling", "neimark-sacker" or "grazing".
     boundary : int
         At a grazing 1 for X = D, -1 for X = -D, else 0.
     kindred : int
@@ -44,7 +48,7 @@ class Condition:
         phase = 0.0 if math.isnan(point.tau) else (point.tau / (point.periods * here.period)) % 1.0
         return cls(point.kind, point.boundary, int(np.sign(point.acceleration)), phase)
 
-    def nearest(self, point: Point) -> int:
+    def nearest(self, point: MapPoint) -> int:
         """Extremum that is meant; -1 if there is none."""
         if len(point.extrema) == 0:
             return -1
@@ -53,17 +57,15 @@ class Condition:
         at = int(np.argmin(gap))
         return at if np.isfinite(gap[at]) else -1
 
-    def measure(self, problem: OrbitProblem, point: Point) -> float:
+    def measure(self, problem: BranchProblem, point: MapPoint) -> float:
         """Quantity that is zero at the special orbit; nan if there is no such extremum."""
-        if self.kind == "saddle-node":
-            return point.fold
-        if self.kind == "period-doubling":
-            return point.flip
+        if self.kind in PRODUCTS:
+            return float(getattr(point, PRODUCTS[self.kind]))
         at = self.nearest(point)
         if at < 0:
             return float("nan")
-        x = float(point.extrema[at, 1])
-        return (x - self.boundary * float(problem.packed(point.u)[6])) / problem.scale
+        level = point.levels[0 if self.boundary == 1 else 1]
+        return float(point.extrema[at, 1] - level) / problem.scale
 
     def gradient(self, problem: OrbitProblem, point: Point) -> Array:
         """Its derivative with respect to the unknowns."""
@@ -95,7 +97,7 @@ def special_orbit(
         point = problem.evaluate(u, refinement)
         if point is None:
             return None
-        gap = [*(point.image / problem.scale - u[:2]), condition.measure(problem, point)]
+        gap = [*(point.image - u[:2]), condition.measure(problem, point)]
         rows = [*(point.derivative - np.eye(2, len(u))), condition.gradient(problem, point)]
         if across is not None:
             gap.append(across @ (u - guess))

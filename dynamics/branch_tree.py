@@ -8,16 +8,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dynamics.branch import MEETS, Branch
-from dynamics.conditions import Condition, special_orbit
-from dynamics.continuation import continue_branch
+from dynamics.continuation import continue_branch, doubled_orbit
 from dynamics.corrector import OrbitProblem
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit
+from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import apart, scale_of
-from dynamics.switching import doubled_orbit
 
-__all__ = ["Gathering", "Origin", "lies_on"]
+__all__ = ["BranchTree", "Origin", "lies_on"]
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ class Origin:
 
 
 @dataclass
-class Gathering:
+class BranchTree:
     """Branches so far, how each was come by, and what was left out.
 
     Parameters

@@ -18,7 +18,7 @@ from dynamics.oscillator import GearOscillator
 from dynamics.roots import bracketed
 from dynamics.shooting import Orbit, find_orbit
 
-__all__ = ["Passing"]
+__all__ = ["HomoclinicSearch"]
 
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
 NEAR = 0.04  # of the size of the saddle: nearness at which the side of a passing motion is measured
@@ -30,7 +30,7 @@ LOST = -1.0
 
 
 @dataclass
-class Passing:
+class HomoclinicSearch:
     """Motions of the unstable manifold of a saddle that is followed over a parameter.
 
     Parameters
