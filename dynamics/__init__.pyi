@@ -14,14 +14,11 @@ from .diagrams import Diagram as Diagram
 from .diagrams import diagram as diagram
 from .edges import edge_saddles as edge_saddles
 from .exponents import LyapunovResult as LyapunovResult
-from .exponents import LyapunovScan as LyapunovScan
 from .exponents import lyapunov_exponents as lyapunov_exponents
 from .exponents import lyapunov_scan as lyapunov_scan
-from .finding import OrbitSet as OrbitSet
 from .finding import find_orbits as find_orbits
 from .fourier import FourierFit as FourierFit
 from .fourier import fit_fourier as fit_fourier
-from .grazing import ContactGrazing as ContactGrazing
 from .grazing import contact_grazing as contact_grazing
 from .laws.contacts import PowerContact as PowerContact
 from .laws.contacts import SmoothedBacklash as SmoothedBacklash
@@ -29,7 +26,6 @@ from .laws.contacts import SqueezeFilm as SqueezeFilm
 from .laws.tabulated import TabulatedContact as TabulatedContact
 from .laws.written import CompiledLaw as CompiledLaw
 from .laws.written import Surface as Surface
-from .loci import Locus as Locus
 from .loci import continue_locus as continue_locus
 from .manifolds import Manifold as Manifold
 from .manifolds import manifold as manifold
@@ -39,7 +35,6 @@ from .motions import trajectory as trajectory
 from .multi_sweeps import MultiSweep as MultiSweep
 from .multi_sweeps import multi_sweep as multi_sweep
 from .oscillator import GearOscillator as GearOscillator
-from .protocol import MapResult as MapResult
 from .scaling import Scaling as Scaling
 from .shooting import Orbit as Orbit
 from .shooting import find_orbit as find_orbit

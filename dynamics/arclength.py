@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Cost, Faults, Stopwatch
+from base import Array, Cost, InputError, Stopwatch
 from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, MapPoint, Steps
 from dynamics.crossings import find_crossings
@@ -39,9 +39,9 @@ def follow(
     watch = Stopwatch()
     start = problem.correct(problem.unknowns(state, value), FLAT)
     if start is None:
-        faults = Faults()
-        faults.add("orbit", value, "must be an orbit that can be continued", "at a fold, start beside it")
-        faults.raise_if_any()
+        raise InputError.at(
+            "orbit", value, "must be an orbit that can be continued", "at a fold, start beside it"
+        )
     walkers = both_ways(lambda sign: _Walker(problem, start, sign * FLAT, steps, progress))
     return _joined(walkers, watch)
 

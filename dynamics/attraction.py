@@ -118,12 +118,11 @@ def basins(
     ['1-1-1', '1-0-0']
     """
     watch = Stopwatch()
-    faults = Faults()
-    xs, vs = (checked_axis(faults, name, axis) for name, axis in (("x", x), ("v", v)))
-    near = faults.number("radius", radius, RADIUS)
-    longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
-    wait = settling_periods(oscillator) if limit is None else faults.whole("limit", limit, *PATIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        xs, vs = (checked_axis(faults, name, axis) for name, axis in (("x", x), ("v", v)))
+        near = faults.number("radius", radius, RADIUS)
+        longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
+        wait = settling_periods(oscillator) if limit is None else faults.whole("limit", limit, *PATIENT)
     flow = long_flow(oscillator, tolerance)
     starts = np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1).reshape(-1, 2)
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)

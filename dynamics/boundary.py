@@ -76,11 +76,10 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     """
     from statistics import NormalDist
 
-    faults = Faults()
-    n = faults.whole("starts", starts, 1, 10**12, "give the number of starts")
-    k = faults.whole("hits", hits, 0, n, "give at most the number of starts")
-    level = faults.number("confidence", confidence, CONFIDENCE)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("starts", starts, 1, 10**12, "give the number of starts")
+        k = faults.whole("hits", hits, 0, n, "give at most the number of starts")
+        level = faults.number("confidence", confidence, CONFIDENCE)
     z = NormalDist().inv_cdf(0.5 + 0.5 * level)
     share = k / n
     middle = share + z * z / (2 * n)
@@ -142,16 +141,15 @@ def basin_boundary(
     array([16, 45, 97])
     """
     watch = Stopwatch()
-    faults = Faults()
-    side = faults.whole("cells", cells, 2, 10_000, "16 is usual")
-    halvings = faults.whole("levels", levels, 1, 20, "6 is usual")
-    wait = faults.whole("limit", limit, 1, 10**7, "2000 is usual")
-    near = faults.number("radius", radius, RADIUS)
-    homes = [a.states for a in attractors if a.orbit is not None]
-    if not homes:
-        faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
-    region = checked_region(faults, region)
-    faults.raise_if_any()
+    with Faults() as faults:
+        side = faults.whole("cells", cells, 2, 10_000, "16 is usual")
+        halvings = faults.whole("levels", levels, 1, 20, "6 is usual")
+        wait = faults.whole("limit", limit, 1, 10**7, "2000 is usual")
+        near = faults.number("radius", radius, RADIUS)
+        homes = [a.states for a in attractors if a.orbit is not None]
+        if not homes:
+            faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
+        region = checked_region(faults, region)
     labeller = _Labeller(Homes(tables(oscillator), homes, near), wait)
     origin, width = np.array(region)[:, 0], np.ptp(region, axis=1)
     corners = np.array([(i, j) for i in range(side) for j in range(side)], dtype=np.int64)

@@ -10,7 +10,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Booleans, Cost, Faults, part, quantity, record
+from base import Array, Booleans, Cost, InputError, part, quantity, record
 from dynamics.arrays import AsArray
 
 __all__ = [
@@ -88,9 +88,7 @@ def of_kind(points: Sequence[Marked], kind: str, kinds: Sequence[str]) -> list[M
         If there is no such kind.
     """
     if kind not in kinds:
-        faults = Faults()
-        faults.add("kind", kind, f"must be one of {', '.join(kinds)}", "name one of these")
-        faults.raise_if_any()
+        raise InputError.at("kind", kind, f"must be one of {', '.join(kinds)}", "name one of these")
     return [p for p in points if p.kind == kind]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from base import Faults
+from base import Faults, InputError
 from dynamics.arclength import follow
 from dynamics.branch import Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, Steps, checked_range
@@ -85,14 +85,13 @@ def continue_branch(
     >>> [point.kind for point in branch.points]
     []
     """
-    faults = Faults()
-    steps = Steps(step, max_step, min_step, max_points)
-    value = orbit.oscillator.get(parameter)
-    low, high = checked_range(faults, "bounds", bounds, "orbit", parameter, value)
-    if not orbit.converged:
-        faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
-    steps.check(faults)
-    faults.raise_if_any()
+    with Faults() as faults:
+        steps = Steps(step, max_step, min_step, max_points)
+        value = orbit.oscillator.get(parameter)
+        low, high = checked_range(faults, "bounds", bounds, "orbit", parameter, value)
+        if not orbit.converged:
+            faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
+        steps.check(faults)
     scale = scale_of(orbit.oscillator, orbit.state)
     problem = orbits_over(orbit.oscillator, parameter, orbit.periods, (low, high), scale, orbit.tolerance)
     return follow(problem, orbit.state, value, steps, progress)
@@ -172,10 +171,8 @@ def doubled_orbit(
     >>> doubled_orbit(osc, "frequency", doubling, (0.88, 0.96)).label
     '2-2-0'
     """
-    faults = Faults()
     if point.kind != "period-doubling":
-        faults.add("point", point.kind, "must be a period-doubling", "take one from Branch.special")
-    faults.raise_if_any()
+        raise InputError.at("point", point.kind, "must be a period-doubling", "take one from Branch.special")
     n = point.periods
     scale = scale_of(oscillator, point.state)
     problem = orbits_over(oscillator, parameter, 2 * n, bounds, scale, tolerance)

@@ -191,12 +191,11 @@ def boundary_crises(
     >>> [round(c.parameter, 6) for c in boundary_crises(whole, values=2, points=10, periods=12, max_period=1)]
     [0.779904]
     """
-    faults = Faults()
-    number = faults.whole("values", values, 2, 10**6, "200 is usual")
-    some = faults.whole("points", points, 10, 10**6, "300 is usual")
-    longest = faults.whole("periods", periods, 1, 10**6, "90 is usual")
-    most = faults.whole("max_period", max_period, 1, 1000, "4 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        number = faults.whole("values", values, 2, 10**6, "200 is usual")
+        some = faults.whole("points", points, 10, 10**6, "300 is usual")
+        longest = faults.whole("periods", periods, 1, 10**6, "90 is usual")
+        most = faults.whole("max_period", max_period, 1, 1000, "4 is usual")
     spacing = (diagram.bounds[1] - diagram.bounds[0]) / number
     runs = [(branch, run) for branch in diagram.branches if branch.periods <= most for run in _runs(branch)]
     found = []

@@ -152,13 +152,12 @@ def diagram(
     [0.655576]
     """
     watch = Stopwatch()
-    faults = Faults()
-    low, high = ordered(faults, "bounds", bounds)
-    number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
-    longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
-    steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
-    most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        low, high = ordered(faults, "bounds", bounds)
+        number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
+        longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
+        steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
+        most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     builder = BranchTree(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
     unsure = []
     for k in range(number):

@@ -73,15 +73,14 @@ def edge_saddles(
     >>> [saddle.label for saddle in edge_saddles(osc, found.attractors[0], rays=2)]
     ['U1-1-0']
     """
-    faults = Faults()
-    if attractor.orbit is None:
-        faults.add(
-            "attractor", attractor.label, "must be a periodic one", "take it where it is still periodic"
-        )
-    number = faults.whole("rays", rays, 1, 1000, "8 is usual")
-    wait = faults.whole("limit", limit, 1, 10**7, "1000 is usual")
-    longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        if attractor.orbit is None:
+            faults.add(
+                "attractor", attractor.label, "must be a periodic one", "take it where it is still periodic"
+            )
+        number = faults.whole("rays", rays, 1, 1000, "8 is usual")
+        wait = faults.whole("limit", limit, 1, 10**7, "1000 is usual")
+        longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
     homes = Homes(tables(oscillator), [attractor.states], radius)
     met: list[tuple[Orbit, int]] = []
     angles = 2.0 * np.pi * (np.arange(number) + 0.5) / number

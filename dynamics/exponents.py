@@ -92,12 +92,11 @@ def lyapunov_exponents(
     'periodic'
     """
     watch = Stopwatch()
-    faults = Faults()
-    n = faults.whole("periods", periods, *AVERAGED)
-    skip = settling_periods(oscillator)
-    if transient is not None:
-        skip = faults.whole("transient", transient, *TRANSIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *AVERAGED)
+        skip = settling_periods(oscillator)
+        if transient is not None:
+            skip = faults.whole("transient", transient, *TRANSIENT)
     at = oscillator.rest_state() if state is None else checked_state(state)
     sizes = np.array([n // BATCHES + (i < n % BATCHES) for i in range(BATCHES)])
     motion = long_flow(oscillator, tolerance).stretches(at, [skip, *sizes.tolist()])
@@ -195,12 +194,11 @@ def lyapunov_scan(
     (2, 2)
     """
     watch = Stopwatch()
-    faults = Faults()
-    grid = checked_grid(faults, "values", values)
-    n = faults.whole("periods", periods, *AVERAGED)
-    if transient is not None:
-        faults.whole("transient", transient, *TRANSIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        grid = checked_grid(faults, "values", values)
+        n = faults.whole("periods", periods, *AVERAGED)
+        if transient is not None:
+            faults.whole("transient", transient, *TRANSIENT)
     start = None if state is None else checked_state(state)
     exponents, errors, states = (np.full((len(grid), 2), np.nan) for _ in range(3))
     at, defect, used, unsure = start, 0.0, 0, 0

@@ -100,12 +100,11 @@ def find_orbits(
     ['1-0-0', 'U1-1-0', '1-1-1']
     """
     watch = Stopwatch()
-    faults = Faults()
-    wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
-    side = faults.whole("starts", starts, 1, 1000, "10 is usual")
-    if region is not None:
-        region = checked_region(faults, region)
-    faults.raise_if_any()
+    with Faults() as faults:
+        wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
+        side = faults.whole("starts", starts, 1, 1000, "10 is usual")
+        if region is not None:
+            region = checked_region(faults, region)
     search = _Search(oscillator, region)
     counts = []
     for n in wanted:

@@ -156,15 +156,16 @@ def tables(
     InputError
         If an argument is out of range, or both degree and tolerance are given.
     """
-    faults = Faults()
-    faults.whole("refinement", refinement, *REFINEMENT)
-    if degree is not None:
-        faults.whole("degree", degree, *TAYLOR_DEGREE)
-    if tolerance is not None:
-        faults.number("tolerance", tolerance, POSITIVE)
+    with Faults() as faults:
+        faults.whole("refinement", refinement, *REFINEMENT)
         if degree is not None:
-            faults.add("tolerance", tolerance, "must be left out where the degree is given", "leave one out")
-    faults.raise_if_any()
+            faults.whole("degree", degree, *TAYLOR_DEGREE)
+        if tolerance is not None:
+            faults.number("tolerance", tolerance, POSITIVE)
+            if degree is not None:
+                faults.add(
+                    "tolerance", tolerance, "must be left out where the degree is given", "leave one out"
+                )
     if degree is None:
         degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
     return tabulated(oscillator.packed(), math.ceil(oscillator.cells) * refinement, degree)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base import Faults, InputError
-from dynamics.flow import Tables, tables
+from dynamics.flow import tables
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, Oscillator
 from dynamics.stepwise.flow import StepwiseFlow
@@ -38,31 +38,21 @@ def flow_of(
         of the exact flow are asked for, which `map_derivatives` and `turning_points` give.
     """
     if isinstance(oscillator, GearOscillator):
-        return _exact(oscillator, tolerance, parameters, extrema)
+        asked = (
+            ("parameters", parameters, "take dynamics.sensitivity.map_derivatives"),
+            ("extrema", extrema, "take dynamics.flow.turning_points"),
+        )
+        with Faults() as faults:
+            for name, value, remedy in asked:
+                if value:
+                    faults.add(name, value, "must be left out for a GearOscillator", remedy)
+        return tables(oscillator, tolerance=tolerance)
     if isinstance(oscillator, SmoothOscillator):
         return StepwiseFlow(oscillator, tolerance, parameters, extrema)
     raise unserved(oscillator)
 
 
-def _exact(
-    oscillator: GearOscillator, tolerance: float | None, parameters: tuple[str, ...], extrema: bool
-) -> Tables:
-    """Tables, which neither derivatives by parameters nor extrema come from."""
-    asked = (
-        ("parameters", parameters, "take dynamics.sensitivity.map_derivatives"),
-        ("extrema", extrema, "take dynamics.flow.turning_points"),
-    )
-    faults = Faults()
-    for name, value, remedy in asked:
-        if value:
-            faults.add(name, value, "must be left out for a GearOscillator", remedy)
-    faults.raise_if_any()
-    return tables(oscillator, tolerance=tolerance)
-
-
 def unserved(oscillator: object) -> InputError:
     """Error of what is no oscillator that there is a flow for."""
-    faults = Faults()
-    name = type(oscillator).__name__
-    faults.add("oscillator", name, "must be a GearOscillator or a SmoothOscillator", "take one of these")
-    return InputError(faults.found)
+    allowed = "must be a GearOscillator or a SmoothOscillator"
+    return InputError.at("oscillator", type(oscillator).__name__, allowed, "take one of these")

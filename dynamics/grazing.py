@@ -9,7 +9,7 @@ import warnings
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Fault, Faults, InputError, RangeWarning, Stopwatch, quantity, record
+from base import Array, Cost, Faults, InputError, RangeWarning, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.branch import SpecialPoint
 from dynamics.flow import tables, turning_points
@@ -89,10 +89,8 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     >>> contact_orbit(osc).clearance > 0.0  # it does not feel the backlash
     True
     """
-    faults = Faults()
     if side not in (1, -1):
-        faults.add("side", side, "must be 1 or -1", "1 is the driving side")
-    faults.raise_if_any()
+        raise InputError.at("side", side, "must be 1 or -1", "1 is the driving side")
     linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
     table = tables(linear, refinement)
     image = period_map(table, np.zeros(2))
@@ -100,7 +98,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
     if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
         allowed = "must have a linear equation without resonance"
-        raise ResonanceError([Fault("oscillator", "multiplier 1", allowed, "change the frequency")])
+        raise ResonanceError.at("oscillator", "multiplier 1", allowed, "change the frequency")
     state = np.linalg.solve(matrix, image.state)
     # one refinement, against rounding
     state += np.linalg.solve(matrix, period_map(table, state).state - state)
@@ -162,10 +160,9 @@ def contact_grazing(
     from scipy.optimize import brentq
 
     watch = Stopwatch()
-    faults = Faults()
-    n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
-    low, high = ordered(faults, "bounds", bounds)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
+        low, high = ordered(faults, "bounds", bounds)
     evaluations = 0
 
     def clearance(value: float, refinement: int = 1) -> float:

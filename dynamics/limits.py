@@ -10,34 +10,6 @@ import numpy.typing as npt
 
 from base import Array, Faults, Limit
 
-__all__ = [
-    "AVERAGED",
-    "BATCHES",
-    "CONFIDENCE",
-    "KEPT",
-    "LONGEST_PERIOD",
-    "MAX_POINTS",
-    "NEWTON_STEPS",
-    "NUMBER",
-    "ORBIT_PERIODS",
-    "OSCILLATOR",
-    "PATIENT",
-    "PERIODS",
-    "POINTS",
-    "POSITIVE",
-    "RADIUS",
-    "REFINEMENT",
-    "STARTS",
-    "STEP",
-    "STEP_TOLERANCE",
-    "TAYLOR_DEGREE",
-    "TRANSIENT",
-    "Whole",
-    "checked_axis",
-    "checked_grid",
-    "ordered",
-]
-
 BATCHES = 20  # parts of a motion that a standard error is estimated from
 NUMBER = Limit(remedy="give a finite number")
 POSITIVE = Limit(0.0, low_open=True, remedy="give a positive number")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Fault, Faults, InputError, Stopwatch, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.branch import SpecialPoint, of_kind
 from dynamics.branch_problem import Steps, checked_range
@@ -124,17 +124,16 @@ def continue_locus(
     ('bound', 'bound')
     """
     watch = Stopwatch()
-    faults = Faults()
-    start = oscillator.with_parameter(parameters[0], point.parameter)
-    if parameters[0] == parameters[1]:
-        faults.add("parameters", parameters, "must be two different parameters", "name another one")
-    ranges = [
-        checked_range(faults, f"bounds[{k}]", bounds[k], "point", name, start.get(name))
-        for k, name in enumerate(parameters)
-    ]
-    steps = Steps(step, max_step, min_step, max_points)
-    steps.check(faults)
-    faults.raise_if_any()
+    with Faults() as faults:
+        start = oscillator.with_parameter(parameters[0], point.parameter)
+        if parameters[0] == parameters[1]:
+            faults.add("parameters", parameters, "must be two different parameters", "name another one")
+        ranges = [
+            checked_range(faults, f"bounds[{k}]", bounds[k], "point", name, start.get(name))
+            for k, name in enumerate(parameters)
+        ]
+        steps = Steps(step, max_step, min_step, max_points)
+        steps.check(faults)
     low, high = np.array(ranges).T
     problem = OrbitProblem(start, parameters, point.periods, low, high, scale_of(start, point.state))
     condition = Condition.of(start, point)
@@ -142,7 +141,7 @@ def continue_locus(
     first = special_orbit(problem, condition, guess, np.array([0.0, 0.0, 0.0, 1.0]))
     if first is None:
         allowed, remedy = "must be a point that can be met again", "next to a grazing, start elsewhere"
-        raise InputError([Fault("point", f"{point.parameter}", allowed, remedy)])
+        raise InputError.at("point", point.parameter, allowed, remedy)
     tracers = both_ways(lambda sign: LocusTracer(problem, condition, first, sign, steps, progress))
     points, double = joined([t.points for t in tracers], 1), joined([t.double for t in tracers])
     ended = (tracers[0].ended, tracers[-1].ended)

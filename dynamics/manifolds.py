@@ -146,20 +146,19 @@ def manifold(
     '2 branches ended: length'
     """
     watch = Stopwatch()
-    faults = Faults()
-    if kind not in ("stable", "unstable"):
-        faults.add("kind", kind, "must be 'stable' or 'unstable'", "name one of these")
-    if not orbit.converged or not is_saddle(orbit.multipliers):
-        faults.add(
-            "orbit",
-            orbit.label or "not converged",
-            "must be a saddle",
-            "take an unstable orbit of find_orbits",
-        )
-    long = faults.number("length", length, replace(POSITIVE, remedy="20 is usual"))
-    gap = faults.number("spacing", spacing, replace(POSITIVE, remedy="0.02 is usual"))
-    most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        if kind not in ("stable", "unstable"):
+            faults.add("kind", kind, "must be 'stable' or 'unstable'", "name one of these")
+        if not orbit.converged or not is_saddle(orbit.multipliers):
+            faults.add(
+                "orbit",
+                orbit.label or "not converged",
+                "must be a saddle",
+                "take an unstable orbit of find_orbits",
+            )
+        long = faults.number("length", length, replace(POSITIVE, remedy="20 is usual"))
+        gap = faults.number("spacing", spacing, replace(POSITIVE, remedy="0.02 is usual"))
+        most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
     grower = _Grower(orbit, kind == "stable", region, long, gap, most)
     grown = [
         grower.grow(point, sign * along)

@@ -104,10 +104,9 @@ def period_map(
     at = checked_state(state)
     if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
         return oscillator.follow(at, periods, skip)
-    faults = Faults()
-    n = faults.whole("periods", periods, *PERIODS)
-    n_skip = faults.whole("skip", skip, *TRANSIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
+        n_skip = faults.whole("skip", skip, *TRANSIENT)
     if isinstance(oscillator, Flow):
         return oscillator.follow(at, n, n_skip)
     flow = flow_of(oscillator, tolerance, parameters, extrema)
@@ -159,10 +158,9 @@ def trajectory(
     (101,)
     """
     watch = Stopwatch()
-    faults = Faults()
-    n = faults.whole("periods", periods, *PERIODS)
-    points = faults.whole("points_per_period", points_per_period, *POINTS)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
+        points = faults.whole("points_per_period", points_per_period, *POINTS)
     flow = flow_of(oscillator, tolerance)
     samples, turns, events = flow.sampled(checked_state(state), n, points)
     finer, _, _ = flow.finer().sampled(checked_state(state), n, points)
@@ -218,11 +216,10 @@ def force_range(
     >>> round(found.least, 3), round(found.greatest, 3)
     (0.182, 2.277)
     """
-    faults = Faults()
-    number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
-    if oscillator.mean_force == 0.0:
-        faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
-    faults.raise_if_any()
+    with Faults() as faults:
+        number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
+        if oscillator.mean_force == 0.0:
+            faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
     motion = trajectory(oscillator, state, periods, number)
     stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
     force = stiffness * oscillator.deflection(motion.x) / oscillator.mean_force

@@ -126,11 +126,10 @@ def multi_sweep(
     ['1-0-0', '1-1-1']
     """
     watch = Stopwatch()
-    faults = Faults()
-    grid = np.unique(checked_grid(faults, "values", values))
-    number = faults.whole("seeds", seeds, 0, 10_000, "9 is usual")
-    side = faults.whole("starts", starts, 1, 1000, "6 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        grid = np.unique(checked_grid(faults, "values", values))
+        number = faults.whole("seeds", seeds, 0, 10_000, "9 is usual")
+        side = faults.whole("starts", starts, 1, 1000, "6 is usual")
     met = _Met(oscillator, parameter, grid, max_period)
     for direction, i in (("up", 0), ("down", len(grid) - 1)):
         met.follow(direction, i, met.at(i).rest_state(), whole=True)

@@ -8,7 +8,7 @@ import math
 import re
 from typing import Any
 
-from base import Faults, InputError
+from base import InputError
 from dynamics.stiffness import FourierStiffness
 
 __all__ = ["natural_size", "series", "series_names", "unknown", "value_at", "with_value"]
@@ -50,9 +50,7 @@ def with_value(record: Any, path: str, value: float) -> Any:
 
 def unknown(name: str, names: tuple[str, ...]) -> InputError:
     """Error that names what there is."""
-    faults = Faults()
-    faults.add("parameter", str(name), f"must be one of {', '.join(names)}", "name one of these")
-    return InputError(faults.found)
+    return InputError.at("parameter", str(name), f"must be one of {', '.join(names)}", "name one of these")
 
 
 def natural_size(*sizes: float) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Faults
+from base import Array, Faults, InputError
 from dynamics.limits import OSCILLATOR
 from dynamics.naming import series, series_names
 from dynamics.protocol import Oscillator
@@ -80,17 +79,18 @@ class GearOscillator(Oscillator):
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
-        faults = Faults()
-        check_stiffness(faults, self.stiffness)
-        values = {name: faults.number(name, getattr(self, name), limit) for name, limit in OSCILLATOR.items()}
-        faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
-        faults.raise_if_any()
+        with Faults() as faults:
+            check_stiffness(faults, self.stiffness)
+            values = {
+                name: faults.number(name, getattr(self, name), limit) for name, limit in OSCILLATOR.items()
+            }
+            faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
             object.__setattr__(self, name, value)
         if not self.cells <= MAX_CELLS:
             allowed = f"must give a period of at most {MAX_CELLS} cells (this has {self.cells:.3g})"
-            faults.add("frequency", self.frequency, allowed, "raise the frequency, or lower the stiffness")
-            faults.raise_if_any()
+            remedy = "raise the frequency, or lower the stiffness"
+            raise InputError.at("frequency", self.frequency, allowed, remedy)
 
     @property
     def cells(self) -> float:
@@ -136,20 +136,6 @@ class GearOscillator(Oscillator):
         if force == 0.0 or k == 0.0:
             return np.zeros(2)
         return np.array([math.copysign(self.half_backlash, force) + force / k, 0.0])
-
-    def mirrored(self) -> GearOscillator:
-        """Return the oscillator of -X, which has forces and error reversed.
-
-        Raises
-        ------
-        InputError
-            If there is play on one side only: -X would have it on the other.
-        """
-        if self.one_sided:
-            faults = Faults()
-            faults.add("one_sided", True, "must be False", "only that has a mirror image of its kind")
-            faults.raise_if_any()
-        return dataclasses.replace(self, mean_force=-self.mean_force, error_amplitude=-self.error_amplitude)
 
     def force(self, tau: npt.ArrayLike) -> Array:
         r"""Return :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
 
 import numpy as np
 
-from base import Array, Cost, Faults, InputError, Integers, quantity, record
+from base import Array, Cost, InputError, Integers, quantity, record
 from dynamics.naming import natural_size, unknown, value_at, with_value
 
 __all__ = ["EPS", "Flow", "MapResult", "Oscillator", "Stretches", "exact_only", "lost_motion"]
@@ -230,14 +230,8 @@ class Oscillator(ABC):
 
 def lost_motion(state: Array, reason: str) -> InputError:
     """Error of a motion that cannot be followed."""
-    faults = Faults()
-    faults.add(
-        "state",
-        str(np.asarray(state).tolist()),
-        "must start a motion that can be followed",
-        f"{reason}: check the input",
-    )
-    return InputError(faults.found)
+    allowed = "must start a motion that can be followed"
+    return InputError.at("state", str(np.asarray(state).tolist()), allowed, f"{reason}: check the input")
 
 
 def exact_only(function: Callable[P, R]) -> Callable[P, R]:
@@ -248,14 +242,12 @@ def exact_only(function: Callable[P, R]) -> Callable[P, R]:
         given: Any = args[0] if args else next(iter(kwargs.values()), None)
         oscillator = given if isinstance(given, Oscillator) else getattr(given, "oscillator", None)
         if isinstance(oscillator, Oscillator) and not oscillator.is_exact:
-            faults = Faults()
             name = type(oscillator).__name__
-            faults.add(
+            raise InputError.at(
                 "oscillator", name, f"must be a GearOscillator in {function.__name__}",
                 "period_map, trajectory, find_orbit, continue_branch, doubled_orbit, sweep, lyapunov_exponents and "
                 f"basins take a {name} too",
             )  # fmt: skip
-            faults.raise_if_any()
         return function(*args, **kwargs)
 
     return checked

@@ -50,15 +50,18 @@ class Scaling:
 
     def __post_init__(self) -> None:
         """Check; every fault is listed."""
-        faults = Faults()
-        for name, unit in (("equivalent_mass", "kg"), ("mean_stiffness", "N/m"), ("length", "m")):
-            given = faults.number(f"scaling.{name}", getattr(self, name), POSITIVE.in_unit(1.0, unit))
-            object.__setattr__(self, name, given)
-        teeth = faults.whole(
-            "scaling.cycles_per_revolution", self.cycles_per_revolution, 1, 10**9, "give the number of teeth"
-        )
-        object.__setattr__(self, "cycles_per_revolution", teeth)
-        faults.raise_if_any()
+        with Faults() as faults:
+            for name, unit in (("equivalent_mass", "kg"), ("mean_stiffness", "N/m"), ("length", "m")):
+                given = faults.number(f"scaling.{name}", getattr(self, name), POSITIVE.in_unit(1.0, unit))
+                object.__setattr__(self, name, given)
+            teeth = faults.whole(
+                "scaling.cycles_per_revolution",
+                self.cycles_per_revolution,
+                1,
+                10**9,
+                "give the number of teeth",
+            )
+            object.__setattr__(self, "cycles_per_revolution", teeth)
 
     @classmethod
     def from_inertias(
@@ -94,27 +97,28 @@ class Scaling:
         InputError
             With every fault found.
         """
-        faults = Faults()
-        pairs = {"inertias": (inertias, "kg m2"), "base_radii": (base_radii, "m")}
-        values: list[float] = []
-        for name, (pair, unit) in pairs.items():
-            for i in range(2):
-                values.append(faults.number(f"{name}[{i}]", pair[i], POSITIVE.in_unit(1.0, unit)))
-        k = faults.number("mean_stiffness", mean_stiffness, POSITIVE.in_unit(1.0, "N/m"))
-        if length is not None and force is None and mean_force is None:
-            b_c = faults.number("length", length, POSITIVE.in_unit(1.0, "m"))
-        elif length is None and force is not None and mean_force is not None:
-            load = faults.number("force", force, NUMBER)
-            level = faults.number("mean_force", mean_force, NUMBER)
-            b_c = load / (k * level) if level else math.nan
-            if load == 0.0:
-                faults.add("force", load, "must not be 0 N", "a pair without load has no scale")
-            elif load * level <= 0.0:
-                faults.add("mean_force", level, "must have the sign of force", "usual is 0.1")
-        else:
-            b_c = math.nan
-            faults.add("length", length, "must be given, or else force and mean_force", "give one of the two")
-        faults.raise_if_any()
+        with Faults() as faults:
+            pairs = {"inertias": (inertias, "kg m2"), "base_radii": (base_radii, "m")}
+            values: list[float] = []
+            for name, (pair, unit) in pairs.items():
+                for i in range(2):
+                    values.append(faults.number(f"{name}[{i}]", pair[i], POSITIVE.in_unit(1.0, unit)))
+            k = faults.number("mean_stiffness", mean_stiffness, POSITIVE.in_unit(1.0, "N/m"))
+            if length is not None and force is None and mean_force is None:
+                b_c = faults.number("length", length, POSITIVE.in_unit(1.0, "m"))
+            elif length is None and force is not None and mean_force is not None:
+                load = faults.number("force", force, NUMBER)
+                level = faults.number("mean_force", mean_force, NUMBER)
+                b_c = load / (k * level) if level else math.nan
+                if load == 0.0:
+                    faults.add("force", load, "must not be 0 N", "a pair without load has no scale")
+                elif load * level <= 0.0:
+                    faults.add("mean_force", level, "must have the sign of force", "usual is 0.1")
+            else:
+                b_c = math.nan
+                faults.add(
+                    "length", length, "must be given, or else force and mean_force", "give one of the two"
+                )
         j1, j2, r1, r2 = values
         return cls(j1 * j2 / (j1 * r2**2 + j2 * r1**2), k, b_c, cycles_per_revolution)
 

@@ -64,9 +64,8 @@ def map_derivatives(
     InputError
         If an argument is out of range, or the motion grows beyond all bounds.
     """
-    faults = Faults()
-    n = faults.whole("periods", periods, *PERIODS)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
     at = checked_state(state)
     names = oscillator.parameters if parameters is None else tuple(parameters)
     low = np.array([oscillator.get(name) for name in names])

@@ -156,11 +156,10 @@ def find_orbit(
     ('U1-1-0', False, True)
     """
     watch = Stopwatch()
-    faults = Faults()
-    n = faults.whole("periods", periods, *ORBIT_PERIODS)
-    limit = faults.whole("max_iterations", max_iterations, *NEWTON_STEPS)
-    wait = faults.whole("transient", transient, *TRANSIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *ORBIT_PERIODS)
+        limit = faults.whole("max_iterations", max_iterations, *NEWTON_STEPS)
+        wait = faults.whole("transient", transient, *TRANSIENT)
     flow = flow_of(oscillator, tolerance)
     state = checked_state(guess, "guess")
     size = max(float(np.max(np.abs(state))), oscillator.natural_size)
@@ -214,31 +213,22 @@ def _in_stretches(
     chain = shoot_in_stretches(oscillator, flow, guess, n, limit)
     if chain is None:
         return None
-    scale = max(float(np.max(np.abs(chain.nodes))), 1e-300)
+    nodes = chain.nodes
+    scale = max(float(np.max(np.abs(nodes))), 1e-300)
     if not (chain.error < 1e-3 and scale < 1e9 * size):
         return None
-    each = len(chain.nodes) // n
-    starts = chain.nodes[::each]
+    starts = nodes[:: len(nodes) // n]
     least = next(
         d for d in range(1, n + 1) if n % d == 0 and np.max(np.abs(starts[d % n] - starts[0])) <= 1e-9 * scale
     )
     if least < n:
-        return _in_stretches(oscillator, flow, chain.nodes[0], least, limit, size, True, watch, used)
-    message = f"converged in {chain.iterations} iterations on {len(chain.nodes)} stretches"
-    cost = Cost(watch.seconds, chain.nodes.size, chain.iterations, used + n * chain.iterations)
+        return _in_stretches(oscillator, flow, nodes[0], least, limit, size, True, watch, used)
+    message = f"converged in {chain.iterations} iterations on {len(nodes)} stretches"
+    cost = Cost(watch.seconds, nodes.size, chain.iterations, used + n * chain.iterations)
     decay = -2.0 * oscillator.damping_ratio * oscillator.period * n
     image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, decay, np.array([chain.counts]), "", cost)
     return make_orbit(
-        oscillator,
-        chain.nodes[0].copy(),
-        n,
-        image,
-        chain.residual,
-        chain.error,
-        cost,
-        True,
-        message,
-        nodes=chain.nodes,
+        oscillator, nodes[0].copy(), n, image, chain.residual, chain.error, cost, True, message, nodes=nodes
     )
 
 

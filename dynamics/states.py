@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Booleans, Faults
+from base import Array, Booleans, Faults, InputError
 from dynamics.limits import ordered
 from dynamics.protocol import Oscillator
 
@@ -31,9 +31,8 @@ def checked_state(state: npt.ArrayLike, where: str = "state") -> Array:
     """Return a fresh array of X and V, or raise InputError."""
     at = np.array(state, dtype=np.float64)
     if at.shape != (2,) or not np.all(np.isfinite(at)):
-        faults = Faults()
-        faults.add(where, at.tolist(), "must be two finite numbers, X and V", "give the state at tau = 0")
-        faults.raise_if_any()
+        allowed = "must be two finite numbers, X and V"
+        raise InputError.at(where, at.tolist(), allowed, "give the state at tau = 0")
     return at
 
 

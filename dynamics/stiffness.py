@@ -48,38 +48,20 @@ class FourierStiffness:
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
-        faults = Faults()
-        mean = faults.number("stiffness.mean", self.mean, NUMBER)
-        series: list[tuple[float, ...]] = []
-        for name in ("amplitudes", "phases"):
-            given: object = getattr(self, name)
-            if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
+        with Faults() as faults:
+            mean = faults.number("stiffness.mean", self.mean, NUMBER)
+            amplitudes = _numbers(faults, "stiffness.amplitudes", self.amplitudes)
+            phases = _numbers(faults, "stiffness.phases", self.phases)
+            order = len(amplitudes)
+            if len(phases) != order:
+                allowed = f"must be {order} phases, one per amplitude"
+                remedy = "give amplitudes and phases of equal length"
+                faults.add("stiffness.phases", f"{len(phases)} phases", allowed, remedy)
+            if order > MAX_ORDER:
+                remedy = "leave out the highest harmonics"
                 faults.add(
-                    f"stiffness.{name}",
-                    given,
-                    "must be a sequence of numbers",
-                    "give one number per harmonic",
+                    "stiffness.amplitudes", f"{order} harmonics", f"must be at most {MAX_ORDER}", remedy
                 )
-                series.append(())
-                continue
-            series.append(
-                tuple(faults.number(f"stiffness.{name}[{j}]", v, NUMBER) for j, v in enumerate(given))
-            )
-        if len(series[0]) != len(series[1]):
-            faults.add(
-                "stiffness.phases",
-                f"{len(series[1])} phases",
-                f"must be {len(series[0])} phases, one per amplitude",
-                "give amplitudes and phases of equal length",
-            )
-        if len(series[0]) > MAX_ORDER:
-            faults.add(
-                "stiffness.amplitudes",
-                f"{len(series[0])} harmonics",
-                f"must be at most {MAX_ORDER}",
-                "leave out the highest harmonics",
-            )
-        faults.raise_if_any()
         if mean <= 0.0:
             warnings.warn(
                 f"stiffness.mean = {mean}: a mesh has a positive mean stiffness",
@@ -87,8 +69,8 @@ class FourierStiffness:
                 stacklevel=3,
             )
         object.__setattr__(self, "mean", mean)
-        object.__setattr__(self, "amplitudes", series[0])
-        object.__setattr__(self, "phases", series[1])
+        object.__setattr__(self, "amplitudes", amplitudes)
+        object.__setattr__(self, "phases", phases)
 
     @property
     def order(self) -> int:
@@ -111,19 +93,25 @@ class FourierStiffness:
         InputError
             If the mean is not positive.
         """
-        faults = Faults()
-        faults.number(
-            "stiffness.mean",
-            self.mean,
-            Limit(0.0, low_open=True, remedy="only a positive mean can be scaled to 1"),
-        )
-        faults.raise_if_any()
+        with Faults() as faults:
+            faults.number(
+                "stiffness.mean",
+                self.mean,
+                Limit(0.0, low_open=True, remedy="only a positive mean can be scaled to 1"),
+            )
         return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)
+
+
+def _numbers(faults: Faults, where: str, given: object) -> tuple[float, ...]:
+    """Sequence of numbers as a tuple; what is none is noted."""
+    if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
+        faults.add(where, given, "must be a sequence of numbers", "give one number per harmonic")
+        return ()
+    return tuple(faults.number(f"{where}[{j}]", value, NUMBER) for j, value in enumerate(given))
 
 
 def check_stiffness(faults: Faults, stiffness: object) -> None:
     """Note a fault of what is no `FourierStiffness`."""
     if not isinstance(stiffness, FourierStiffness):
-        faults.add(
-            "stiffness", stiffness, "must be a FourierStiffness", "build one, or fit one with fit_fourier"
-        )
+        remedy = "build one, or fit one with fit_fourier"
+        faults.add("stiffness", stiffness, "must be a FourierStiffness", remedy)

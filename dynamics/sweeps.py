@@ -174,13 +174,12 @@ def checked_sweep(
     InputError
         With every argument that is out of range.
     """
-    faults = Faults()
-    grid = checked_grid(faults, "values", values)
-    faults.choice("direction", direction, ("up", "down"), "call twice for both")
-    longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
-    kept = faults.whole("keep", keep, *KEPT._replace(low=2 * longest))
-    wait = None if transient is None else faults.whole("transient", transient, *TRANSIENT)
-    faults.raise_if_any()
+    with Faults() as faults:
+        grid = checked_grid(faults, "values", values)
+        faults.choice("direction", direction, ("up", "down"), "call twice for both")
+        longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
+        kept = faults.whole("keep", keep, *KEPT._replace(low=2 * longest))
+        wait = None if transient is None else faults.whole("transient", transient, *TRANSIENT)
     ascending = np.argsort(grid, kind="stable")
     return grid, ascending if direction == "up" else ascending[::-1], longest, kept, wait
 

@@ -92,16 +92,15 @@ def identify(
     problem = checked(oscillator, parameter, events, unknowns, bounds)
     reduction = reduced(problem)
     first = reduction.first
-    faults = Faults()
-    if solved is not None and solved not in first.unknowns:
-        faults.add(
-            "solved",
-            solved,
-            f"must be one of {', '.join(first.unknowns)}",
-            "name an unknown that the events see",
-        )
-    most = faults.whole("anchors", anchors, 1, 1000, "one more than events that may be wrong")
-    faults.raise_if_any()
+    with Faults() as faults:
+        if solved is not None and solved not in first.unknowns:
+            faults.add(
+                "solved",
+                solved,
+                f"must be one of {', '.join(first.unknowns)}",
+                "name an unknown that the events see",
+            )
+        most = faults.whole("anchors", anchors, 1, 1000, "one more than events that may be wrong")
     name = solved if solved is not None else solved_name(first)
     catalogue = Catalogue(first, Tally())
     trials = 0

@@ -52,11 +52,6 @@ class Candidate:
     misfit: float = quantity("1", "sum over the fitted events of trust times ln(1 + difference in units)")
     by_chance: float = quantity("1", "trials expected to match as well if the events lay at random")
 
-    @property
-    def unmatched(self) -> tuple[int, ...]:
-        """Events that have no such partner."""
-        return tuple(i for i in range(len(self.found)) if i not in self.matched)
-
 
 @record
 class Identification:

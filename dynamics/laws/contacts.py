@@ -32,8 +32,6 @@ class Law(Protocol):
     surfaces : ndarray, shape (s, 4)
         Rows n_X, n_V, sign, place: the surface n_X X + n_V V = sign values[place] (0 where place is -1), where the
         law is switched or crossings are counted. The first counts p, the second q.
-    damped : bool
-        Whether the force depends on the speed.
     size : float
         Natural size of a displacement.
     compiled : object
@@ -51,9 +49,6 @@ class Law(Protocol):
 
     @property
     def surfaces(self) -> Array: ...  # noqa: D102
-
-    @property
-    def damped(self) -> bool: ...  # noqa: D102
 
     @property
     def size(self) -> float: ...  # noqa: D102
@@ -88,10 +83,9 @@ class SqueezeFilm:
 
     def __post_init__(self) -> None:
         """Check."""
-        faults = Faults()
-        faults.number("film.damping", self.damping, Limit(0.0, remedy="0 is no film"))
-        faults.number("film.thickness", self.thickness, POSITIVE)
-        faults.raise_if_any()
+        with Faults() as faults:
+            faults.number("film.damping", self.damping, Limit(0.0, remedy="0 is no film"))
+            faults.number("film.thickness", self.thickness, POSITIVE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,11 +134,6 @@ class ContactLaw(ABC):
         """X = D and X = -D."""
         both = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]])
         return both[:1] if self.one_sided else both
-
-    @property
-    def damped(self) -> bool:
-        """Whether there is a film."""
-        return self.film.damping != 0.0
 
     @property
     def size(self) -> float:

@@ -171,18 +171,24 @@ class TabulatedContact(ContactLaw):
         from scipy.interpolate import make_interp_spline
 
         knots, table = np.asarray(depths, dtype=np.float64), np.asarray(forces, dtype=np.float64)
-        faults = Faults()
-        n = len(knots) - 1
-        graded = n >= 6 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
-        if not graded:
-            faults.add("depths", knots.tolist(), "must be reach (i/n)^2, n >= 6", "use from_deflections")
-        if table.shape != (table.shape[0], n + 1) or not np.all(np.isfinite(table)) or np.any(table[:, 0]):
-            faults.add(
-                "forces", table.shape, f"must be finite, (angles, {n + 1}), 0 at no depth", "check the table"
-            )
-        count = len(table)
-        whole = faults.whole("order", order, 0, max((count - 1) // 2, 0), "keep it below half the angles")
-        faults.raise_if_any()
+        with Faults() as faults:
+            n = len(knots) - 1
+            graded = n >= 6 and np.allclose(knots, knots[-1] * (np.arange(n + 1) / n) ** 2, rtol=1e-9)
+            if not graded:
+                faults.add("depths", knots.tolist(), "must be reach (i/n)^2, n >= 6", "use from_deflections")
+            if (
+                table.shape != (table.shape[0], n + 1)
+                or not np.all(np.isfinite(table))
+                or np.any(table[:, 0])
+            ):
+                faults.add(
+                    "forces",
+                    table.shape,
+                    f"must be finite, (angles, {n + 1}), 0 at no depth",
+                    "check the table",
+                )
+            count = len(table)
+            whole = faults.whole("order", order, 0, max((count - 1) // 2, 0), "keep it below half the angles")
         angles = first_angle + 2.0 * np.pi * np.arange(count) / count
         j = np.arange(1, whole + 1)
         waves = np.vstack([np.ones(count), np.cos(j[:, None] * angles), np.sin(j[:, None] * angles)])
@@ -252,18 +258,22 @@ class TabulatedContact(ContactLaw):
 
 def _checked_table(load: Array, table: Array, order: int, intervals: int) -> None:
     """Raise InputError with every fault of the samples."""
-    faults = Faults()
-    if load.ndim != 1 or len(load) < 4 or not np.all(np.diff(load, prepend=0.0) > 0.0):
-        faults.add(
-            "forces", load.tolist(), "must be four or more, rising from more than 0", "sort them, drop zero"
-        )
-    if table.ndim != 2 or table.shape[1:] != load.shape or not np.all(np.isfinite(table)):
-        faults.add("deflections", table.shape, f"must be finite, (angles, {load.size})", "one row per angle")
-    elif not np.all(np.diff(table, axis=1, prepend=0.0) > 0.0):
-        row = int(np.argmin(np.diff(table, axis=1, prepend=0.0).min(axis=1)))
-        faults.add(
-            "deflections", f"not rising in row {row}", "must be rising with the force", "check the sweep"
-        )
-    faults.whole("order", order, 0, max((len(table) - 1) // 2, 0), "keep it below half the angles")
-    faults.whole("intervals", intervals, 6, 10_000, "32 is usual")
-    faults.raise_if_any()
+    with Faults() as faults:
+        if load.ndim != 1 or len(load) < 4 or not np.all(np.diff(load, prepend=0.0) > 0.0):
+            faults.add(
+                "forces",
+                load.tolist(),
+                "must be four or more, rising from more than 0",
+                "sort them, drop zero",
+            )
+        if table.ndim != 2 or table.shape[1:] != load.shape or not np.all(np.isfinite(table)):
+            faults.add(
+                "deflections", table.shape, f"must be finite, (angles, {load.size})", "one row per angle"
+            )
+        elif not np.all(np.diff(table, axis=1, prepend=0.0) > 0.0):
+            row = int(np.argmin(np.diff(table, axis=1, prepend=0.0).min(axis=1)))
+            faults.add(
+                "deflections", f"not rising in row {row}", "must be rising with the force", "check the sweep"
+            )
+        faults.whole("order", order, 0, max((len(table) - 1) // 2, 0), "keep it below half the angles")
+        faults.whole("intervals", intervals, 6, 10_000, "32 is usual")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from base import Array, Faults
+from base import Array, Faults, InputError
 from dynamics.limits import NUMBER
 from dynamics.naming import unknown
 
@@ -55,8 +55,6 @@ class CompiledLaw:
     surfaces_at : tuple of Surface
         Where the force is switched; bit i of `region` is 1 where n . (X, V) is above surface i. The first counts p
         (falls), the second q of the label.
-    damped : bool
-        Whether the force depends on the speed; for the reader alone: the determinant always has its own equation.
     size : float
         Natural size of a displacement.
 
@@ -73,31 +71,29 @@ class CompiledLaw:
     force: Callable[..., Any]
     parameters: tuple[tuple[str, float], ...] = ()
     surfaces_at: tuple[Surface, ...] = ()
-    damped: bool = True
     size: float = 1.0
 
     def __post_init__(self) -> None:
         """Check."""
-        faults = Faults()
-        if not callable(self.force):
-            faults.add(
-                "force", self.force, "must be a function", "force(theta, x, v, region, q) that returns f"
-            )
-        for name, value in self.parameters:
-            faults.number(f"parameters[{name!r}]", value, NUMBER)
-        if len(set(self.names)) != len(self.names):
-            faults.add("parameters", self.names, "must be different names", "rename one")
-        for surface in self.surfaces_at:
-            if surface.parameter and surface.parameter not in self.names:
+        with Faults() as faults:
+            if not callable(self.force):
                 faults.add(
-                    "surfaces_at",
-                    surface.parameter,
-                    f"must be one of {', '.join(self.names)}",
-                    "name a parameter",
+                    "force", self.force, "must be a function", "force(theta, x, v, region, q) that returns f"
                 )
-        if len(self.surfaces_at) > 16:
-            faults.add("surfaces_at", len(self.surfaces_at), "must be at most 16", "join some")
-        faults.raise_if_any()
+            for name, value in self.parameters:
+                faults.number(f"parameters[{name!r}]", value, NUMBER)
+            if len(set(self.names)) != len(self.names):
+                faults.add("parameters", self.names, "must be different names", "rename one")
+            for surface in self.surfaces_at:
+                if surface.parameter and surface.parameter not in self.names:
+                    faults.add(
+                        "surfaces_at",
+                        surface.parameter,
+                        f"must be one of {', '.join(self.names)}",
+                        "name a parameter",
+                    )
+            if len(self.surfaces_at) > 16:
+                faults.add("surfaces_at", len(self.surfaces_at), "must be at most 16", "join some")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -185,9 +181,7 @@ def _checked(law: CompiledLaw) -> Any:
             size = max(abs(there), abs(back), abs(slope) * law.size, 1e-300) / law.size
             worst = max(worst, abs((there - back) / (2.0 * h) - slope) / size)
     if not worst < 1e-4:
-        faults = Faults()
         allowed = "must be analytic in X and V within a region"
         remedy = "write x*x*x for x**3, declare a surface where it is not smooth, use numpy's functions"
-        faults.add("force", f"derivatives off by {worst:.1e}", allowed, remedy)
-        faults.raise_if_any()
+        raise InputError.at("force", f"derivatives off by {worst:.1e}", allowed, remedy)
     return pointer

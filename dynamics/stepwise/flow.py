@@ -55,12 +55,11 @@ class StepwiseFlow(Flow):
         parameters: tuple[str, ...] = (),
         extrema: bool = False,
     ) -> None:
-        faults = Faults()
-        self.oscillator, self.extrema = oscillator, extrema
-        self.tolerance = faults.number(
-            "tolerance", TOLERANCE if tolerance is None else tolerance, STEP_TOLERANCE
-        )
-        faults.raise_if_any()
+        with Faults() as faults:
+            self.oscillator, self.extrema = oscillator, extrema
+            self.tolerance = faults.number(
+                "tolerance", TOLERANCE if tolerance is None else tolerance, STEP_TOLERANCE
+            )
         self.noise = NOISE * self.tolerance
         self.model = oscillator.model(parameters)
         levels = oscillator.surfaces
