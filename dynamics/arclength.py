@@ -15,8 +15,6 @@ from dynamics.crossings import find_crossings
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.tracing import Tracer, both_ways, joined
 
-__all__ = ["follow"]
-
 FLAT = np.array([0.0, 0.0, 1.0])  # across which the parameter is held
 LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
 ENDLESS = 1e4  # times its first size: a motion that grows without bound

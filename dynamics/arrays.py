@@ -9,8 +9,6 @@ import numpy.typing as npt
 
 from base import Array, Integers
 
-__all__ = ["AsArray"]
-
 
 class AsArray(ABC):
     """What `numpy.asarray` makes a table of: the columns that a plot needs."""

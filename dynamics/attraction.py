@@ -16,8 +16,6 @@ from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart
 from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after, settling_periods
 
-__all__ = ["Attractor", "BasinResult", "basins"]
-
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
 PATIENCE = 20  # times the limit that a motion which does not repeat is followed on

@@ -16,8 +16,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.states import Region, checked_region
 
-__all__ = ["BasinBoundary", "basin_boundary", "share_interval"]
-
 CORNERS = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])  # of a cell, in cells
 COUNTED = 5  # last levels from which the dimension is taken
 

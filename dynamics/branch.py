@@ -13,18 +13,6 @@ import numpy.typing as npt
 from base import Array, Booleans, Cost, InputError, part, quantity, record
 from dynamics.arrays import AsArray
 
-__all__ = [
-    "GOOD_ENDS",
-    "KINDS",
-    "MEETS",
-    "UNBOUNDED",
-    "Branch",
-    "SpecialPoint",
-    "Stretch",
-    "of_kind",
-    "stretches",
-]
-
 MEETS = "meets the branch of half the period"
 UNBOUNDED = "the motion grows without bound"
 GOOD_ENDS = ("bound", "closed", MEETS, UNBOUNDED)

@@ -15,8 +15,6 @@ from base import Array, Faults
 from dynamics.branch import SpecialPoint
 from dynamics.limits import MAX_POINTS, STEP, ordered
 
-__all__ = ["BranchProblem", "MapPoint", "Steps", "checked_range", "match_extrema"]
-
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
 

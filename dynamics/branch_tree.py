@@ -16,8 +16,6 @@ from dynamics.shooting import Orbit
 from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import apart, scale_of
 
-__all__ = ["BranchTree", "Origin", "lies_on"]
-
 
 @dataclass(frozen=True)
 class Origin:

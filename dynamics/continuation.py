@@ -20,8 +20,6 @@ from dynamics.stepwise.flow import TOLERANCE
 from dynamics.stepwise.oscillator import SmoothOscillator
 from dynamics.stepwise.problem import FlowProblem
 
-__all__ = ["continue_branch", "doubled_orbit", "orbits_over"]
-
 AMPLITUDES = (
     1e-3,
     3e-3,

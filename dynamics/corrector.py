@@ -14,8 +14,6 @@ from dynamics.flow import DEGREE, tabulated
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.protocol import EPS
 
-__all__ = ["OrbitProblem", "Point", "rounding"]
-
 ROOM = 64  # extrema expected at most; more are asked for if there are more
 
 

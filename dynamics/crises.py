@@ -20,8 +20,6 @@ from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit
 from dynamics.sweeps import sweep
 
-__all__ = ["Crisis", "boundary_crises", "boundary_crisis"]
-
 SMOOTH = 1e-3  # of the size of the saddle: jump of the overshoot above which a change of sign is no tangency
 SETTLED = 20_000  # periods after which the motion beside the saddle is named
 LEAST = 9  # values looked at on a saddle's range, however narrow

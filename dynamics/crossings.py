@@ -17,8 +17,6 @@ from dynamics.roots import along_chord
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
 from dynamics.special_orbits import PRODUCTS, Condition, special_orbit
 
-__all__ = ["Crossing", "ExactBranch", "bracketed_orbit", "find_crossings", "special_point"]
-
 P = TypeVar("P", bound=MapPoint)
 Crossing = tuple[Condition, Condition]  # as it is at the one and at the other of two neighbours
 

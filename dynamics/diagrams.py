@@ -17,8 +17,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.shooting import find_orbit
 
-__all__ = ["Diagram", "Origin", "diagram"]
-
 
 @record
 class Diagram(AsArray):

@@ -15,8 +15,6 @@ from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart
 
-__all__ = ["edge_saddles"]
-
 SECTIONS = 16  # parts of the bracket tried at once
 ROUNDS = 14  # of sections: the bracket shrinks to rounding
 NEAR = 1e-2  # of the attractor's size: recurrence of the motion on the boundary that Newton's method is tried from

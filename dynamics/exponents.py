@@ -15,8 +15,6 @@ from dynamics.protocol import Flow, Oscillator, lost_motion
 from dynamics.states import checked_state
 from dynamics.sweeps import long_flow, settling_periods
 
-__all__ = ["LyapunovResult", "LyapunovScan", "lyapunov_exponents", "lyapunov_scan", "stretch_rate"]
-
 
 @record
 class LyapunovResult(AsArray):

@@ -16,8 +16,6 @@ from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import Region, apart, checked_region
 from dynamics.sweeps import settling_periods
 
-__all__ = ["IndexCount", "OrbitSet", "find_orbits", "reach"]
-
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 

@@ -15,8 +15,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, exact_only, lost_motion
 from dynamics.states import checked_state
 
-__all__ = ["DEGREE", "Tables", "tables", "tabulated", "turning_points"]
-
 # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
 DEGREE = 13
 _REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}

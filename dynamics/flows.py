@@ -9,8 +9,6 @@ from dynamics.protocol import Flow, Oscillator
 from dynamics.stepwise.flow import StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
 
-__all__ = ["flow_of", "unserved"]
-
 
 def flow_of(
     oscillator: Oscillator,

@@ -8,8 +8,6 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from dynamics.stiffness import FourierStiffness
 
-__all__ = ["FourierFit", "fit_fourier"]
-
 
 @record
 class FourierFit:

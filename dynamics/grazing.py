@@ -19,8 +19,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, exact_only
 from dynamics.shooting import exact_determinant, floquet_multipliers
 
-__all__ = ["ContactGrazing", "ContactOrbit", "ResonanceError", "contact_grazing", "contact_orbit"]
-
 
 @record
 class ContactOrbit:

@@ -9,8 +9,6 @@ import numpy as np
 from base import Array, Integers
 from dynamics.protocol import Flow
 
-__all__ = ["Homes"]
-
 
 class Homes:
     """Periodic attractors that starts are followed to.

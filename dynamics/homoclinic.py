@@ -18,8 +18,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.roots import bracketed
 from dynamics.shooting import Orbit, find_orbit
 
-__all__ = ["HomoclinicSearch"]
-
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
 NEAR = 0.04  # of the size of the saddle: nearness at which the side of a passing motion is measured
 ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured

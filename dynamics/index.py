@@ -13,8 +13,6 @@ from dynamics.manifolds import carried
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["index_at_infinity", "winding"]
-
 LARGE = (1e3, 1e4)  # radii, over the larger of D and the shift by the forces, at which the turns must agree
 TURN = 0.5  # rad: neighbours on the circle between which the displacement turns by more are halved
 MOST = 100_000  # points on the circle

@@ -20,8 +20,6 @@ from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import scale_of
 from dynamics.tracing import both_ways, joined
 
-__all__ = ["CODIMENSION_TWO", "DoublePoint", "Locus", "continue_locus"]
-
 CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazing", "double grazing")
 
 

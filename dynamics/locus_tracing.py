@@ -16,8 +16,6 @@ from dynamics.roots import bracketed
 from dynamics.special_orbits import Condition, special_orbit
 from dynamics.tracing import Tracer
 
-__all__ = ["DoublePoint", "LocusTracer"]
-
 
 @record
 class DoublePoint:

@@ -19,8 +19,6 @@ from dynamics.protocol import exact_only
 from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
 from dynamics.states import Region, within
 
-__all__ = ["Manifold", "carried", "is_direct_saddle", "is_saddle", "manifold", "reversed_tables"]
-
 FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
 ROUNDS = 2000  # of a manifold at most
 SPLIT = 1e-12  # least gap of the start's parameter that is still halved

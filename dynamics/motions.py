@@ -15,8 +15,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, MapResult, Oscillator
 from dynamics.states import checked_state
 
-__all__ = ["ForceRange", "Trajectory", "force_range", "period_map", "trajectory"]
-
 
 @record
 class Trajectory(AsArray):

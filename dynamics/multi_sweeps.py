@@ -17,8 +17,6 @@ from dynamics.protocol import exact_only
 from dynamics.states import apart, scale_of
 from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
 
-__all__ = ["Motion", "MultiSweep", "multi_sweep"]
-
 CHUNK = 16  # values swept before it is looked whether the motions are known
 ENDLESS = 1e4  # times D and the deflection at rest: a motion that large grows without bound
 SHARED = 0.5  # of the union of their boxes: from there on two aperiodic motions are taken for one

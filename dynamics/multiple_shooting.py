@@ -12,8 +12,6 @@ from base import Array, Integers
 from dynamics.flow import Tables
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Chain", "shoot_in_stretches"]
-
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8
 MOST = 250  # stretches: the equations are solved as a dense matrix

@@ -11,8 +11,6 @@ from typing import Any
 from base import InputError
 from dynamics.stiffness import FourierStiffness
 
-__all__ = ["natural_size", "series", "series_names", "unknown", "value_at", "with_value"]
-
 
 def series(stiffness: FourierStiffness) -> tuple[float, ...]:
     """Mean, amplitudes, phases."""

@@ -15,8 +15,6 @@ from dynamics.naming import series, series_names
 from dynamics.protocol import Oscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
-__all__ = ["PARAMETERS", "GearOscillator"]
-
 PARAMETERS = ("frequency", "error_amplitude", "error_phase", "mean_force", "damping_ratio", "half_backlash")
 # of these and the mean stiffness, in the vector of `GearOscillator.packed`
 _PLACES = {

@@ -18,8 +18,6 @@ import numpy as np
 from base import Array, Cost, InputError, Integers, quantity, record
 from dynamics.naming import natural_size, unknown, value_at, with_value
 
-__all__ = ["EPS", "Flow", "MapResult", "Oscillator", "Stretches", "exact_only", "lost_motion"]
-
 EPS = float(np.finfo(np.float64).eps)
 P = ParamSpec("P")
 R = TypeVar("R")

@@ -11,8 +11,6 @@ import numpy as np
 from base import Array
 from dynamics.branch_problem import MapPoint
 
-__all__ = ["along_chord", "bracketed"]
-
 P = TypeVar("P", bound=MapPoint)
 
 

@@ -10,8 +10,6 @@ from dynamics.limits import NUMBER, POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.stiffness import FourierStiffness
 
-__all__ = ["Scaling"]
-
 
 @dataclass(frozen=True)
 class Scaling:

@@ -12,8 +12,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only, lost_motion
 from dynamics.states import checked_state
 
-__all__ = ["MapDerivatives", "map_derivatives"]
-
 
 @record
 class MapDerivatives:

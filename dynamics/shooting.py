@@ -18,8 +18,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, Flow, MapResult, Oscillator
 from dynamics.states import checked_state
 
-__all__ = ["Orbit", "find_orbit", "floquet_multipliers", "motion_label"]
-
 FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
 LONG = 200  # cells of an orbit that many shots are tried for, too, where one shot fails
 

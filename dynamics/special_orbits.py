@@ -13,8 +13,6 @@ from dynamics.branch_problem import BranchProblem, MapPoint
 from dynamics.corrector import OrbitProblem, Point, rounding
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Condition", "special_orbit"]
-
 PRODUCTS = {"saddle-node": "fold", "period-doubling": "flip", "neimark-sacker": "torus"}
 """Kinds that a function of the multipliers singles out, and the attribute of a point that holds it."""
 

@@ -11,8 +11,6 @@ from base import Array, Booleans, Faults, InputError
 from dynamics.limits import ordered
 from dynamics.protocol import Oscillator
 
-__all__ = ["Region", "apart", "checked_region", "checked_state", "scale_of", "within"]
-
 Region: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 """((x0, x1), (v0, v1))"""
 

@@ -12,8 +12,6 @@ import numpy.typing as npt
 from base import Array, Faults, Limit, RangeWarning
 from dynamics.limits import NUMBER
 
-__all__ = ["MAX_ORDER", "FourierStiffness", "check_stiffness"]
-
 MAX_ORDER = 1000  # the cells per period grow with the order; beyond this a series is the wrong description
 
 

@@ -17,8 +17,6 @@ from dynamics.protocol import EPS, Flow, Oscillator
 from dynamics.shooting import find_orbit, motion_label
 from dynamics.states import checked_state
 
-__all__ = ["APERIODIC", "DIVERGED", "SweepResult", "settling_periods", "sweep"]
-
 APERIODIC = "aperiodic"
 DIVERGED = "diverged"
 TOLERANCE = 1e-9  # of steps of a motion that is followed for long; orbits and branches have their own

@@ -11,8 +11,6 @@ import numpy as np
 from base import Array
 from dynamics.branch_problem import MapPoint, Steps
 
-__all__ = ["Tracer", "both_ways", "joined"]
-
 T = TypeVar("T")
 W = TypeVar("W", bound="Tracer")
 

@@ -16,8 +16,6 @@ from dynamics.protocol import exact_only
 from dynamics.special_orbits import Condition, special_orbit
 from dynamics.states import scale_of
 
-__all__ = ["Mark", "marked", "special_sensitivities"]
-
 
 @dataclass(frozen=True, eq=False)
 class Mark:

@@ -19,8 +19,6 @@ from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.tracking import marked
 
-__all__ = ["CONTACT", "DOUBLED", "EVERY", "Catalogue", "Tally"]
-
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
 STEP, MAX_POINTS, MOST = 0.05, 1500, 10**6  # largest step along a branch, its points, and branches at most
 CAPTURE = 0.02  # of the range: a point of the kind and label so near makes a search around the event needless

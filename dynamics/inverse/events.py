@@ -14,8 +14,6 @@ from dynamics.branch import KINDS, SpecialPoint
 from dynamics.limits import NUMBER, ordered
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Event", "OneOf", "Problem", "Ranged", "Unknown"]
-
 MAX_TRIALS = 100_000  # combinations of trial values
 
 

@@ -18,8 +18,6 @@ from dynamics.inverse.scoring import by_chance, probabilities
 from dynamics.inverse.solution import Solution, distinct, identification, solution
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["identify"]
-
 REFINED = 5  # best trials that are refined
 CLEAR = 1e-9  # trials expected by chance below which nothing else is looked at
 COMPLETED = 2  # best of these that all events are looked for with

@@ -10,8 +10,6 @@ import numpy as np
 from dynamics.branch import SpecialPoint
 from dynamics.inverse.events import Event
 
-__all__ = ["Line", "match"]
-
 Line = Sequence[SpecialPoint]  # special points of one branch, in their order along it
 Partners = tuple[SpecialPoint | None, ...]
 

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 from dynamics.inverse.events import OneOf, Problem, Ranged, Unknown
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Reduction", "reduced", "scaled"]
-
 PLAY, FORCE, ERROR = "half_backlash", "mean_force", "error_amplitude"
 
 

@@ -15,8 +15,6 @@ from dynamics.inverse.events import Problem
 from dynamics.oscillator import GearOscillator
 from dynamics.tracking import Mark
 
-__all__ = ["OUTLIER", "Fit", "agreement", "fit", "moved", "refit"]
-
 LEFT_OUT = 2  # events that are left out together when a fit of all is no good
 TRIED = 6  # such choices that are followed up
 CLOSE = 10.0  # units of the last decimal within which an event is met

@@ -10,8 +10,6 @@ from dynamics.inverse.rounding import Rounding
 from dynamics.inverse.scoring import Direction
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Candidate", "Identification"]
-
 
 @record
 class Candidate:

@@ -11,8 +11,6 @@ from base import quantity, record
 from dynamics.inverse.events import OneOf
 from dynamics.inverse.refinement import Fit, moved, refit
 
-__all__ = ["Rounding", "rounded"]
-
 DIGITS = 5  # significant digits up to which a value counts as round
 PLAIN = 0.05  # a value so near to a round one by chance more often than this says nothing
 

@@ -13,8 +13,6 @@ from dynamics.inverse.reduction import FORCE
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import find_orbit
 
-__all__ = ["Trial", "anchored", "ranked", "scan", "solved_name"]
-
 ORDER = ("saddle-node", "period-doubling", "grazing")  # grazings are often printed late: they come last
 GRID = 8  # values of the solved parameter at which orbits of the anchor's label are searched for
 

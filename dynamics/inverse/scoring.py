@@ -12,8 +12,6 @@ from dynamics.inverse.events import Problem
 from dynamics.inverse.matching import Line
 from dynamics.inverse.refinement import Fit, refit
 
-__all__ = ["Direction", "by_chance", "directions", "left_out", "probabilities", "spread", "unseen"]
-
 
 @record
 class Direction:

@@ -17,8 +17,6 @@ from dynamics.inverse.rounding import Rounding, rounded
 from dynamics.inverse.scoring import by_chance, directions, left_out, probabilities, spread, unseen
 from dynamics.oscillator import GearOscillator
 
-__all__ = ["Solution", "distinct", "identification", "solution"]
-
 RARE = 0.01  # probability below which a match, or all of them together, is not put down to chance
 ALIKE = 1e-3  # relative difference below which two oscillators are the same candidate
 

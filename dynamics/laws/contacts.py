@@ -13,8 +13,6 @@ from dynamics.limits import OSCILLATOR, POSITIVE
 from dynamics.naming import series_names, unknown, value_at, with_value
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
-__all__ = ["Law", "PowerContact", "SmoothedBacklash", "SqueezeFilm"]
-
 L = TypeVar("L", bound="ContactLaw")
 
 

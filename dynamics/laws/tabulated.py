@@ -12,8 +12,6 @@ import numpy.typing as npt
 from base import Array, Faults, Limit
 from dynamics.laws.contacts import ContactLaw
 
-__all__ = ["TabulatedContact"]
-
 INTERVALS = 32
 
 

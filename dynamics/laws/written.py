@@ -14,8 +14,6 @@ from base import Array, Faults, InputError
 from dynamics.limits import NUMBER
 from dynamics.naming import unknown
 
-__all__ = ["CompiledLaw", "Surface"]
-
 STEP = 1e-40  # imaginary, so that nothing is lost to cancellation
 
 

@@ -14,8 +14,6 @@ from dynamics.limits import STEP_TOLERANCE
 from dynamics.protocol import Flow, MapResult, Stretches, lost_motion
 from dynamics.stepwise.oscillator import SmoothOscillator
 
-__all__ = ["TOLERANCE", "StepwiseFlow"]
-
 TOLERANCE = 1e-12
 NOISE = 50.0  # residual over tolerance and stretch of the map that the choice of steps leaves
 TURNING = np.array([[0.0, 1.0, 0.0, -1.0]])  # the surface V = 0

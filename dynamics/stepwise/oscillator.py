@@ -16,8 +16,6 @@ from dynamics.limits import NUMBER, OSCILLATOR
 from dynamics.naming import natural_size
 from dynamics.protocol import Oscillator
 
-__all__ = ["SmoothOscillator", "restoring_force"]
-
 OWN = ("damping_ratio", "mean_force", "error_amplitude", "frequency", "error_phase")
 
 

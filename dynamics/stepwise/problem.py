@@ -15,8 +15,6 @@ from dynamics.crossings import Crossing, bracketed_orbit, special_point
 from dynamics.stepwise.flow import NOISE, StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
 
-__all__ = ["FlowProblem", "PeriodMap"]
-
 XTOL = 1e-14  # width of the bracket of a special point, over the chord
 
 
