@@ -257,22 +257,21 @@ def new(scene: Path, /) -> int:
     return 0
 
 
-for _module, _function, _name, _help in (
-    ("exchange", "import_gears", "import", "Write a scene from the gear data in FILE (REXS, XML)."),
-    ("exchange", "export_profile", "export-profile", "Write the tooth profile of a gear of SCENE."),
+for _name, _where, _help in (
+    ("import", "exchange.commands:import_gears", "Write a scene from the gear data in FILE (REXS, XML)."),
+    ("export-profile", "exchange.commands:export_profile", "Write the tooth profile of a gear of SCENE."),
     (
-        "exchange",
-        "export_mesh",
         "export",
+        "exchange.commands:export_mesh",
         "Write both gears of SCENE, loaded as they mesh, for other programs.",
     ),
-    ("exchange", "export_rexs", "export-rexs", "Write the pair of SCENE as a REXS file."),
-    ("exchange", "completion", "completion", "Print the script that completes commands in SHELL."),
-    ("figures", "view", "view", "Show the fields in RESULTS on the deformed teeth."),
-    ("figures", "animate", "animate", "Draw the mesh cycle in RESULTS, deformed."),
+    ("export-rexs", "exchange.commands:export_rexs", "Write the pair of SCENE as a REXS file."),
+    ("completion", "exchange.commands:completion", "Print the script that completes commands in SHELL."),
+    ("view", "figures.commands:view", "Show the fields in RESULTS on the deformed teeth."),
+    ("animate", "figures.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),
 ):
     # the module is loaded when the command is called
-    app.command(f"flankfilm.{_module}.commands:{_function}", name=_name, help=_help)
+    app.command(f"flankfilm.{_where}", name=_name, help=_help)
 
 
 def guarded(command: Callable[[], int]) -> int:
