@@ -202,27 +202,24 @@ class Compliance:
         width, common = self.pair.face_width, self._common
         reach = 0 if "coupling" in self.left_out else self.reach
         matrix = np.zeros((*rho1.shape, n))
-        for i in range(n):
-            own = self.pinion.own(rho1[..., i]) + self.wheel.own(rho2[..., i])
-            matrix[..., i, i] = own / width + common
-            for j in range(i + 1, min(n, i + reach + 1)):
-                # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
-                places = (rho1[..., i], rho1[..., j]), (rho2[..., j], rho2[..., i])
-                first, second = (
-                    gear.cross(j - i, *place)
-                    for gear, place in zip((self.pinion, self.wheel), places, strict=True)
+        own, diagonal = self.pinion.own(rho1) + self.wheel.own(rho2), np.arange(n)
+        matrix[..., diagonal, diagonal] = own / width + common
+        for apart in range(1, min(n, reach + 1)):
+            # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
+            behind, ahead = diagonal[:-apart], diagonal[apart:]
+            first = self.pinion.cross(apart, rho1[..., behind], rho1[..., ahead])
+            second = self.wheel.cross(apart, rho2[..., ahead], rho2[..., behind])
+            if leaning is not None:
+                # corners are the places of largest rho
+                angles = leaning[0][..., ahead], leaning[1][..., behind]
+                corners = (
+                    self.pinion.corner(apart, rho1[..., behind]),
+                    self.wheel.corner(apart, rho2[..., ahead]),
                 )
-                if leaning is not None:
-                    # corners are the places of largest rho
-                    angles = leaning[0, ..., j], leaning[1, ..., i]
-                    first = np.cos(angles[0]) * first - np.sin(angles[0]) * self.pinion.corner(
-                        j - i, rho1[..., i]
-                    )
-                    second = np.cos(angles[1]) * second - np.sin(angles[1]) * self.wheel.corner(
-                        j - i, rho2[..., j]
-                    )
-                cross = first + second
-                matrix[..., i, j] = matrix[..., j, i] = cross / width + common
+                first = np.cos(angles[0]) * first - np.sin(angles[0]) * corners[0]
+                second = np.cos(angles[1]) * second - np.sin(angles[1]) * corners[1]
+            cross = (first + second) / width + common
+            matrix[..., behind, ahead] = matrix[..., ahead, behind] = cross
         return matrix
 
     def hertz(self, rho1: Array) -> HertzApproach:

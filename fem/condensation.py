@@ -1,25 +1,38 @@
-"""One factorisation of a sector that serves all: condensation onto its cuts, and loads with the cuts held or free.
+"""Condensation of a sector onto its cuts by nested groups of elements, all in dense blocks.
 
-The unknowns are ordered with the cuts last, and the cuts stand on stiff springs, k on every component. With L U
-the factors of that matrix, the trailing blocks give the stiffness seen from the cuts, S + k = L_cc U_cc, as the
-remainder of the elimination. A solution for forces f on the inner unknowns and g on the cuts then holds more than
-its displacements x and y: what the springs and the cuts carry, (S + k) y, is the force g - K_ci K_ii^-1 f that
-the inner forces hand on to cuts that are held. The springs keep y small, so that differences keep their digits
-however slender the sector is.
+The elements are halved again and again across the longer side of the region that they fill. In a group of few
+elements the nodes that no other element has are eliminated, then in each union of two groups those that only these two
+have, up to the whole sector, where the cuts are left (nested dissection: A. George, SIAM J. Numer. Anal. 10, 1973,
+doi:10.1137/0710032; fronts: I. S. Duff and J. K. Reid, ACM Trans. Math. Softw. 9, 1983, doi:10.1145/356044.356047).
+With d the nodes that a group eliminates and r those that it leaves,
+
+    K_dd = L L^T,   W = L^-1 K_dr,   S = K_rr - W^T W.
+
+Forces pass upwards, z = L^-1 f_d and f_r - W^T z, and leave on the cuts what these carry when they are held;
+|z|^2 is twice the energy of the forces. Displacements pass downwards from any displacements of the cuts,
+u_d = L^-T (z - W u_r).
 """
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from base import Array, Integers, record, unclocked
 
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
-
 __all__ = ["Condensation", "condensation"]
+
+FEW = 32
+"""Elements of a group that is not halved."""
+
+
+@record
+class _Front:
+    """One group: unknowns that it eliminates and those that it leaves, L^-1 and W."""
+
+    done: Integers
+    left: Integers
+    inverse: Array
+    coupling: Array
 
 
 @record
@@ -28,89 +41,181 @@ class Condensation:
 
     Attributes
     ----------
-    factor : scipy.sparse.linalg.SuperLU
-        Of the stiffness with springs, inner unknowns in an order that keeps the fill small, then the cuts.
-    order : (inner + cut,) array
-        Which unknown, inner ones first as they are numbered outside, stands in each place of the factor.
-    sprung : (cut, cut) array
-        S + k in Cartesian components.
+    fronts : tuple of _Front
+        From the smallest groups up.
+    cut : (cut,) array of int
+        Unknowns on the cuts.
     stiffness : (cut, cut) array
-        S.
+        Of the sector as seen from its cuts, Cartesian components.
     modulus : float
         Over that of what was factorised.
     """
 
-    factor: Any
-    order: Integers
-    sprung: Array
+    fronts: tuple[_Front, ...]
+    cut: Integers
     stiffness: Array
     modulus: float = 1.0
 
     def stiffer(self, factor: float) -> Condensation:
         """Condensation of a sector that is stiffer by a factor."""
-        return Condensation(
-            self.factor, self.order, self.sprung * factor, self.stiffness * factor, self.modulus * factor
-        )
+        return Condensation(self.fronts, self.cut, self.stiffness * factor, self.modulus * factor)
 
-    def solve(self, inner: Array, cut: Array) -> tuple[Array, Array]:
-        """Displacements of inner unknowns and cuts (..., loads) with the springs, by forces on both."""
-        force = np.concatenate([inner, cut])
-        moved = np.empty_like(force)
-        moved[self.order] = self.factor.solve(force[self.order]) / self.modulus
-        return moved[: len(inner)], moved[len(inner) :]
+    def up(self, force: Array) -> tuple[Array, Array, Array]:
+        """Pass forces up to the cuts, which are held.
+
+        Parameters
+        ----------
+        force : (unknowns, loads) array
+            On all unknowns of the sector; those on the hub are of no account.
+
+        Returns
+        -------
+        reduced : (unknowns, loads) array
+            What ``down`` needs of the forces.
+        on_cuts : (cut, loads) array
+            Forces on the cuts and those that are handed on to them.
+        work : (loads,) array
+            Forces inside the sector times the displacements that they cause.
+        """
+        reduced = force / self.modulus
+        work = np.zeros(force.shape[1])
+        for front in self.fronts:
+            own = front.inverse @ reduced[front.done]
+            reduced[front.done] = own
+            reduced[front.left] -= front.coupling.T @ own
+            work += np.einsum("ul,ul->l", own, own)
+        return reduced, reduced[self.cut] * self.modulus, work * self.modulus
+
+    def down(self, cuts: Array, reduced: Array | None = None) -> Array:
+        """Displacements of all unknowns (unknowns, loads), zero on the hub.
+
+        Parameters
+        ----------
+        cuts : (cut, loads) array
+            Displacements of the cuts.
+        reduced : (unknowns, loads) array, optional
+            Of forces inside the sector; none unless given.
+        """
+        unknowns = 1 + max(int(front.done.max(initial=0)) for front in self.fronts)
+        unknowns = max(unknowns, 1 + int(self.cut.max())) if reduced is None else len(reduced)
+        moved = np.zeros((unknowns, cuts.shape[1]))
+        moved[self.cut] = cuts
+        for front in reversed(self.fronts):
+            own = -(front.coupling @ moved[front.left])
+            if reduced is not None:
+                own += reduced[front.done]
+            moved[front.done] = front.inverse.T @ own
+        return moved
 
 
-def condensation(inner: Integers, cut: Integers, stiffness: csc_array) -> Condensation:
-    """Factorise a sector and condense it onto its cuts.
+@record
+class _Group:
+    """Nodes that a group of elements shares with others, in order of their numbers.
+
+    Attributes
+    ----------
+    nodes, used : (n,) arrays of int
+        Nodes, and how many elements of the group have each.
+    stiffness : (2n, 2n) array
+    """
+
+    nodes: Integers
+    used: Integers
+    stiffness: Array
+
+
+def condensation(
+    points: Array, triangles: Integers, elements: Array, cut: Integers, hub: Integers
+) -> Condensation:
+    """Condense a sector onto its cuts.
 
     Parameters
     ----------
-    inner, cut : index arrays
-        Unknowns of the stiffness matrix, 2 node + component, in pairs.
-    stiffness : sparse matrix
-        Symmetric, definite once the hub is left out.
+    points : (n, 2) array
+        Nodes.
+    triangles : (m, 6) array
+    elements : (m, 12, 12) array
+        Stiffness matrices of the triangles, unknown 2 i + component of their node i.
+    cut, hub : index arrays
+        Nodes on the cuts, in the order that is wanted, and held ones.
     """
+    users = np.bincount(triangles.ravel(), minlength=len(points))
+    users[cut] += 1  # never all in one group
+    users[hub] = 0
+    middles = points[triangles[:, :3]].mean(axis=1)
+    fronts: list[_Front] = []
+
+    def few(some: Integers) -> _Group:
+        nodes, local, used = np.unique(triangles[some], return_inverse=True, return_counts=True)
+        order, ends = _order(users[nodes], used)
+        unknown = _unknowns(_rank(order)[local.reshape(-1)]).reshape(len(some), -1)
+        size = 2 * len(nodes)
+        place = (unknown[:, :, None] * size + unknown[:, None, :]).ravel()
+        summed = np.bincount(place, elements[some].ravel(), size * size)
+        matrix = np.asarray(summed, dtype=float).reshape(size, size)
+        return eliminated(nodes[order], used[order], matrix, ends)
+
+    def both(first: _Group, second: _Group) -> _Group:
+        nodes = np.union1d(first.nodes, second.nodes)
+        used = np.zeros(len(nodes), dtype=np.int64)
+        places = [np.searchsorted(nodes, one.nodes) for one in (first, second)]
+        for one, place in zip((first, second), places, strict=True):
+            used[place] += one.used
+        order, ends = _order(users[nodes], used)
+        rank, matrix = _rank(order), np.zeros((2 * len(nodes), 2 * len(nodes)))
+        for one, place in zip((first, second), places, strict=True):
+            unknown = _unknowns(rank[place])
+            # columns, then whole rows: twice as fast as both at once
+            rows = np.zeros((len(unknown), len(matrix)))
+            rows[:, unknown] = one.stiffness
+            matrix[unknown] += rows
+        return eliminated(nodes[order], used[order], matrix, ends)
+
+    def eliminated(nodes: Integers, used: Integers, matrix: Array, ends: tuple[int, int]) -> _Group:
+        done, left = slice(2 * ends[0]), slice(2 * ends[0], 2 * ends[1])
+        inverse = _inverse_of_factor(matrix[done, done])
+        coupling = inverse @ matrix[done, left]
+        kept = nodes[ends[0] : ends[1]]
+        fronts.append(_Front(_unknowns(nodes[: ends[0]]), _unknowns(kept), inverse, coupling))
+        return _Group(kept, used[ends[0] : ends[1]], matrix[left, left] - coupling.T @ coupling)
+
+    def group(some: Integers) -> _Group:
+        if len(some) <= FEW:
+            return few(some)
+        place = middles[some]
+        along = place[:, int(np.argmax(np.ptp(place, axis=0)))]
+        order = np.argpartition(along, len(some) // 2)
+        return both(group(some[order[: len(some) // 2]]), group(some[order[len(some) // 2 :]]))
+
+    whole = group(np.arange(len(triangles)))
+    place = _unknowns(np.searchsorted(whole.nodes, cut))
+    return Condensation(tuple(fronts), _unknowns(cut), whole.stiffness[np.ix_(place, place)])
+
+
+def _order(users: Integers, used: Integers) -> tuple[Integers, tuple[int, int]]:
+    """Order that puts nodes of this group alone first and held ones last, and where the first two kinds end."""
+    kind = np.where(users == 0, 2, np.where(used == users, 0, 1))
+    order = np.argsort(kind, kind="stable")
+    first, second, _ = np.bincount(kind, minlength=3)
+    return order, (int(first), int(first + second))
+
+
+def _rank(order: Integers) -> Integers:
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return rank
+
+
+def _inverse_of_factor(matrix: Array) -> Array:
+    """L^-1 of a symmetric definite matrix L L^T."""
     with unclocked():
-        from scipy.sparse import csc_array, diags_array
-        from scipy.sparse.linalg import splu
+        from scipy.linalg.lapack import dtrtri
 
-    nodes = _little_fill(csc_array(stiffness[inner[::2]][:, inner[::2]]))
-    number, cuts = len(inner), len(cut)
-    places = (2 * nodes[:, None] + np.arange(2)).ravel()
-    order = np.concatenate([places, np.arange(number, number + cuts)])
-    free = np.concatenate([inner, cut])[order]
-    spring = float(stiffness.diagonal()[cut].max())
-    springs = diags_array(np.where(np.arange(number + cuts) < number, 0.0, spring))
-    # symmetric and definite: no pivoting
-    factor = splu(
-        csc_array(stiffness[free][:, free] + springs),
-        permc_spec="NATURAL",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    # SuperLU reorders by the elimination tree, at whose root the cuts are: each is coupled to every other by then
-    place = factor.perm_c[number:] - number
-    tail = slice(number, None)
-    product = factor.L[tail, tail].toarray() @ factor.U[tail, tail].toarray()
-    sprung = product[np.ix_(place, place)]
-    sprung = 0.5 * (sprung + sprung.T)
-    return Condensation(factor, order, sprung, sprung - spring * np.eye(cuts))
+    # the transpose of rows is columns, as LAPACK has them: nothing is copied
+    inverse, _ = dtrtri(np.linalg.cholesky(matrix).T, lower=0, overwrite_c=1)
+    return np.asarray(inverse.T)
 
 
-def _little_fill(coupled: csc_array) -> Integers:
-    """Minimum-degree order of the nodes of a symmetric pattern, from an incomplete factorisation that drops all."""
-    from scipy.sparse import csc_array
-    from scipy.sparse.linalg import spilu
-
-    pattern = coupled.copy()
-    pattern.data[:] = 1.0
-    pattern.setdiag(1.0 + len(pattern.data))
-    found = spilu(
-        csc_array(pattern),
-        drop_tol=1.0,
-        fill_factor=1.0,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    return np.argsort(found.perm_c)
+def _unknowns(nodes: Integers) -> Integers:
+    unknowns: Integers = (2 * nodes[:, None] + np.arange(2)).ravel()
+    return unknowns

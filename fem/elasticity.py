@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,7 @@ __all__ = [
     "MIRROR",
     "PlaneElasticity",
     "check_plane",
+    "element_matrices",
     "nodal_stress_matrix",
     "reduced_modulus",
     "stiffness_matrix",
@@ -111,11 +112,39 @@ def _physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Arra
     return np.einsum("qir,mqrx->mqix", reference, inverse), determinant
 
 
-def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
-    """Stiffness matrix per unit thickness [Pa] of isoparametric P2 triangles: scikit-fem's mapping and quadrature.
+def element_matrices(points: Array, triangles: Integers, law: PlaneElasticity) -> Array:
+    """Stiffness matrices (m, 12, 12) per unit thickness [Pa] of isoparametric P2 triangles.
+
+    scikit-fem's mapping and quadrature. Unknown 2 i + a of a triangle is component a of its node i.
 
     K_(ia)(jb) = integral of lambda d_a N_i d_b N_j + mu (d_b N_i d_a N_j + delta_ab grad N_i . grad N_j).
-    Unknown 2 i + a is component a of node i.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        [m]
+    triangles : (m, 6) array
+    law : PlaneElasticity
+    """
+    with unclocked():
+        from skfem import Basis, ElementTriP2
+
+    basis = Basis(curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
+    slopes = np.stack([field.grad for (field,) in basis.basis])  # (node, direction, element, quadrature)
+    slopes = np.moveaxis(slopes, 2, 0).reshape(len(triangles), 12, -1)
+    # all products d_a N_i d_b N_j at once; the law combines them
+    products = (slopes * basis.dx[:, None, :]) @ slopes.swapaxes(1, 2)
+    products = products.reshape(-1, 6, 2, 6, 2)
+    lam, mu = law.lame
+    element = lam * products + mu * products.swapaxes(2, 4)
+    along = mu * (products[:, :, 0, :, 0] + products[:, :, 1, :, 1])
+    element[:, :, 0, :, 0] += along
+    element[:, :, 1, :, 1] += along
+    return np.asarray(element.reshape(-1, 12, 12))
+
+
+def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
+    """Stiffness matrix per unit thickness [Pa], assembled of ``element_matrices``; unknown 2 i + a for node i.
 
     Parameters
     ----------
@@ -130,19 +159,8 @@ def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -
     """
     with unclocked():
         from scipy.sparse import coo_array
-        from skfem import Basis, ElementTriP2
 
-    basis = Basis(curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
-    slopes = np.stack([field.grad for (field,) in basis.basis])  # (node, direction, element, quadrature)
-    slopes = np.moveaxis(slopes, 2, 0).reshape(len(triangles), 12, -1)
-    # all products d_a N_i d_b N_j at once; the law combines them
-    products = (slopes * basis.dx[:, None, :]) @ slopes.swapaxes(1, 2)
-    products = products.reshape(-1, 6, 2, 6, 2)
-    lam, mu = law.lame
-    element = lam * products + mu * products.swapaxes(2, 4)
-    along = mu * (products[:, :, 0, :, 0] + products[:, :, 1, :, 1])
-    element[:, :, 0, :, 0] += along
-    element[:, :, 1, :, 1] += along
+    element = element_matrices(points, triangles, law)
     unknown = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 12)
     rows, columns = np.repeat(unknown, 12, axis=1).ravel(), np.tile(unknown, 12).ravel()
     size = 2 * len(points)
@@ -154,16 +172,9 @@ def curved_mesh(points: Array, triangles: Integers) -> MeshTri2:
 
     The triangles keep their corners' order (``sort_t=False``), since ours gives the middles' order too.
     """
-    from skfem import MeshTri1, MeshTri2
+    from skfem import MeshTri2
 
-    corners, local = np.unique(triangles[:, :3], return_inverse=True)
-    flat = MeshTri1(
-        np.ascontiguousarray(points[corners].T), np.ascontiguousarray(local.reshape(-1, 3).T), sort_t=False
-    )
-    straight = MeshTri2.from_mesh(flat)
-    places = straight.doflocs.copy()
-    places[:, straight.dofs.element_dofs.T.ravel()] = points[triangles].reshape(-1, 2).T
-    return replace(straight, doflocs=places)
+    return MeshTri2(np.ascontiguousarray(points.T), np.ascontiguousarray(triangles.T))
 
 
 def nodal_stress_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:

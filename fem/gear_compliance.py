@@ -127,7 +127,9 @@ class GearCompliance:
         array
             [m per N/m]
         """
-        return np.asarray(chebyshev.chebval2d(self._unit(load), self._unit(point), self.cross_series[tooth]))
+        series = self.cross_series[tooth]
+        loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
+        return np.asarray(np.sum((loads @ series) * points, axis=-1))
 
     def corner(self, tooth: int, load: Array) -> Array:
         """Displacement of another tooth's tip corner along its flank's tangent, towards the tip.
@@ -145,7 +147,8 @@ class GearCompliance:
         array
             [m per N/m]
         """
-        return np.asarray(chebyshev.chebval(self._unit(load), self.corner_series[tooth]))
+        series = self.corner_series[tooth]
+        return np.asarray(chebyshev.chebvander(self._unit(load), len(series) - 1) @ series)
 
 
 def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left") -> tuple[float, float]:

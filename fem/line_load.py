@@ -130,8 +130,8 @@ class LineLoads:
         Where the loads act.
     cut_force : (cut, loads) array
         Forces that the loaded sector exerts on its cuts, polar components.
-    force, handed_on : (inner, loads), (cut, loads) arrays
-        Right-hand sides for u_r of the inner unknowns, and what held cuts carry of them, Cartesian components.
+    reduced : (unknowns, loads) array
+        Forces inside the sector, as ``Condensation.down`` needs them.
     held : (loads,) array
         u_r at the load with the cuts held [m per N/m].
     """
@@ -139,14 +139,14 @@ class LineLoads:
     ring: Ring
     at: FlankPoints
     cut_force: Array
-    force: Array
-    handed_on: Array
+    reduced: Array
     held: Array
 
     @cached_property
     def own_inner(self) -> Array:
         """u_r of the inner unknowns with the cuts held (inner, loads) [m per N/m]."""
-        return self._inner_with(np.zeros_like(self.cut_force))
+        down = self.ring.condensed.down(np.zeros_like(self.cut_force), self.reduced)
+        return np.asarray(down[self.ring.inner])
 
     def part(self, some: slice) -> LineLoads:
         """Some of the loads."""
@@ -154,8 +154,7 @@ class LineLoads:
             self,
             at=self.at.part(some),
             cut_force=self.cut_force[:, some],
-            force=self.force[:, some],
-            handed_on=self.handed_on[:, some],
+            reduced=self.reduced[:, some],
             held=self.held[some],
         )
 
@@ -196,11 +195,8 @@ class LineLoads:
     def inner(self, tooth: int) -> Array:
         """Inner unknowns of a tooth's sector: (unknowns, loads)."""
         cuts = self.ring.polar @ self.ring.interfaces(self.cut_force, tooth)
-        return self._inner_with(cuts) if tooth == 0 else -self.ring.inner_by_cut @ cuts
-
-    def _inner_with(self, cuts: Array) -> Array:
-        condensed = self.ring.condensed
-        return condensed.solve(self.force, self.handed_on + condensed.sprung @ cuts)[0]
+        down = self.ring.condensed.down(cuts, self.reduced if tooth == 0 else None)
+        return np.asarray(down[self.ring.inner])
 
 
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
@@ -222,12 +218,7 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     # what u_s on cuts and hub pulls at, less Flamant's tractions
     pulled = ring.by_border @ border
     force = pulled - (on_free + on_sides)
-    inner, on_cut = force[ring.inner], force[ring.cut]
-    moved, cut = ring.condensed.solve(inner, on_cut)
-    cut_force = ring.condensed.sprung @ cut
-    # with the cuts held, inner . K_ii^-1 inner is the work of all forces less that of the cuts and springs
-    handed_on = on_cut - cut_force
-    held = np.sum(inner * moved, axis=0) + np.sum(handed_on * cut, axis=0)
+    reduced, cut_force, held = ring.condensed.up(force)
     known = work[len(free) + len(sides) :].sum(axis=0) - work[: len(free)].sum(axis=0)
     known -= np.sum(border * (force - on_free)[bordering], axis=0)
-    return LineLoads(ring, at, ring.polar.T @ cut_force, inner, handed_on, held + known)
+    return LineLoads(ring, at, ring.polar.T @ cut_force, reduced, held + known)

@@ -20,7 +20,7 @@ import numpy as np
 from base import Array, Cost, Integers, Stopwatch, record, unclocked
 from fem.chain import RingOfLinks, ring_of_links
 from fem.condensation import Condensation, condensation
-from fem.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity import PlaneElasticity, element_matrices
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -88,8 +88,7 @@ class Ring:
     @cached_property
     def inner_by_cut(self) -> Array:
         """K_ii^-1 K_ic (inner, cut): minus the inner displacements that unit displacements of the cuts cause."""
-        nothing = np.zeros((len(self.inner), len(self.cut)))
-        return -self.condensed.solve(nothing, self.condensed.sprung)[0]
+        return np.asarray(-self.condensed.down(np.eye(len(self.cut)))[self.inner])
 
     def interfaces(self, force: Array, sector: int) -> Array:
         """Displacements of both cuts of a sector when forces act on the cuts of sector 0.
@@ -127,23 +126,27 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     law : PlaneElasticity
     """
     with unclocked():
-        from scipy.sparse import block_diag, csc_array
+        from scipy.sparse import csc_array
 
     watch = Stopwatch()
-    stiffness = stiffness_matrix(mesh.points, mesh.triangles, law)
+    elements = element_matrices(mesh.points, mesh.triangles, law)
     assembled = watch.seconds
     hub_nodes = np.unique(mesh.facets["bore"])
     right = np.setdiff1d(mesh.side_nodes("right"), hub_nodes, assume_unique=True)
     left = np.setdiff1d(mesh.side_nodes("left"), hub_nodes, assume_unique=True)
     by_radius = [side[np.argsort(np.linalg.norm(mesh.points[side], axis=1))] for side in (right, left)]
-    cut, hub = _unknowns(np.concatenate(by_radius)), _unknowns(hub_nodes)
+    cut_nodes = np.concatenate(by_radius)
+    cut, hub = _unknowns(cut_nodes), _unknowns(hub_nodes)
     inner = np.setdiff1d(np.arange(mesh.unknowns), np.concatenate([cut, hub]))
-    condensed = condensation(inner, cut, stiffness)
+    condensed = condensation(mesh.points, mesh.triangles, elements, cut_nodes, hub_nodes)
     factored = watch.seconds
-    outward = mesh.points[np.concatenate(by_radius)]
+    outward = mesh.points[cut_nodes]
     outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
     turns = np.stack([outward, np.stack([-outward[:, 1], outward[:, 0]], axis=1)], axis=2)
-    polar = csc_array(block_diag(list(turns)))
+    # one 2 x 2 block for each node, column by column
+    blocks = np.swapaxes(turns, 1, 2).ravel()
+    rows = np.repeat(np.arange(len(cut)).reshape(-1, 2), 2, axis=0).ravel()
+    polar = csc_array((blocks, rows, np.arange(0, 2 * len(cut) + 1, 2)), shape=(len(cut), len(cut)))
     schur = polar.T @ (polar.T @ condensed.stiffness).T
     schur = 0.5 * (schur + schur.T)
     links = ring_of_links(schur, mesh.teeth)
@@ -155,7 +158,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
         cut,
         hub,
         condensed,
-        csc_array(stiffness[:, np.concatenate([cut, hub])]),
+        _columns(mesh, elements, np.concatenate([cut, hub])),
         polar,
         schur,
         links,
@@ -165,6 +168,22 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
             parts={"assemble": assembled, "factor": factored - assembled, "condense": seconds - factored},
         ),
     )
+
+
+def _columns(mesh: SectorMesh, elements: Array, some: Integers) -> csc_array:
+    """Columns of the sector's stiffness matrix for some unknowns, from the elements that have them."""
+    from scipy.sparse import coo_array
+
+    number = np.full(mesh.unknowns, -1)
+    number[some] = np.arange(len(some))
+    unknown = (2 * mesh.triangles[:, :, None] + np.arange(2)).reshape(len(mesh.triangles), 12)
+    element, column = np.nonzero(number[unknown] >= 0)
+    rows = unknown[element]
+    columns = np.broadcast_to(number[unknown[element, column]][:, None], rows.shape)
+    values = elements[element, :, column]
+    return coo_array(
+        (values.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.unknowns, len(some))
+    ).tocsc()
 
 
 def _unknowns(nodes: Integers) -> Integers:

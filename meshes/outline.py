@@ -175,8 +175,8 @@ def sector_curves(
 
     def graded(size: Callable[[Array], Array]) -> Callable[[Array], Array]:
         def smaller(points: Array) -> Array:
-            mirrored = np.stack([np.abs(points[..., 0]), points[..., 1]], axis=-1)
-            away = np.linalg.norm(mirrored[..., None, :] - tight, axis=-1)
+            x, y = np.abs(points[..., :1]) - tight[:, 0], points[..., 1:] - tight[:, 1]
+            away = np.sqrt(x * x + y * y)
             return np.asarray(np.minimum(size(points), np.min(tightness + sizes.growth * away, axis=-1)))
 
         return smaller

@@ -247,9 +247,11 @@ def _second_order(
 
 def _refuse_inverted(points: Array, triangles: Integers) -> None:
     gradients = shape_gradients(NODES[:, 0], NODES[:, 1])
-    jacobian = np.einsum("mix,qir->mqxr", points[triangles], gradients)
-    determinant = np.linalg.det(jacobian)
-    bad = np.flatnonzero(determinant.min(axis=1) <= 0)
+    # derivatives of x and y by both reference coordinates, (triangles, nodes) each
+    (x_xi, x_eta), (y_xi, y_eta) = (
+        [points[triangles, axis] @ gradients[..., along].T for along in (0, 1)] for axis in (0, 1)
+    )
+    bad = np.flatnonzero((x_xi * y_eta - x_eta * y_xi).min(axis=1) <= 0)
     if len(bad):
         x, y = points[triangles[bad[0], :3]].mean(axis=0)
         found = f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})"

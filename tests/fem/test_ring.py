@@ -100,8 +100,8 @@ def test_forces_on_any_tooth_give_the_whole_annulus_displacements(ring):
         force = np.zeros((len(gear.points), 2))
         force[gear.nodes[tooth]] += turned(local, tooth * 2 * np.pi / z)
         exact = solve(force)
-        with_springs, on_springs = ring.condensed.solve(local.ravel()[ring.inner], np.zeros(len(ring.cut)))
-        inner = with_springs + ring.inner_by_cut @ on_springs
+        reduced = ring.condensed.up(local.reshape(-1, 1))[0]
+        inner = ring.condensed.down(np.zeros((len(ring.cut), 1)), reduced)[ring.inner, 0]
         cut_force = ring.polar.T @ (-ring.inner_by_cut.T @ local.ravel()[ring.inner])
         cuts = np.roll(ring.all_interfaces(cut_force), tooth, axis=0)
         for k in (0, 1, 4, 5, 6, 17):
@@ -150,7 +150,7 @@ def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
 
 
 def test_condensation_onto_the_cuts_is_the_schur_complement(ring):
-    """Read from the tail of the factors, against a solution for every unknown of the cuts."""
+    """By groups of elements, against a factorisation of the assembled sector."""
     stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW)
     held = splu(csc_array(stiffness[ring.inner][:, ring.inner]))
     across = stiffness[ring.inner][:, ring.cut]
@@ -159,10 +159,26 @@ def test_condensation_onto_the_cuts_is_the_schur_complement(ring):
     size = np.abs(schur).max()
     np.testing.assert_allclose(ring.condensed.stiffness, schur, rtol=0, atol=1e-13 * size)
     np.testing.assert_allclose(ring.inner_by_cut, inner_by_cut, rtol=0, atol=1e-11)
-    # forces inside, handed on to cuts that are held
-    force = np.random.default_rng(5).normal(size=(len(ring.inner), 2))
-    on_springs = ring.condensed.solve(force, np.zeros((len(ring.cut), 2)))[1]
-    handed_on = -ring.condensed.sprung @ on_springs
+    border = np.concatenate([ring.cut, ring.hub])
     np.testing.assert_allclose(
-        handed_on, across.T @ held.solve(force), rtol=0, atol=1e-11 * abs(handed_on).max()
+        ring.by_border.toarray(), stiffness[:, border].toarray(), rtol=0, atol=1e-12 * size
     )
+
+
+def test_forces_pass_up_to_held_cuts_and_displacements_down_from_moved_ones(ring):
+    stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW)
+    held = splu(csc_array(stiffness[ring.inner][:, ring.inner]))
+    across = stiffness[ring.inner][:, ring.cut]
+    rng = np.random.default_rng(5)
+    force, cuts = rng.normal(size=(ring.mesh.unknowns, 2)), 1e-12 * rng.normal(size=(len(ring.cut), 2))
+    inside = held.solve(force[ring.inner])
+    for stiffer in (1.0, 3.0):
+        reduced, on_cuts, work = ring.condensed.stiffer(stiffer).up(force)
+        wanted = force[ring.cut] - across.T @ inside
+        np.testing.assert_allclose(on_cuts, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+        np.testing.assert_allclose(work * stiffer, np.sum(force[ring.inner] * inside, axis=0), rtol=1e-11)
+        moved = ring.condensed.stiffer(stiffer).down(cuts, reduced)
+        wanted = inside / stiffer - held.solve(across @ cuts)
+        np.testing.assert_allclose(moved[ring.inner], wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+        np.testing.assert_array_equal(moved[ring.cut], cuts)
+        assert not moved[ring.hub].any()
