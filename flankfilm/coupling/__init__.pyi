@@ -21,6 +21,8 @@ from .motion import speed_sweep as speed_sweep
 from .oscillator import PairOscillator as PairOscillator
 from .oscillator import pair_oscillator as pair_oscillator
 from .oscillator import pair_scales as pair_scales
+from .references import StiffnessReferences as StiffnessReferences
+from .references import stiffness_references as stiffness_references
 from .resolution import Resolution as Resolution
 from .resolution import resolution_of as resolution_of
 from .roots import LoadedFields as LoadedFields

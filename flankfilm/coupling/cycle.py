@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-from typing import Any, ClassVar
+from dataclasses import fields, replace
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 import fem
-from base import Array, Cost, described, part, quantity, record
+from base import Array, Cost, Faults, described, part, quantity, record
 
 
 @record
@@ -55,6 +55,44 @@ class MeshCycle:
     )
     converged: bool = True
     message: str = ""
+    reference: str = quantity(
+        "",
+        'what the deflection is measured against: "bore", "body" or "teeth", as which closed forms count',
+        default="teeth",
+    )
+
+    def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
+        """Measure the deflection of coupled finite elements against something else; no force changes.
+
+        Parameters
+        ----------
+        reference : {"bore", "body", "teeth"}
+            As of `fem.mesh_cycle`.
+        bore_inertia : (float, float)
+            What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
+
+        Raises
+        ------
+        InputError
+            For closed forms and independent pairs, whose pairs have no turn in common; no such reference.
+        """
+        with Faults() as faults:
+            if self.contact is None:
+                allowed = "requires a loaded contact by finite elements of coupled pairs"
+                faults.add("reference", f"{reference!r} of {self.label}", allowed, "take them")
+        assert self.contact is not None
+        before, after = self.contact, self.contact.against(reference, bore_inertia)
+        softer = before.force / before.secant_stiffness - after.force / after.secant_stiffness  # D - D'
+        steeper = after.stiffness / before.stiffness
+        return replace(
+            self,
+            contact=after,
+            reference=after.reference,
+            transmission_error=self.transmission_error - softer,
+            secant_stiffness=before.force / (before.force / self.secant_stiffness - softer),
+            stiffness=self.stiffness * steeper,
+            error=None if self.error is None else self.error * max(1.0, float(np.max(steeper))),
+        )
 
     @described("N/m", error="mean_error")
     def mean_secant_stiffness(self) -> float:

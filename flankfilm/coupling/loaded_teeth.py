@@ -13,6 +13,7 @@ from base import Array, Cost, Faults, Stopwatch
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle, peak_to_peak_error, sampling_error
 from flankfilm.coupling.film_law import FilmLaw, Placed
+from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 
 POSITIONS = (120, 360, 1080)
@@ -52,6 +53,7 @@ class TeethOptions(TypedDict, total=False):
     pairs: str
     compliance: fem.Compliance | None
     flanks: Flanks
+    reference: str
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,8 @@ class LoadedTeeth:
         For finite elements; see `meshed`.
     flanks : Flanks
         For finite elements of coupled pairs.
+    reference : {"bore", "body", "teeth"}
+        What the deflection of these is measured against, as of `fem.mesh_cycle`.
     """
 
     pair: gears.GearPair
@@ -81,12 +85,17 @@ class LoadedTeeth:
     pairs: str = "coupled"
     compliance: fem.Compliance | None = None
     flanks: Flanks = PLAIN_FLANKS
+    reference: str = "bore"
 
     def __post_init__(self) -> None:
         """Check the names of the models."""
         with Faults() as faults:
             faults.choice("model", self.model, tuple(MODELS))
             faults.choice("pairs", self.pairs, ("coupled", "independent"))
+            faults.choice("reference", self.reference, tuple(MEANINGS))
+            if self.reference != "bore" and (self.model, self.pairs) != ("fem", "coupled"):
+                allowed = "requires coupled pairs by finite elements"
+                faults.add("reference", repr(self.reference), allowed, "leave it out, or take them")
 
     def meshed(self, tolerance: float) -> LoadedTeeth:
         """Give the same with the compliance computed to a tolerance, where it is needed and not there.
@@ -105,7 +114,7 @@ class LoadedTeeth:
     @property
     def setting(self) -> dict[str, Any]:
         """What `fem.mesh_cycle` takes beside pair, torque and positions."""
-        return {"compliance": self.compliance, **vars(self.flanks)}
+        return {"compliance": self.compliance, "reference": self.reference, **vars(self.flanks)}
 
     @property
     def force(self) -> float:
@@ -155,7 +164,7 @@ class LoadedTeeth:
         """Dry cycles of independent pairs by every other closed form, and by finite elements if these are at hand."""
         models = [*CLOSED_FORMS, *(["fem"] if self.model == "fem" else [])]
         return tuple(
-            replace(self, model=model, pairs="independent").cycle(positions)
+            replace(self, model=model, pairs="independent", reference="bore").cycle(positions)
             for model in models
             if (model, "independent") != (self.model, self.pairs)
         )
@@ -190,6 +199,7 @@ class LoadedTeeth:
             transmission_error=np.asarray(share.transmission_error),
             error=self.compliance.error if self.model == "fem" and self.compliance is not None else None,
             cost=Cost(watch.seconds),
+            reference="bore" if self.model == "fem" else "teeth",
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, Unpack
+from typing import Any, Self, Unpack
 
 import numpy as np
 
@@ -50,6 +50,15 @@ class LubricatedCycle(MeshCycle):
     otherwise: Mapping[str, MeshCycle] = part(
         "the mesh with other films, by name; empty unless films are starved"
     )
+
+    def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
+        """Measure the deflections of this cycle, of the dry one and of those with other films against something else.
+
+        See `MeshCycle.against`.
+        """
+        measured = super().against(reference, bore_inertia)
+        others = {name: one.against(reference, bore_inertia) for name, one in self.otherwise.items()}
+        return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
 
     @described("m", shown="um")
     def thinnest_film(self) -> float:

@@ -31,8 +31,8 @@ def mesh_cycle(
     positions : int, optional
         Equal intervals of the base pitch; as few of 120, 360 and 1080 as the tolerance needs unless given.
     **teeth
-        ``model``, ``pairs``, ``compliance`` and ``flanks``, as of `LoadedTeeth`; the compliance is computed where
-        it is needed and not given.
+        ``model``, ``pairs``, ``compliance``, ``flanks`` and ``reference``, as of `LoadedTeeth`; the compliance is
+        computed where it is needed and not given.
 
     Raises
     ------

@@ -8,6 +8,7 @@ import dynamics
 import gears
 from base import Cost, described, part, quantity, record
 from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.series import MeshSeries, mesh_series
 
 MEAN_FORCE = 0.1
@@ -46,6 +47,11 @@ class PairOscillator:
         """Relative error of the mean stiffness; None where it is unknown."""
         return None if self.series.cycle is None else self.series.cycle.mean_error
 
+    @described("")
+    def reference(self) -> str | None:
+        """What the deflection of the stiffness is measured against; None for a given series."""
+        return self.series.reference
+
     @described("1")
     def mean_force(self) -> float:
         """Mean force F_m."""
@@ -80,6 +86,7 @@ class PairOscillator:
         ]
         if scales is None:
             return tuple((name, "", value) for name, _, value in own)
+        measured = self.reference and MEANINGS[self.reference]
         return (
             *own,
             ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
@@ -87,6 +94,7 @@ class PairOscillator:
             ("equivalent mass m_e", f"{scales.equivalent_mass:.5g} kg", "1"),
             ("natural frequency", f"{scales.natural_frequency:.5g} Hz", "1"),
             ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
+            *([("stiffness measured against", measured, "")] if measured else []),
         )
 
 
@@ -102,14 +110,21 @@ def pair_oscillator(
     extra_inertia: tuple[float, float] = (0.0, 0.0),
     length_scale: float | None = None,
     one_sided: bool = False,
+    reference: str = "body",
 ) -> PairOscillator:
     """Oscillator of a pair along the line of action, driven by its mesh stiffness.
+
+    Its coordinate is the turn of rigid inertias, so that the deflection of finite elements is measured against the
+    bodies, whatever it was measured against before, unless another reference is asked for. Closed forms,
+    independent pairs and given series have no turn that all pairs share, and stay as they are; the message says
+    which it was.
 
     Parameters
     ----------
     pair : gears.GearPair
     stiffness : MeshCycle or MeshSeries
-        Of a mesh cycle the first harmonic of the secant is taken.
+        Of a mesh cycle the first harmonic of the secant is taken. A series of a mesh cycle with another reference
+        is fitted anew, to the same order.
     torque, speed : float
         Of the pinion [N m], [rad/s].
     damping_ratio : float
@@ -117,11 +132,13 @@ def pair_oscillator(
     error_amplitude, error_phase : float
         Of the unloaded transmission error [m], [rad]; the deflection is in the stiffness already.
     extra_inertia : (float, float)
-        What turns with pinion and wheel [kg m2].
+        What turns with pinion and wheel, on their bores [kg m2].
     length_scale : float, optional
         b_c [m]; such that the dimensionless mean force is 0.1 unless given.
     one_sided : bool
         Whether the back flanks cannot touch.
+    reference : {"body", "bore", "teeth"}
+        What the deflection is measured against, as of `fem.mesh_cycle`; the inertia on the bores counts for "body".
 
     Raises
     ------
@@ -138,7 +155,8 @@ def pair_oscillator(
     >>> round(motion.mean_force, 3), 6e3 < motion.natural_frequency < 8e3
     (0.1, True)
     """
-    series = mesh_series(stiffness, order=1) if isinstance(stiffness, MeshCycle) else stiffness
+    series = _measured(stiffness, reference, extra_inertia)
+    said = "" if series.reference is None else f"stiffness measured against {MEANINGS[series.reference]}"
     force = pair.normal_force(torque)
     scales = pair_scales(pair, torque, series.mean, extra_inertia, length_scale)
     oscillator = scales.oscillator(
@@ -159,7 +177,23 @@ def pair_oscillator(
         error_amplitude,
         pair.backlash,
         pair_inertias(pair, extra_inertia),
+        message=said,
     )
+
+
+def _measured(
+    stiffness: MeshCycle | MeshSeries, reference: str, bore_inertia: tuple[float, float]
+) -> MeshSeries:
+    """Series of a stiffness whose deflection is measured against a reference, where it can be."""
+    cycle = stiffness if isinstance(stiffness, MeshCycle) else stiffness.cycle
+    if cycle is None or cycle.contact is None:
+        return mesh_series(stiffness, order=1) if isinstance(stiffness, MeshCycle) else stiffness
+    measured = cycle.against(reference, bore_inertia)
+    if isinstance(stiffness, MeshCycle):
+        return mesh_series(measured, order=1)
+    assert measured.contact is not None
+    before, after = ((one.reference, one.bore_inertia) for one in (cycle.contact, measured.contact))
+    return stiffness if before == after else mesh_series(measured, stiffness.kind, stiffness.order)
 
 
 def pair_inertias(pair: gears.GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:

@@ -47,6 +47,21 @@ class MeshSeries:
     converged: bool = True
     message: str = ""
 
+    @described("")
+    def reference(self) -> str | None:
+        """What the deflection of the stiffness is measured against."""
+        return None if self.cycle is None else self.cycle.reference
+
+    @described("1", "position")
+    def position(self) -> Array | None:
+        """Position of the samples that were fitted, base pitches from A."""
+        return None if self.cycle is None else self.cycle.position
+
+    @described("N/m", "position")
+    def samples(self) -> Array | None:
+        """Samples of the stiffness that were fitted."""
+        return None if self.cycle is None else self.cycle.curve(self.kind)
+
     @described("N/m")
     def mean(self) -> float:
         """Mean of the stiffness."""

@@ -117,16 +117,13 @@ def fourier(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "fourier" and computes its stiffness', "fourier_harmonics")
-    prefix, kind = _final(results), text(results, "fourier_kind")
+    need(results, 'run a scene that wants "fourier" and computes its stiffness', "fourier_samples")
+    kind = text(results, "fourier_kind")
     order = results["fourier_amplitude"].size
     series = {f"{kind}, order {order}": "fourier"}
     if "fourier_other_mean" in results:
         series[f"{'tangent' if kind == 'secant' else 'secant'}, order {order}"] = "fourier_other"
-    samples, position = (
-        read(results, f"{prefix}_{KINDS[kind]}", per_face=True),
-        read(results, f"{prefix}_position"),
-    )
+    samples, position = read(results, "fourier_samples", per_face=True), read(results, "fourier_position")
     fine, harmonics = np.linspace(0, 2, 401), read(results, "fourier_harmonics")
     numbers = np.arange(1, harmonics.values[:12].size + 1)
     with sheet(style, 1, 2, width_ratios=(3, 1)) as (drawn, (left, right)):

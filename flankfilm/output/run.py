@@ -51,6 +51,7 @@ class Table:
 RECORDS = {
     "single_pair": "closed forms",
     "dry": "dry cycle",
+    "reference": "references",
     "torque": "torques",
     "pair": "pair",
     "revolution": "revolution",

@@ -104,6 +104,8 @@ def _result_parts(results: Results) -> list[Part]:
             cycles = list(dict.fromkeys((cycle, values["dry cycle"], *values.get("other cycles", ()))))
             notes, width = _film_notes(results, film), pair.face_width
             parts.append(mesh_parts.stiffness(values.get("closed forms"), cycles, notes, width, data))
+            if (references := values.get("references")) is not None:
+                parts.append(mesh_parts.references(references, width))
     if film is not None:
         parts.append(film_parts.film(film, data, results.scene.tolerance))
     return parts + [part(values[name], data) for name, part in PARTS.items() if values.get(name) is not None]

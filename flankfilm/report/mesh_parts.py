@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.coupling.references import MEANINGS, PARTS
 from flankfilm.figures.reading import read, read_figure, travel
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
@@ -18,7 +19,14 @@ if TYPE_CHECKING:
 
     import fem
     from fem.tooth_root import RootPeak
-    from flankfilm.coupling import LoadedFields, MeshCycle, RootStresses, SinglePairs, TorqueCurves
+    from flankfilm.coupling import (
+        LoadedFields,
+        MeshCycle,
+        RootStresses,
+        SinglePairs,
+        StiffnessReferences,
+        TorqueCurves,
+    )
     from gears import GearPair
     from gears.closed_form import Iso6336RootStress
 
@@ -111,6 +119,30 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
             "numerical error": lambda cycle: percent(cycle.mean_error),
         },
     )
+
+
+def references(found: StiffnessReferences, face_width: float) -> Part:
+    """Mean stiffness by what the deflection is measured against, beside ISO 6336-1, and parts of the deflection."""
+    tangent, secant, iso = (
+        read_figure(found, name, face_width)
+        for name in ("mean_stiffness", "mean_secant_stiffness", "iso_mesh_stiffness")
+    )
+    means = [
+        (f"{name}: {MEANINGS[name]}", number(k, 5), number(s, 5), percent(error))
+        for name, k, s, error in zip(
+            found.reference, tangent.values, secant.values, found.mean_error, strict=True
+        )
+    ]
+    means.append(("c_gamma of ISO 6336-1", number(float(iso.values), 5), "", ""))
+    whole = sum(found.deflection.values())
+    parts = [
+        (PARTS[name], number(1e6 * part, 4), percent(part / whole)) for name, part in found.deflection.items()
+    ]
+    parts.append(("all, against the bores", number(1e6 * whole, 4), ""))
+    heads = ("deflection measured against", f"tangent [{tangent.unit}]", f"secant [{secant.unit}]", "error")
+    tables = Table(heads, tuple(means)), Table(("mean deflection, dry", "µm", "of all"), tuple(parts))
+    title = "What the deflection is measured against"
+    return Part("references", title, tables=tables, notes=(said("references"),))
 
 
 def iso_table(iso: Any) -> Table:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base.units import factor
+from flankfilm.coupling.references import MEANINGS
 from flankfilm.figures.reading import read_figure, unit_text
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
@@ -36,7 +37,8 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     if stage.fit is not None:
         rms, largest = percent(stage.fit.remainder_rms), percent(stage.fit.remainder_max)
         series_note = said("series", order=len(series.amplitudes), rms=rms, largest=largest)
-        notes += [series_note, said("tangent_or_secant")]
+        measured = said("measured_against", what=MEANINGS[stage.reference or "bore"])
+        notes += [measured, series_note, said("tangent_or_secant")]
     drawn = pictures(results, *(["fourier"] if stage.fit else []), source=stage.source)
     mean = f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}."
     table = Table(("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]"), rows)

@@ -103,6 +103,12 @@ class DynamicsSection(Section):
     stiffness: Literal["secant", "tangent"] = key(
         "force over deflection, or the slope for small vibration", "secant", shown=True
     )
+    stiffness_reference: Literal["body", "bore", "teeth"] | None = key(
+        "what the deflection by finite elements is measured against: the turn of the bodies, whose inertia "
+        "balances the torque, of the bores, or of the root circles; body if left out",
+        None,
+        such_as="bore",
+    )
     damping_ratio: float = key("damping of the mesh over the critical one", 0.05, shown=True)
     error_amplitude_um: float | None = key(
         "unloaded transmission error; the deflection is in the stiffness; 0 if left out",
@@ -113,7 +119,9 @@ class DynamicsSection(Section):
     )
     error_phase_deg: float = key("phase of this error when a pair is at A", 0.0, example=0)
     extra_inertia_kg_m2: ExtraInertia = key(
-        "moments of inertia that turn with the gears", ExtraInertia(), example={"pinion": 0.0, "wheel": 0.0}
+        "moments of inertia that turn with the gears, on their bores",
+        ExtraInertia(),
+        example={"pinion": 0.0, "wheel": 0.0},
     )
     length_scale_um: float | None = key(
         "length of the dimensionless form; if left out such that the mean force is 0.1", None, such_as=200

@@ -142,6 +142,16 @@ def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
     return loaded_teeth(run).sampled(asked.sampling, asked.transmission_error)
 
 
+@stage("references", "stiffness by reference", "dynamics", COMPLIANCE, DRY_CYCLE)
+def REFERENCES(run: Engine) -> coupling.StiffnessReferences | None:
+    """Mean stiffness against bores, bodies and teeth, and the parts of the deflection; None by closed forms."""
+    cycle, section = run[DRY_CYCLE], run.scene.dynamics
+    if cycle.contact is None:
+        return None
+    extra = (0.0, 0.0) if section is None else section.extra_inertia_kg_m2.each
+    return coupling.stiffness_references(run[PAIR], cycle, run[COMPLIANCE], extra)
+
+
 @stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, DRY_CYCLE)
 def TORQUES(run: Engine) -> coupling.TorqueCurves:
     """Mesh cycles at the scene's torques from one compliance."""
@@ -241,10 +251,21 @@ def FOURIER(run: Engine) -> coupling.MeshSeries:
     if scene.stiffness.model == "given":
         return coupling.given_series(**scene.stiffness.si(*GIVEN))
     if section is None:
-        return coupling.mesh_series(run[MESH], order=1)
+        return coupling.mesh_series(moving_mesh(run), order=1)
     order = None if section.fourier_order == "auto" else section.fourier_order
     share, bounds = run[PLAN].series or scene.tolerance, _frequency_range(run, section)
-    return coupling.mesh_series(run[MESH], section.stiffness, order, share, bounds, section.damping_ratio)
+    mesh = moving_mesh(run)
+    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, section.damping_ratio)
+
+
+def moving_mesh(run: Engine) -> coupling.MeshCycle:
+    """Mesh cycle that the motion uses, its deflection measured against what the scene asks for: the bodies."""
+    cycle, section = run[MESH], run.scene.dynamics
+    if cycle.contact is None:
+        return cycle
+    if section is None:
+        return cycle.against("body")
+    return cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
 
 
 def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
@@ -254,7 +275,7 @@ def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, floa
         return None
     ends = [end for ranged in asked for end in ranged.frequency or ()]
     if not section.dimensionless:
-        mean = float(run[MESH].curve(section.stiffness).mean())
+        mean = float(moving_mesh(run).curve(section.stiffness).mean())
         extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
         scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
         ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
@@ -276,6 +297,7 @@ def SCALING(run: Engine) -> coupling.PairOscillator:
     if rpm is None:
         rpm = ranged.speed_rpm[0] if ranged and ranged.speed_rpm else 60.0
     given["extra_inertia"] = section.extra_inertia_kg_m2.each
+    given["reference"] = section.stiffness_reference or "body"
     return coupling.pair_oscillator(
         run[PAIR], series, pinion_torque(run.scene), rpm * math.pi / 30.0, **given
     )

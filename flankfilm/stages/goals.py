@@ -21,7 +21,7 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
         yield of.CLOSED_FORMS
     if wants & {"stiffness", "film"} and not given:
-        yield from (of.PLAN, of.DRY_CYCLE)
+        yield from (of.PLAN, of.DRY_CYCLE, of.REFERENCES)
         if wants & {"closed-forms", "report"}:
             yield of.OTHER_CYCLES
         if scene.film.model != "none" or "film" in wants:
