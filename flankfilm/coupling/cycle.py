@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 import fem
-from base import Array, Cost, Faults, described, part, quantity, record
+from base import Array, Cost, InputError, described, part, quantity, record
 
 
 @record
@@ -76,11 +76,9 @@ class MeshCycle:
         InputError
             For closed forms and independent pairs, whose pairs have no turn in common; no such reference.
         """
-        with Faults() as faults:
-            if self.contact is None:
-                allowed = "requires a loaded contact by finite elements of coupled pairs"
-                faults.add("reference", f"{reference!r} of {self.label}", allowed, "take them")
-        assert self.contact is not None
+        if self.contact is None:
+            allowed = "requires a loaded contact by finite elements of coupled pairs"
+            raise InputError.at("reference", f"{reference!r} of {self.label}", allowed, "take them")
         before, after = self.contact, self.contact.against(reference, bore_inertia)
         softer = before.force / before.secant_stiffness - after.force / after.secant_stiffness  # D - D'
         steeper = after.stiffness / before.stiffness

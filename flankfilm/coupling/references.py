@@ -9,7 +9,7 @@ import numpy as np
 
 import fem
 import gears
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Array, Cost, InputError, Stopwatch, quantity, record
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
@@ -97,11 +97,9 @@ def stiffness_references(
     from gears.closed_form import iso6336
 
     watch = Stopwatch()
-    with Faults() as faults:
-        if cycle.contact is None:
-            allowed = "requires a loaded contact by finite elements of coupled pairs"
-            faults.add("cycle", cycle.label, allowed, "take a mesh cycle by finite elements")
-    assert cycle.contact is not None
+    if cycle.contact is None:
+        allowed = "requires a loaded contact by finite elements of coupled pairs"
+        raise InputError.at("cycle", cycle.label, allowed, "take a mesh cycle by finite elements")
     each = [cycle.against(name, bore_inertia) for name in MEANINGS]
     parts = deflection_parts(cycle.contact, compliance)
     return StiffnessReferences(
