@@ -180,8 +180,10 @@ def graded_oil(
         Where ``vg`` is no grade of ISO 3448.
     """
     with Faults() as found:
-        found.numbers(LIMITS, (vg, temperature, index, *(() if density_15 is None else (density_15,))))
+        found.numbers(LIMITS, (vg, temperature, index))
         found.choice("base", base, BASES, "choose the nearest")
+        if density_15 is not None:
+            found.number("density_15", density_15, LIMITS["density_15"])
     nu_100 = _nu_100(vg, index)
     if math.isnan(nu_100):
         allowed = f"must be at least {viscosity_index(vg, 2.0):.0f} for VG {vg:g}"

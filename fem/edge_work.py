@@ -19,6 +19,9 @@ _GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
 HALVINGS = 14
 """Of the panels on an edge near a load: the last one is 1e-4 of the edge."""
 
+LEAST_PANEL = 1e-9
+"""Of the edge: shorter panels, beside a load that all but stands on a node, are left out with their share."""
+
 
 def edge_points(points: Array, edges: Integers, t: Array) -> tuple[Array, Array, Array]:
     """Positions, derivatives by t and shape values on quadratic edges (first, last, middle)."""
@@ -155,7 +158,7 @@ def _on_panels(
     centre = centre[:, None]
     start = np.concatenate([centre - centre * halves, centre + (1 - centre) * halves[:0:-1]], axis=1)
     width = np.diff(start, axis=1, append=1.0)
-    which, panel = np.nonzero(width > 0)
+    which, panel = np.nonzero(width > LEAST_PANEL)
     start, width = start[which, panel, None], width[which, panel, None]
     t = (start + width * _GAUSS).ravel()
     weight = (width * _GAUSS_WEIGHT).ravel()

@@ -49,6 +49,20 @@ def test_the_tip_corner_stays_on_the_flank_and_beyond_it_is_refused(ring):
         flank_points(ring.mesh, np.array([end * 1.001]))
 
 
+def test_loads_that_all_but_stand_on_a_node_are_finite_and_equal(ring):
+    """A node's two edges each see the load at their end, or a rounding error beside it."""
+    start = PROFILE.flank_rho[0]
+    # the first node of the flank, then one between two of its edges
+    at = flank_points(ring.mesh, np.array([1.2 * start]))
+    corner = np.linalg.norm(ring.mesh.points[at.nodes[0, :2]], axis=1)
+    between = np.sqrt(corner.max() ** 2 - PROFILE.base_radius**2)
+    for node in (start, between):
+        rho = node * (1 + np.array([0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-7, 1e-6]))
+        own = line_loads(ring, flank_points(ring.mesh, rho)).regular_at_load()
+        # two quadratic edges meet at an angle of their error, which the load sees as it passes the node
+        np.testing.assert_allclose(own, own[-1], rtol=1e-4)
+
+
 def test_reciprocity_of_neighbouring_teeth(loads):
     """Maxwell and Betti: load here and displacement there may be exchanged."""
     at = loads.at
