@@ -21,7 +21,7 @@ from flankfilm.bench.case import (
 )
 from flankfilm.bench.examples import TORQUE, example_pair
 from flankfilm.bench.gear_cases import FORMS, independent_pairs
-from flankfilm.bench.work_cases import work_contact
+from flankfilm.bench.work_cases import anew, work_contact
 
 if TYPE_CHECKING:
     from base import Array
@@ -61,7 +61,7 @@ def compliance(quick: bool) -> Levels:
     pair = example_pair()
 
     def cycle(**how: Any) -> tuple[Compliance, MeshCycle]:
-        bodies = fem.compliance(pair, **how)
+        bodies = anew(pair, **how)
         return bodies, fem.mesh_cycle(pair, TORQUE, POSITIONS, bodies, beyond_path=False)
 
     def both(found: tuple[Compliance, MeshCycle]) -> Answer:
@@ -107,10 +107,8 @@ def compliance_of(z1: int, z2: int) -> Levels:
         }
         return answer(bodies.cost.unknowns, values, bodies)
 
-    series = over((1e-3, 1e-4, 2e-5), percent, fem.compliance, both, pair, name="tolerances")
-    return Levels(
-        (series,), level("refined 3 times", lambda: fem.compliance(pair, 1e-5, refinements=3), both)
-    )
+    series = over((1e-3, 1e-4, 2e-5), percent, anew, both, pair, name="tolerances")
+    return Levels((series,), level("refined 3 times", lambda: anew(pair, 1e-5, refinements=3), both))
 
 
 def _forms(pair: GearPair) -> tuple[Series, ...]:
