@@ -58,7 +58,8 @@ class Figure:
     shown : str
         Unit that people read it in; the SI one unless given.
     error : str
-        Name of the record's figure that holds its relative error; empty where that is unknown.
+        Name of the record's figure that holds its relative error, or those of several by their names; empty where
+        that is unknown.
     """
 
     unit: str

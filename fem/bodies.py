@@ -52,6 +52,11 @@ class Compliance:
     tip_strips: tuple[TipStrips, TipStrips] | None = part(
         "tip edges of both gears; None before contact outside the path has asked for them", default=None
     )
+    fit_error: float = quantity("1", "part of the error by the fit along the flanks", default=0.0)
+    gain: float = quantity("1", "by how much the last refinement reduced the mesh's error", default=1.0)
+    before: tuple[GearCompliance, GearCompliance] | None = part(
+        "of pinion and wheel on the mesh before the last refinement", default=None
+    )
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
@@ -91,6 +96,14 @@ class Compliance:
             for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
+
+    @property
+    def coarser(self) -> Compliance | None:
+        """The same gears on the mesh before the last refinement; tip edges keep their strips."""
+        if self.before is None:
+            return None
+        pinion, wheel = self.before
+        return replace(self, pinion=pinion, wheel=wheel, before=None, tip_strips=self.tips)
 
     def without(self, *parts: str) -> Compliance:
         """Leave parts out, to compare with models that do not have them.

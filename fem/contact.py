@@ -12,6 +12,7 @@ from base import Array, Booleans, Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
 from fem.contact_candidates import ContactCandidates
 from fem.cycle import MeshCycle
+from fem.events import ContactProblem
 from fem.local_law import Film
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, held_turns
@@ -151,7 +152,9 @@ def mesh_cycle(
         parts={**before.parts, "contact": watch.seconds - ready},
         counts=bodies.cost.counts,
     )
-    cycles = tuple(_result(given, bodies, contact, k, float(t), cost) for k, t in enumerate(torque))
+    cycles = tuple(
+        _result(given, bodies, film, tolerance, contact, k, float(t), cost) for k, t in enumerate(torque)
+    )
     return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
 
 
@@ -169,15 +172,22 @@ def _check(given: Setting, torque: Array, compliance: Compliance | None, referen
 
 
 def _result(
-    given: Setting, bodies: Compliance, contact: Solution, number: int, torque: float, cost: Cost
+    given: Setting,
+    bodies: Compliance,
+    film: Film | None,
+    tolerance: float,
+    contact: Solution,
+    number: int,
+    torque: float,
+    cost: Cost,
 ) -> MeshCycle:
     where, pairs = contact.where, len(contact.where.offset)
     force = torque / given.pair.base_radii[0]
     turned = contact.share.forces[number]  # kappa F
     deflection = contact.share.transmission_error[number].ravel()
-    touch = where.gap.min(axis=-1).ravel()
+    touch = contact.touch.ravel()
     closing = contact.closing[number].ravel()
-    refusal = _refusal(contact, turned, closing + touch)
+    refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
@@ -210,22 +220,8 @@ def _result(
         friction=float(given.friction),
         supports=supports,
         reference=held,
+        problem=None if refusal else ContactProblem(given, bodies, force, film, tolerance),
     )
-
-
-def _refusal(contact: Solution, turned: Array, closing: Array) -> str:
-    """Why a solution is not to be believed, empty if it is."""
-    edge = contact.where.edge
-    if edge.any() and np.any(turned[..., edge] > contact.largest):
-        return "a tip edge presses over more than the strips cover; reduce the torque"
-    if np.max(closing) > contact.where.reach_gap:
-        return (
-            "the deflection closes gaps more than a base pitch outside the path, where no contact was looked "
-            "for; reduce the torque or the deviations"
-        )
-    if np.any(turned[..., contact.where.chamfered] > 0):
-        return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
-    return ""
 
 
 def _remarks(

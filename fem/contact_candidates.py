@@ -84,7 +84,8 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     pitch, line = pair.base_pitch, pair.line_of_action
     last = ceil(pair.contact_ratio)
     offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
-    within = (np.arange(positions) + 0.5) / positions
+    stations = given.stations
+    within = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
     place = pair.points.A + (within[:, None] + offset) * pitch
     outside = (place < start) | (place > end)
     edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & given.beyond_path
@@ -109,16 +110,17 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
             chamfered[chosen] = at.chamfered
     missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
     touchable, edge = touchable & ~missed, edge & ~missed
-    steps = np.arange(given.pitches)[:, None] - offset
-    teeth = np.stack([first + steps for first in given.first_teeth])[:, :, None, :]
+    # (pitches, positions, pairs): every position in every pitch, or each in its own
+    number = np.arange(given.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
+    steps = np.broadcast_to(number - offset, (given.pitches, positions, len(offset)))
+    teeth = np.stack([first + steps for first in given.first_teeth])
     by_pitch = given.pitch_gap(teeth)
     gaps = gap + by_pitch
     back = np.where(touchable, -given.pitch_gap(teeth, wheel_ahead=1), np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, given.pitches, 1)
-    every = np.broadcast_to(teeth, (2, given.pitches, positions, len(offset)))
     return ContactCandidates(
-        position=(np.arange(given.pitches)[:, None] + within).ravel(),
+        position=(number[..., 0] + within).ravel(),
         offset=offset,
         place=place,
         rho=rho,
@@ -128,7 +130,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
         tangent_arm=np.tile(np.where(touchable, arm, np.nan), tiles),
         leaning=leaning,
         gap=gaps,
-        teeth=every.reshape(2, -1, len(offset)) % numbers,
+        teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
         chamfered=chamfered,
         reach_gap=_reach_gap(given, reach) + float(np.min(by_pitch)) if given.beyond_path else np.inf,

@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
+from fem.events import ContactProblem
 from fem.references import check_reference, turns
 from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
+from gears.mesh_figures import MeshArcs, MeshFigures
 
 __all__ = ["MeshCycle", "check_row", "require_row"]
 
 
 @record
-class MeshCycle:
+class MeshCycle(MeshFigures):
     """Some base pitches of a loaded pair; rows are positions, columns pairs in order of growing rho1.
+
+    Means, extremes and harmonics are those of the curves on smooth arcs between events, whatever the positions.
 
     ``cost`` includes the compliance if it was computed here; of several torques it is that of all together.
     """
 
-    headline = ("torque", "mean_stiffness", "mean_secant_stiffness")
+    headline = ("torque", "mean_stiffness", "mean_secant_stiffness", "transmission_error_range")
 
     torque: float = quantity("N m", "torque of the pinion")
     force: float = quantity("N", "torque over the pinion's base radius")
@@ -94,6 +100,11 @@ class MeshCycle:
     bore_inertia: tuple[float, float] = quantity(
         "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0)
     )
+    problem: ContactProblem | None = part(
+        "what the arcs are found from when they are first asked for; None where the contact has no solution, and in "
+        "copies that were pickled",
+        default=None,
+    )
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> MeshCycle:
         """Measure the deflection against something else; no force changes (``fem.references``).
@@ -133,17 +144,18 @@ class MeshCycle:
             pair_stiffness=self.pair_stiffness / slope[:, None],
             # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
+            problem=None if self.problem is None else self.problem.less(less),
         )
 
-    @described("N/m", error="error")
-    def mean_stiffness(self) -> float:
-        """Mean of the tangent stiffness over the positions."""
-        return float(self.stiffness.mean())
+    @cached_property
+    def arcs(self) -> MeshArcs | None:
+        """Curves on smooth arcs between events, found when they are first asked for."""
+        return None if self.problem is None else self.problem.arcs()
 
-    @described("N/m", error="error")
-    def mean_secant_stiffness(self) -> float:
-        """Mean of the secant stiffness over the positions."""
-        return float(self.secant_stiffness.mean())
+    def __getstate__(self) -> dict[str, Any]:
+        """Take the arcs along instead of what they are found from."""
+        found = self.arcs
+        return {**self.__dict__, "arcs": found, "problem": None}
 
     @described("m", "position", shown="um")
     def unloaded_transmission_error(self) -> Array:

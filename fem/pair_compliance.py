@@ -151,6 +151,9 @@ def compliance(
         converged,
         message,
         supports=held,
+        fit_error=fit_error,
+        gain=2**ORDER - 1,
+        before=(first.before, second.before),
     )
     tips = bodies.tips_of(gears) if tip_edges else None
     parts = sum(gears.costs, Cost(0.0)).parts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, sin
 from numbers import Integral, Real
@@ -25,8 +25,27 @@ Deviations = Sequence["GearDeviations | None"]
 LARGEST_ROUND = 0.2
 """Largest part of the flank [modules] that a rounding of the tip may take."""
 
+MOST_POINTS = 20
+"""Points of a profile deviation up to which each ends an arc of the mesh cycle."""
+
 COUNT = Limit(1, whole=True)
 FRICTION = Limit(0.0, 0.5, remedy="dry steel has about 0.2, oiled 0.05")
+
+
+@dataclass(frozen=True, eq=False)
+class Stations:
+    """Positions one by one.
+
+    Attributes
+    ----------
+    within : (n,) array
+        Base pitches, 0 to 1.
+    pitch : (n,) array of int
+        Number of the base pitch.
+    """
+
+    within: Array
+    pitch: Integers
 
 
 @dataclass(frozen=True)
@@ -44,6 +63,13 @@ class Setting:
     first_teeth: tuple[int, int] = (0, 0)
     tip_rounding: float | tuple[float, float] = 0.0
     friction: float = 0.0
+    stations: Stations | None = None
+
+    def at(self, position: Array) -> Setting:
+        """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
+        pitch = np.floor(position)
+        stations = Stations(position - pitch, pitch.astype(np.int64))
+        return replace(self, positions=len(position), pitches=1, stations=stations)
 
     def check(self, found: Faults) -> None:
         """Note everything that is wrong."""
@@ -111,6 +137,33 @@ class Setting:
         """rho1 at which contact of the two involutes starts and ends [m]: A and E but for roundings."""
         first, second = self.rounds
         return self.pair.line_of_action - second.rho, first.rho
+
+    @property
+    def even(self) -> bool:
+        """Whether the flanks are true involutes at equal pitches."""
+        plain = all(some is None or some.pitch is None for some in self._by_gear)
+        return plain and self.removed is None
+
+    @property
+    def corners(self) -> Array:
+        """Positions within a base pitch at which the laws of a contact change by the geometry (n,), 0 to 1.
+
+        The ends of the path, where flanks give way to tip edges; starts of tip relief; C with friction, which turns
+        there; points of measured profiles unless there are very many, whose curvature alone steps there.
+        """
+        pair = self.pair
+        line, places = pair.line_of_action, [*self.ends, pair.points.A, pair.points.E]
+        for gear, profile in enumerate(pair.teeth_profiles):
+            some, rho = self._by_gear[gear], []
+            if profile.tip_relief is not None:
+                rho.append(profile.flank_rho[1] - profile.tip_relief.length)
+            if some is not None and some.profile is not None and len(some.profile.rho) <= MOST_POINTS:
+                rho += some.profile.rho
+            places += rho if gear == 0 else [line - one for one in rho]
+        if self.friction:
+            places.append(pair.points.C)
+        inside = [one for one in places if self.ends[0] <= one <= self.ends[1]] + [pair.points.A]
+        return np.unique((np.array(inside) - pair.points.A) / pair.base_pitch % 1.0)
 
     @property
     def removed(self) -> tuple[Removed, Removed] | None:

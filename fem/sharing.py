@@ -24,7 +24,7 @@ class Solution:
     """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
 
     kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
-    closing the deflection less the hubs' wind-up.
+    closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear.
     """
 
     where: ContactCandidates
@@ -33,6 +33,26 @@ class Solution:
     levers: Array
     largest: Array
     closing: Array
+    open: Array
+
+    @property
+    def touch(self) -> Array:
+        """Transmission error at which the gears touch without load (pitches, positions) [m]."""
+        return np.asarray(self.where.gap.min(axis=-1))
+
+    def refusal(self, number: int) -> str:
+        """Why the solution for a torque is not to be believed, empty if it is."""
+        where, turned = self.where, self.share.forces[number]
+        if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
+            return "a tip edge presses over more than the strips cover; reduce the torque"
+        if np.max(self.closing[number] + self.touch) > where.reach_gap:
+            return (
+                "the deflection closes gaps more than a base pitch outside the path, where no contact was looked "
+                "for; reduce the torque or the deviations"
+            )
+        if np.any(turned[..., where.chamfered] > 0):
+            return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
+        return ""
 
 
 def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -> Solution:
@@ -67,7 +87,10 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
         closing = share.transmission_error - bodies.turning * force[:, None, None]
         if np.max(closing + touch) <= where.reach_gap:
             break
-    return Solution(where, share, kappa, levers, largest, closing)
+    propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
+    bent = (matrix @ share.forces[..., None])[..., 0] + where.gap - touch[..., None]
+    left = bent - propped - share.transmission_error[..., None]
+    return Solution(where, share, kappa, levers, largest, closing, left)
 
 
 def _levers(given: Setting, where: ContactCandidates) -> Array:

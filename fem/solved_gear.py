@@ -54,7 +54,8 @@ class SolvedFlanks:
 
     Attributes
     ----------
-    flexible : GearCompliance
+    flexible, before : GearCompliance
+        On this mesh, and on the one before the last refinement.
     rho : (n,) array
         Curvature radii of the loads [m].
     change : (n,) array
@@ -66,6 +67,7 @@ class SolvedFlanks:
     """
 
     flexible: GearCompliance
+    before: GearCompliance
     rho: Array
     change: Array
     cross_change: float
@@ -80,6 +82,7 @@ class SolvedFlanks:
         """Give the flanks of a gear in modules and E* their size [m] and modulus."""
         return SolvedFlanks(
             self.flexible.scaled(module, law),
+            self.before.scaled(module, law),
             self.rho * module,
             self.change / law.plane_modulus,
             self.cross_change / law.plane_modulus,
@@ -146,6 +149,7 @@ class Gears:
         there, before = sampled(fine, places, reach), sampled(coarse, places, reach)
         found = SolvedFlanks(
             gear_compliance(fine, profile, there),
+            gear_compliance(coarse, profile, before),
             places,
             there.own - before.own,
             float(np.max(np.abs(there.cross - before.cross), initial=0.0)),

@@ -50,17 +50,13 @@ def closed_forms(quick: bool) -> Levels:
     mean from sampling alone, where a pair comes in and leaves; what the form itself leaves out is not in them (see the
     finite elements below, and flankfilm verify).
     """
-    from flankfilm.coupling.cycle import sampling_error
-
     pair = example_pair()
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384, 768)
     label, many = "{} positions".format, 1536 if quick else 6144
     quantities = {form: f"mean, {title}" for form, title in FORMS.items()}
 
     def means(stiffness: dict[str, Array]) -> Answer:
-        values = {
-            quantities[form]: value(curve.mean(), sampling_error(curve)) for form, curve in stiffness.items()
-        }
+        values = {quantities[form]: value(curve.mean()) for form, curve in stiffness.items()}
         return Answer(len(next(iter(stiffness.values()))), values)
 
     def curves(forms: tuple[str, ...], positions: int) -> dict[str, Array]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from base import Array
     from fem import Compliance, Fillets, MeshCycle, RootStress
     from gears import GearPair
+    from gears.events import Division
 
 
 POSITIONS = 40
@@ -146,13 +147,13 @@ def contacts(quick: bool) -> tuple[Case, ...]:
 
 @case("Loaded contact, {words}", "positions", "contact_{short}")
 def contact(short: str, words: str, beyond: bool, quick: bool) -> Levels:
-    """Loaded contact with a compliance at hand, by the number of positions.
+    """Loaded contact with a compliance at hand, by the number of positions at which it is solved.
 
-    Pair 36/40 at {TORQUE:g} N m, compliance at hand: forces, approach and stiffness at midpoints of equal intervals of
-    one base pitch. Errors from sampling alone: where a pair comes in and leaves, the stiffness jumps or has a corner.
+    Pair 36/40 at {TORQUE:g} N m, compliance at hand: mean stiffness and peak-to-peak transmission error by midpoints of
+    equal intervals of one base pitch, and by smooth arcs between the events at which contacts begin and end, to a
+    tolerance. Errors from sampling alone: where a pair comes in and leaves, the stiffness jumps or has a corner.
     """
     import fem
-    from flankfilm.coupling.cycle import peak_to_peak_error, sampling_error
 
     pair = example_pair()
     bodies = fem.compliance(pair)
@@ -162,18 +163,29 @@ def contact(short: str, words: str, beyond: bool, quick: bool) -> Levels:
 
     def sampled(found: MeshCycle) -> Answer:
         curve, moved = found.secant_stiffness, found.transmission_error
+        return answer(curve.size, {MEAN: value(curve.mean()), SPREAD: value(np.ptp(moved))}, found)
+
+    def arcs(tolerance: float) -> Division:
+        problem = fem.mesh_cycle(pair, TORQUE, 1, bodies, beyond_path=beyond, tolerance=tolerance).problem
+        assert problem is not None
+        return problem.divided()
+
+    def between(found: Division) -> Answer:
+        mean, off = found.arcs.mean("secant_stiffness")
+        (least, low), (most, high) = found.arcs.extremes("transmission_error")
         values = {
-            MEAN: value(curve.mean(), sampling_error(curve)),
-            SPREAD: value(np.ptp(moved), peak_to_peak_error(moved)),
+            MEAN: value(mean, off / mean),
+            SPREAD: value(most - least, (low + high) / (most - least)),
         }
-        return answer(curve.size, values, found)
+        return answer(found.samples, values)
 
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384)
-    label, many = "{} positions".format, 768 if quick else 3072
-    series = over(counts, label, cycle, sampled, name=words)
-    return Levels(
-        (series,), level(label(many), cycle, sampled, many), {MEAN: 2.0 if beyond else 1.0, SPREAD: 1.0}
+    tolerances = (1e-2, 1e-4) if quick else (1e-1, 1e-2, 1e-3, 1e-4)
+    series = (
+        over(counts, "{} positions".format, cycle, sampled, name="equal intervals"),
+        over(tolerances, percent, arcs, between, name="arcs between events"),
     )
+    return Levels(series, level(percent(1e-6), arcs, between, 1e-6))
 
 
 @case("Root stress", "edges per module on the fillets")

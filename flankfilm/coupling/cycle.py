@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import Any, ClassVar, Self
+from functools import cached_property
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 
 import fem
 from base import Array, Cost, InputError, described, part, quantity, record
+from gears.mesh_figures import MeshArcs, MeshFigures
+
+
+class ByPairs(Protocol):
+    """Pairs that share a load by themselves, at any position."""
+
+    def arcs(self) -> MeshArcs:
+        """Find the arcs."""
 
 
 @record
-class MeshCycle:
+class MeshCycle(MeshFigures):
     """Stiffness, load share and deflection at the midpoints of equal intervals of one base pitch, by any model.
 
+    Means, extremes and harmonics are those of the curves on smooth arcs between events, whatever the positions.
     ``error`` is the estimated relative numerical error at each position; None where the model's error is unknown.
     """
 
@@ -36,10 +46,10 @@ class MeshCycle:
     forces: Array = quantity("N", "normal force of each pair", "position pair")
     load_share: Array = quantity("1", "load share: each pair's share of the torque", "position pair")
     secant_stiffness: Array = quantity(
-        "N/m", "secant stiffness: force over deflection", "position", error="mean_error"
+        "N/m", "secant stiffness: force over deflection", "position", error="error"
     )
     stiffness: Array = quantity(
-        "N/m", "tangent stiffness: slope of force over deflection", "position", error="mean_error"
+        "N/m", "tangent stiffness: slope of force over deflection", "position", error="error"
     )
     transmission_error: Array = quantity(
         "m",
@@ -52,6 +62,9 @@ class MeshCycle:
     cost: Cost
     contact: fem.MeshCycle | None = part(
         "loaded contact by finite elements that it was taken from; None by other models", default=None
+    )
+    by_pairs: ByPairs | None = part(
+        "what the arcs of other models are found from; None by finite elements of coupled pairs", default=None
     )
     converged: bool = True
     message: str = ""
@@ -92,33 +105,30 @@ class MeshCycle:
             error=None if self.error is None else self.error * max(1.0, float(np.max(steeper))),
         )
 
-    @described("N/m", error="mean_error")
-    def mean_secant_stiffness(self) -> float:
-        """Mean mesh stiffness (secant)."""
-        return float(self.secant_stiffness.mean())
-
-    @described("N/m", error="mean_error")
-    def mean_stiffness(self) -> float:
-        """Mean mesh stiffness (tangent)."""
-        return float(self.stiffness.mean())
-
-    @described("m", shown="um")
-    def transmission_error_range(self) -> float:
-        """Transmission error, peak to peak."""
-        return float(np.ptp(self.transmission_error))
+    @cached_property
+    def arcs(self) -> MeshArcs | None:
+        """Curves on smooth arcs between events, found when they are first asked for."""
+        if self.contact is not None:
+            return self.contact.arcs
+        return None if self.by_pairs is None else self.by_pairs.arcs()
 
     @described("1")
     def mean_error(self) -> float | None:
-        """Estimated relative numerical error of the mean secant stiffness: of the positions and of their number."""
-        return None if self.error is None else self.error + sampling_error(self.secant_stiffness)
+        """Estimated relative numerical error of the mean secant stiffness, of meshes and arcs."""
+        return self.errors["mean_secant_stiffness"]
+
+    @described("1")
+    def range_error(self) -> float | None:
+        """Estimated relative numerical error of the peak-to-peak transmission error, of meshes and arcs."""
+        return self.errors["transmission_error_range"]
 
     def curve(self, kind: str) -> Array:
         """Curve of a kind of stiffness, ``"secant"`` or ``"tangent"`` (positions,) [N/m]."""
         return {"secant": self.secant_stiffness, "tangent": self.stiffness}[kind]
 
-    def harmonic(self, order: int) -> float:
-        """Amplitude of a harmonic of the secant stiffness over its mean."""
-        return float(harmonics(self.secant_stiffness)[order - 1])
+    def mean(self, kind: str) -> float:
+        """Mean of a kind of stiffness [N/m]."""
+        return {"secant": self.mean_secant_stiffness, "tangent": self.mean_stiffness}[kind]
 
     @classmethod
     def fields_of(cls, found: object) -> dict[str, Any]:
@@ -130,38 +140,3 @@ def harmonics(curve: Array) -> Array:
     """Amplitudes of the harmonics 1, 2, ... of evenly sampled values (n,) over their mean, (n // 2,)."""
     spectrum = np.abs(np.fft.rfft(curve))
     return np.asarray(2.0 * spectrum[1:] / spectrum[0])
-
-
-def sampling_error(stiffness: Array) -> float:
-    r"""Estimate the relative error of the mean of `stiffness` over its sampled period.
-
-    A step :math:`\Delta` between two of :math:`n` midpoints lies anywhere between them and moves
-    the mean by :math:`\Delta/(n\sqrt{12})` in the root mean square; independent steps add in
-    square. On smooth stretches the estimate falls as :math:`n^{-3/2}`, above the true error.
-
-    Parameters
-    ----------
-    stiffness : ndarray, shape (n,)
-        Samples at the midpoints of equal intervals.
-    """
-    steps = np.diff(stiffness, append=stiffness[:1])
-    return float(np.sqrt(np.sum(steps**2) / 12) / (stiffness.size * stiffness.mean()))
-
-
-def peak_to_peak_error(curve: Array) -> float:
-    r"""Bound the relative error of the peak-to-peak value of `curve` from the number of its samples.
-
-    At a cusp, such as the transmission error has where contact passes to the next pair, the extremum is missed by
-    up to half the distance h of the samples times the slope. The three sets of every third sample have three times
-    the distance; the worst of them misses the highest sample by about h times the slope, wherever the cusp lies
-    between samples. Half the largest difference is the bound.
-
-    Parameters
-    ----------
-    curve : ndarray, shape (n,)
-        Samples at the midpoints of equal intervals; n a multiple of three.
-    """
-    whole = float(np.ptp(curve))
-    if whole == 0.0:
-        return 0.0
-    return max(whole - float(np.ptp(curve[k::3])) for k in range(3)) / (2 * whole)

@@ -26,11 +26,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from base import Array
+
+if TYPE_CHECKING:
+    from gears import GearPair
 
 _LEAST_RATIO = 0.01
 _LEAST_DISTANCE = 1e-12
@@ -114,6 +118,10 @@ class FilmLaw:
         separation, slope = ((1 - share) * a + share * b for a, b in zip(*found, strict=True))
         some = np.isfinite(rho1)
         return np.where(some, separation, 0.0), np.where(some, slope, 0.0)
+
+    def corners(self, pair: GearPair) -> Array:
+        """Positions within a base pitch at which pairs pass films, where the law along the path has corners (n,)."""
+        return np.asarray((self.rho1 - pair.points.A) / pair.base_pitch % 1.0)
 
     def carried(self, figure: Array, rho1: Array, forces: Array) -> Array:
         """Figure of the films, such as a thickness, at other places and forces: in proportion to the separation.

@@ -15,7 +15,7 @@ from base import Array, Cost, Stopwatch, described, part, quantity, record, uncl
 from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.series import OTHER
+from flankfilm.coupling.series import OTHER, arc_fit
 
 if TYPE_CHECKING:
     from dynamics.branch import Stretch
@@ -216,8 +216,8 @@ def _stiffness_error(motion: PairOscillator) -> float:
 def _longer(motion: PairOscillator, order: int) -> tuple[dynamics.GearOscillator, tuple[float, ...]]:
     """Oscillator with room for further harmonics, of amplitude zero at their phases, and the amplitudes they have."""
     assert motion.series.cycle is not None
-    samples, own = motion.series.cycle.curve(motion.series.kind), motion.oscillator.stiffness
-    whole = dynamics.fit_fourier(samples, order=min(order, (len(samples) - 1) // 2)).stiffness
+    own = motion.oscillator.stiffness
+    whole = arc_fit(motion.series.cycle, motion.series.kind, order).stiffness
     further = tuple(a / whole.mean for a in whole.amplitudes[own.order :])
     series = dynamics.FourierStiffness(
         own.mean, own.amplitudes + (0.0,) * len(further), own.phases + whole.phases[own.order :]
@@ -232,7 +232,7 @@ def _variants(motion: PairOscillator, bounds: tuple[float, float]) -> dict[str, 
         return {}
     kind, order, found, k_m = series.kind, series.order, {}, scales.mean_stiffness
     for law, number in ((kind, order), (kind, order + 1), (OTHER[kind], order)):
-        fitted = dynamics.fit_fourier(series.cycle.curve(law), order=number).stiffness
+        fitted = arc_fit(series.cycle, law, number).stiffness
         over = dynamics.FourierStiffness(
             fitted.mean / k_m, tuple(a / k_m for a in fitted.amplitudes), fitted.phases
         )

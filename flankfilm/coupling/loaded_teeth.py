@@ -9,15 +9,20 @@ import numpy as np
 
 import fem
 import gears
-from base import Array, Cost, Faults, Stopwatch
+from base import Array, Cost, Faults, SolverError, Stopwatch
 from flankfilm.coupling.believed import believed
-from flankfilm.coupling.cycle import MeshCycle, peak_to_peak_error, sampling_error
+from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
+from gears.events import Sampled, arcs_between_events
+from gears.mesh_figures import CURVES, MeshArcs
 
-POSITIONS = (120, 360, 1080)
-"""Numbers of positions tried, the cheapest first; each holds every third of the next one."""
+POSITIONS = 120
+"""Positions of curves; figures follow from arcs, whatever the positions."""
+
+SAMPLING = 0.1
+"""Part of a tolerance that what the arcs leave out may be."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +126,7 @@ class LoadedTeeth:
         """Normal force of all pairs together [N]."""
         return self.pair.normal_force(self.torque)
 
-    def cycle(self, positions: int, film: FilmLaw | None = None) -> MeshCycle:
+    def cycle(self, positions: int, film: FilmLaw | None = None, tolerance: float = 1e-3) -> MeshCycle:
         """Mesh cycle at the midpoints of some equal intervals of one base pitch.
 
         Parameters
@@ -130,6 +135,8 @@ class LoadedTeeth:
             Number of intervals.
         film : FilmLaw, optional
             Films in series with the pairs; dry without.
+        tolerance : float
+            Relative, of means, extremes and harmonics.
 
         Raises
         ------
@@ -137,13 +144,18 @@ class LoadedTeeth:
             Where the loaded contact did not converge.
         """
         if (self.model, self.pairs) != ("fem", "coupled"):
-            return self._by_single_pairs(positions, film)
-        found = fem.mesh_cycle(self.pair, self.torque, positions=positions, film=film, **self.setting)
+            return self._by_single_pairs(positions, film, tolerance)
+        found = fem.mesh_cycle(
+            self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
+        )
         believed(found, "loaded tooth contact")
+        if film is not None and found.problem is not None:
+            corners = film.corners(self.pair)
+            found = replace(found, problem=replace(found.problem, corners=corners, film_yields=True))
         return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(found), contact=found)
 
     def sampled(self, sampling: float, transmission_error: float) -> MeshCycle:
-        """Dry mesh cycle at as few of `POSITIONS` as two tolerances need.
+        """Dry mesh cycle whose arcs leave out less than two tolerances.
 
         Parameters
         ----------
@@ -151,13 +163,15 @@ class LoadedTeeth:
             Relative, of the mean stiffness.
         transmission_error : float
             Relative, of the transmission error, peak to peak.
+
+        Raises
+        ------
+        SolverError
+            Where the loaded contact has no solution at some positions.
         """
-        found = self.cycle(POSITIONS[0])
-        for positions in POSITIONS[1:]:
-            enough = sampling_error(found.secant_stiffness) <= sampling
-            if enough and peak_to_peak_error(found.transmission_error) <= transmission_error:
-                break
-            found = self.cycle(positions)
+        found = self.cycle(POSITIONS, tolerance=min(sampling, transmission_error))
+        if found.arcs is None:
+            raise SolverError("loaded tooth contact: no solution between some positions; reduce the torque")
         return found
 
     def others(self, positions: int) -> tuple[MeshCycle, ...]:
@@ -169,38 +183,115 @@ class LoadedTeeth:
             if (model, "independent") != (self.model, self.pairs)
         )
 
-    def _by_single_pairs(self, positions: int, film: FilmLaw | None) -> MeshCycle:
+    def _by_single_pairs(self, positions: int, film: FilmLaw | None, tolerance: float) -> MeshCycle:
         """Pairs that know each other only through the force they share."""
-        from gears import independent_pairs, share_load
-
-        watch, force = Stopwatch(), self.force
+        watch = Stopwatch()
         position, rho1 = contact_places(self.pair, positions)
-        touching = np.isfinite(rho1)
-        k = single_pair_stiffness(self.pair, force, rho1, self.model, self.compliance)
-        k = np.where(touching, k, 0.0)
-        if self.pairs == "independent":
-            share = independent_pairs(force, k, None if film is None else film.stiffness(rho1))
-            secant = stiffness = np.asarray(share.stiffness)
-        else:
-            compliance = 1.0 / np.where(touching, k, 1.0)
-            bulk = compliance[..., None] * np.eye(k.shape[1])
-            gaps = np.where(touching, _relief(self.pair, rho1), np.inf)
-            placed = None if film is None else Placed(film, rho1)
-            share = share_load(force, bulk, Placed(_no_hertz, rho1), gaps, placed)
-            secant, stiffness = force / np.asarray(share.transmission_error), np.asarray(share.stiffness)
+        pairs = SinglePairsProblem(self, film, tolerance)
+        share, secant = pairs.shared(rho1)
         return MeshCycle(
             label=f"{MODELS[self.model]}, {self.pairs} pairs",
             position=position,
             rho1=rho1,
             forces=share.forces,
-            load_share=share.forces / force,
+            load_share=share.forces / self.force,
             secant_stiffness=secant,
-            stiffness=stiffness,
+            stiffness=np.asarray(share.stiffness),
             transmission_error=np.asarray(share.transmission_error),
-            error=self.compliance.error if self.model == "fem" and self.compliance is not None else None,
+            error=pairs.error,
             cost=Cost(watch.seconds),
             reference="bore" if self.model == "fem" else "teeth",
+            by_pairs=pairs,
         )
+
+
+@dataclass(frozen=True)
+class SinglePairsProblem:
+    """Pairs that know each other only through the force they share, at any position.
+
+    Attributes
+    ----------
+    teeth : LoadedTeeth
+    film : FilmLaw or None
+        Films in series.
+    tolerance : float
+        Relative, of the figures.
+    """
+
+    teeth: LoadedTeeth
+    film: FilmLaw | None = None
+    tolerance: float = 1e-3
+
+    @property
+    def error(self) -> float | None:
+        """Relative error of a pair's stiffness; None of a closed form, whose model error is unknown."""
+        compliance = self.teeth.compliance
+        return compliance.error if self.teeth.model == "fem" and compliance is not None else None
+
+    def arcs(self) -> MeshArcs:
+        """Curves between events."""
+        pair = self.teeth.pair
+        ends = [pair.points.A, pair.points.E]
+        for gear, profile in enumerate(pair.teeth_profiles):
+            if profile.tip_relief is not None:
+                start = profile.flank_rho[1] - profile.tip_relief.length
+                ends.append(start if gear == 0 else pair.line_of_action - start)
+        corners = (np.array(ends) - pair.points.A) / pair.base_pitch
+        if self.film is not None:
+            corners = np.concatenate([corners, self.film.corners(pair)])
+        division = arcs_between_events(self._sample, CURVES, corners, tolerance=SAMPLING * self.tolerance)
+        return MeshArcs(division, None, 1.0, self.error)
+
+    def _sample(self, position: Array) -> Sampled:
+        rho1 = places_of(self.teeth.pair, position)
+        share, secant = self.shared(rho1)
+        moved, tangent = np.asarray(share.transmission_error), np.asarray(share.stiffness)
+        if self.teeth.pairs == "independent":
+            return Sampled(np.stack([moved, tangent, secant]), np.zeros((position.size, 0)))
+        clear = np.where(np.isfinite(rho1), _relief(self.teeth.pair, rho1), np.inf) - moved[:, None]
+        if self.film is not None:
+            clear = clear - self.film(rho1, np.zeros_like(rho1))[0]
+            added = film_yielding(self.film, rho1, share.forces, share.forces / self.teeth.force)
+            secant = secant * moved / (moved + added)
+        left = np.minimum(-clear / moved.mean(), -1e-300)
+        return Sampled(
+            np.stack([moved, tangent, secant]),
+            np.where(share.forces > 0.0, share.forces / self.teeth.force, left),
+        )
+
+    def shared(self, rho1: Array) -> tuple[gears.LoadShare, Array]:
+        """Load share and secant stiffness [N/m] with pairs at curvature radii (positions, pairs) [m]."""
+        teeth, force, film = self.teeth, self.teeth.force, self.film
+        touching = np.isfinite(rho1)
+        k = single_pair_stiffness(teeth.pair, force, rho1, teeth.model, teeth.compliance)
+        k = np.where(touching, k, 0.0)
+        if teeth.pairs == "independent":
+            share = gears.independent_pairs(force, k, None if film is None else film.stiffness(rho1))
+            return share, np.asarray(share.stiffness)
+        compliance = 1.0 / np.where(touching, k, 1.0)
+        bulk = compliance[..., None] * np.eye(k.shape[1])
+        gaps = np.where(touching, _relief(teeth.pair, rho1), np.inf)
+        placed = None if film is None else Placed(film, rho1)
+        share = gears.share_load(force, bulk, Placed(_no_hertz, rho1), gaps, placed)
+        return share, force / np.asarray(share.transmission_error)
+
+
+def film_yielding(film: FilmLaw, rho1: Array, forces: Array, shares: Array) -> Array:
+    r"""What films yield beyond the transmission error, counted along their tangents from zero force (positions,) [m].
+
+    A film separates the flanks most where the force is least, so that the transmission error D itself is less
+    than without film and F/D would call a film stiffer than no film. What yields is the bodies' deflection
+    :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and the mean over the pairs
+    weighted by their shares, a stiff film gives the dry secant back.
+
+    Parameters
+    ----------
+    film : FilmLaw
+    rho1, forces, shares : ndarray, shape (positions, pairs)
+        Places [m], forces [N] and their shares of the whole.
+    """
+    separation, slope = film(rho1, forces)
+    return np.asarray(np.sum(shares * (separation - forces * slope), axis=1))
 
 
 def contact_places(pair: gears.GearPair, positions: int) -> tuple[Array, Array]:
@@ -220,9 +311,14 @@ def contact_places(pair: gears.GearPair, positions: int) -> tuple[Array, Array]:
         Curvature radius of the pinion's flank [m]; nan beyond E.
     """
     position = (np.arange(positions) + 0.5) / positions
+    return position, places_of(pair, position)
+
+
+def places_of(pair: gears.GearPair, position: Array) -> Array:
+    """Curvature radii of the pinion's flank with a pair so many base pitches after A (positions, pairs) [m]."""
     pairs = int(np.ceil(pair.contact_ratio))
     rho1 = pair.points.A + pair.base_pitch * (position[:, None] + np.arange(pairs))
-    return position, np.where(rho1 <= pair.points.E, rho1, np.nan)
+    return np.where(rho1 <= pair.points.E, rho1, np.nan)
 
 
 def _no_hertz(rho1: Array, force: Array) -> tuple[Array, Array]:

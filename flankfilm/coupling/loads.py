@@ -9,7 +9,6 @@ import numpy as np
 import fem
 from base import Array, Cost, SolverError, quantity, record
 from flankfilm.coupling.believed import believed
-from flankfilm.coupling.cycle import harmonics
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 
 REVOLUTION_POSITIONS = 40
@@ -22,8 +21,11 @@ class TorqueCurves:
     torque: Array = quantity("N m", "torque of the pinion", "torque")
     secant_stiffness: Array = quantity("N/m", "mean force over deflection", "torque", error="error")
     stiffness: Array = quantity("N/m", "mean slope of force over deflection", "torque", error="error")
-    transmission_error: Array = quantity("m", "transmission error, peak to peak", "torque", shown="um")
+    transmission_error: Array = quantity(
+        "m", "transmission error, peak to peak", "torque", shown="um", error="range_error"
+    )
     harmonic_1: Array = quantity("1", "first harmonic of the secant stiffness over its mean", "torque")
+    range_error: float = quantity("1", "largest relative error of the peak-to-peak transmission errors")
     error: float
     cost: Cost
     converged: bool
@@ -71,13 +73,20 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
         torque=np.array([cycle.torque for cycle in good]),
         secant_stiffness=np.array([cycle.mean_secant_stiffness for cycle in good]),
         stiffness=np.array([cycle.mean_stiffness for cycle in good]),
-        transmission_error=np.array([np.ptp(cycle.transmission_error) for cycle in good]),
-        harmonic_1=np.array([harmonics(cycle.secant_stiffness)[0] for cycle in good]),
-        error=max(cycle.error for cycle in good),
+        transmission_error=np.array([cycle.transmission_error_range for cycle in good]),
+        harmonic_1=np.array([cycle.secant_stiffness_harmonics[0] for cycle in good]),
+        error=max(_error(cycle, "mean_secant_stiffness", "mean_stiffness") for cycle in good),
+        range_error=max(_error(cycle, "transmission_error_range") for cycle in good),
         cost=cycles[0].cost,
         converged=not refused,
         message="; ".join(f"{cycle.torque:g} N m: {cycle.message}" for cycle in refused),
     )
+
+
+def _error(cycle: fem.MeshCycle, *names: str) -> float:
+    """Largest relative error of some figures; nan where they have none."""
+    found = [cycle.errors[name] for name in names]
+    return max((one for one in found if one is not None), default=float("nan"))
 
 
 def revolution(

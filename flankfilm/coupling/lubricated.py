@@ -15,7 +15,7 @@ from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of, held_the_other_way, law_of
-from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions, film_yielding
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.resolution import Resolution
 from flankfilm.coupling.warned import warned_once
@@ -68,12 +68,12 @@ class LubricatedCycle(MeshCycle):
     @described("1", shown="%")
     def secant_stiffness_change(self) -> float:
         """What the film changes the mean secant stiffness by, relative."""
-        return float(self.secant_stiffness.mean() / self.dry.secant_stiffness.mean() - 1)
+        return self.mean_secant_stiffness / self.dry.mean_secant_stiffness - 1
 
     @described("1", shown="%")
     def stiffness_change(self) -> float:
         """What the film changes the mean tangent stiffness by, relative."""
-        return float(self.stiffness.mean() / self.dry.stiffness.mean() - 1)
+        return self.mean_stiffness / self.dry.mean_stiffness - 1
 
 
 def lubricated_cycle(
@@ -268,9 +268,12 @@ class _Run:
     def with_film(self, path: PathFilms, label: str) -> MeshCycle:
         """Give the mesh cycle with films, at the positions of the dry one."""
         law = self.law(path)
-        cycle = self.teeth.cycle(self.dry.position.size, law)
+        tolerance = min(self.resolution.sampling, self.resolution.transmission_error)
+        cycle = self.teeth.cycle(self.dry.position.size, law, tolerance)
         if self.teeth.pairs == "coupled":
-            cycle = replace(cycle, secant_stiffness=_secant(cycle, law))
+            moved = cycle.transmission_error
+            yields = film_yielding(law, cycle.rho1, cycle.forces, cycle.load_share)
+            cycle = replace(cycle, secant_stiffness=cycle.secant_stiffness * moved / (moved + yields))
         return replace(cycle, label=label)
 
     def otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
@@ -283,18 +286,3 @@ class _Run:
             f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
         }
         return {label: self.with_film(other, label) for label, other in others.items()}
-
-
-def _secant(cycle: MeshCycle, law: FilmLaw) -> Array:
-    r"""Force over deflection, the film's yielding counted along its tangent from zero force.
-
-    A film separates the flanks most where the force is least, so that the approach D itself is less
-    than without film and F/D would call a film stiffer than no film. What yields is the bodies'
-    deflection :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and
-    the mean over the pairs weighted by their shares, a stiff film gives the dry secant back.
-    """
-    separation, slope = law(cycle.rho1, cycle.forces)
-    yielding = separation - cycle.forces * slope
-    added = np.sum(cycle.load_share * yielding, axis=1)
-    deflection = cycle.transmission_error
-    return np.asarray(cycle.secant_stiffness * deflection / (deflection + added))

@@ -27,9 +27,9 @@ def mesh_cycle(
     torque : float
         Of the pinion [N m].
     tolerance : float
-        Relative, of the mean stiffness; it is split between meshes and positions.
+        Relative, of the mean stiffness; it is split between meshes and arcs.
     positions : int, optional
-        Equal intervals of the base pitch; as few of 120, 360 and 1080 as the tolerance needs unless given.
+        Equal intervals of the base pitch for the curves; 120 unless given.
     **teeth
         ``model``, ``pairs``, ``compliance``, ``flanks`` and ``reference``, as of `LoadedTeeth`; the compliance is
         computed where it is needed and not given.
@@ -50,7 +50,11 @@ def mesh_cycle(
     ((120,), 20.2)
     """
     loaded, asked = resolved(LoadedTeeth(pair, torque, **teeth), tolerance)
-    return loaded.sampled(asked.sampling, tolerance) if positions is None else loaded.cycle(positions)
+    return (
+        loaded.sampled(asked.sampling, tolerance)
+        if positions is None
+        else loaded.cycle(positions, None, tolerance)
+    )
 
 
 def resolved(

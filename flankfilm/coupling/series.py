@@ -16,13 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 import dynamics
-from base import Array, Cost, Stopwatch, described, part, quantity, record
-from flankfilm.coupling.cycle import MeshCycle, harmonics
+from base import Array, Cost, SolverError, Stopwatch, described, part, quantity, record
+from flankfilm.coupling.cycle import MeshCycle
+from gears.mesh_figures import SHOWN
 
 MOST_HARMONICS = 50
 """Highest order of a series."""
 
 OTHER = {"secant": "tangent", "tangent": "secant"}
+
+RESOLVED = 150
+"""Harmonics that are computed, so that what a low order drops can be seen; the rest follows from the whole."""
 
 _FREQUENCIES = 2000
 
@@ -44,6 +48,12 @@ class MeshSeries:
     left_out: LeftOut | None = part("what the order leaves out; None where it was not looked at")
     share: float | None = part("what an order that was found may leave out; None for one that was named")
     cost: Cost
+    harmonic_error: Array | None = quantity(
+        "1",
+        "estimated error of the amplitudes over the mean, of meshes and arcs; None where it is unknown",
+        "harmonic",
+        default=None,
+    )
     converged: bool = True
     message: str = ""
 
@@ -94,7 +104,7 @@ class MeshSeries:
 
     @described("1", "sampled")
     def harmonics(self) -> Array | None:
-        """Amplitude over the mean of the harmonics 1, 2, ... of the samples."""
+        """Amplitude over the mean of the harmonics 1, 2, ... of the curve."""
         return None if self.fit is None else np.array(self.fit.harmonics)
 
     @described("1")
@@ -104,12 +114,12 @@ class MeshSeries:
 
     @described("1")
     def remainder(self) -> float | None:
-        """Root mean square of samples less series, over the mean."""
+        """Root mean square of curve less series, over the mean."""
         return None if self.fit is None else self.fit.remainder_rms
 
     @property
     def error(self) -> float | None:
-        """Relative error of the series as a description of the samples; None for a given one."""
+        """Relative error of the series as a description of the curve; None for a given one."""
         return self.remainder
 
 
@@ -134,7 +144,9 @@ class LeftOut:
         return self.curve if self.motion is None else np.maximum(self.curve, self.motion)
 
 
-def left_out(harmonics: Array, bounds: tuple[float, float] | None, damping_ratio: float) -> LeftOut:
+def left_out(
+    harmonics: Array, bounds: tuple[float, float] | None, damping_ratio: float, beyond: float = 0.0
+) -> LeftOut:
     r"""Estimate what series of every order leave out.
 
     Parameters
@@ -145,9 +157,11 @@ def left_out(harmonics: Array, bounds: tuple[float, float] | None, damping_ratio
         Range of the mesh frequency over the natural one.
     damping_ratio : float
         :math:`\zeta`, above zero for a finite estimate at resonance.
+    beyond : float
+        Root mean square over the mean of all that lies beyond these harmonics.
     """
     order = np.arange(1, harmonics.size + 1)
-    curve = _tails(0.5 * harmonics**2)
+    curve = np.hypot(_tails(0.5 * harmonics**2), beyond)
     if bounds is None:
         return LeftOut(curve, None)
     low, high = bounds
@@ -204,23 +218,69 @@ def mesh_series(
     >>> series.order, series.remainder < 0.1
     (2, True)
     """
-    from dynamics import fit_fourier
-
     watch = Stopwatch()
-    samples = cycle.curve(kind)
-    beyond = left_out(harmonics(samples)[: (samples.size - 1) // 2], bounds, damping_ratio)
-    chosen = least_order(beyond, share) if order is None else order
-    fit = fit_fourier(samples, order=chosen)
+    fits = {law: arc_fit(cycle, law, MOST_HARMONICS if order is None else order) for law in OTHER}
+    found, whole = np.array(fits[kind].harmonics), fits[kind]
+    beyond = np.sqrt(max(whole.remainder_rms**2 - 0.5 * np.sum(found[whole.order :] ** 2), 0.0))
+    rest = left_out(found, bounds, damping_ratio, float(beyond))
+    chosen = least_order(rest, share) if order is None else order
+    fit = arc_fit(cycle, kind, chosen)
+    assert cycle.arcs is not None
+    _, errors = cycle.arcs.over_mean(_CURVES[kind], np.arange(1, chosen + 1))
     return MeshSeries(
         kind=kind,
         source=cycle.label,
         stiffness=fit.stiffness,
         fit=fit,
-        other=fit_fourier(cycle.curve(OTHER[kind]), order=chosen),
+        other=arc_fit(cycle, OTHER[kind], chosen),
         cycle=cycle,
-        left_out=beyond,
+        left_out=rest,
         share=share if order is None else None,
         cost=Cost(watch.seconds),
+        harmonic_error=errors,
+    )
+
+
+_CURVES = {"secant": "secant_stiffness", "tangent": "stiffness"}
+
+
+def arc_fit(cycle: MeshCycle, kind: str, order: int) -> dynamics.FourierFit:
+    """Fourier series of a stiffness by exact integrals over the arcs between events.
+
+    Parameters
+    ----------
+    cycle : MeshCycle
+    kind : str
+        ``"secant"`` or ``"tangent"``.
+    order : int
+        Highest harmonic.
+
+    Raises
+    ------
+    SolverError
+        Where the cycle's contact has no solution at some positions.
+    """
+    watch = Stopwatch()
+    if cycle.arcs is None:
+        raise SolverError(f"no series of a mesh cycle without arcs: {cycle.message}")
+    arcs, name = cycle.arcs.arcs, _CURVES[kind]
+    mean, square = arcs.mean(name)[0], arcs.moment(name, 2)[0]
+    found, _ = arcs.harmonics(name, np.arange(1, RESOLVED + 1))
+    amplitudes, phases = np.abs(found), np.angle(found)
+    left = max(square - mean**2 - 0.5 * float(np.sum(amplitudes[:order] ** 2)), 0.0)
+    angle = 2 * np.pi * cycle.dense_position[:, None] * np.arange(1, order + 1) + phases[:order]
+    off = arcs.on_each(name, SHOWN) - mean - np.cos(angle) @ amplitudes[:order]
+    rms = float(np.sqrt(left)) / mean
+    return dynamics.FourierFit(
+        stiffness=dynamics.FourierStiffness(
+            mean, tuple(amplitudes[:order].tolist()), tuple(phases[:order].tolist())
+        ),
+        remainder_rms=rms,
+        remainder_max=float(np.max(np.abs(off))) / mean,
+        harmonics=tuple((amplitudes / mean).tolist()),
+        condition=float(np.sqrt(2.0)),
+        cost=Cost(watch.seconds, 2 * order + 1),
+        message=f"{order} harmonics leave out {rms:.2g} of the mean",
     )
 
 

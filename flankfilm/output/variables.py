@@ -25,7 +25,21 @@ COMMON: Mapping[str, tuple[str, ...]] = {
 }
 """Axes that mean the same in every record, with what their entries are."""
 
-PLACES = ("position", "travel", "rho1", "frequency", "speed", "torque", "face_position", "arc", "x")
+OWN = ("dense", "event", "harmonic")
+"""Axes that are not the same in equal records."""
+
+PLACES = (
+    "position",
+    "dense_position",
+    "travel",
+    "rho1",
+    "frequency",
+    "speed",
+    "torque",
+    "face_position",
+    "arc",
+    "x",
+)
 """Figures that say where others hold: coordinates of the dataset."""
 
 
@@ -126,7 +140,9 @@ def of_models(prefix: str, records: Mapping[str, object], meaning: str, axis: st
 
     about = {"units": "", "long_name": meaning}
     labels = xr.Variable((joined(prefix, axis),), np.array(list(records)), about)
-    each = [of_record(prefix, record) for record in records.values()]
+    # arcs and events are as many as a model has
+    own = [joined(prefix, axis) for axis in OWN]
+    each = [of_record(prefix, record).drop_dims(own, errors="ignore") for record in records.values()]
     return xr.concat(each, dim=labels, data_vars="all", coords="minimal", compat="override", join="override")
 
 
@@ -196,7 +212,10 @@ def _errors(record: object, known: Iterable[Quantity]) -> dict[str, float]:
     """Relative errors of a record's figures, where they are known."""
     whole = getattr(record, "error", None)
     found = dict.fromkeys(getattr(type(record), "headline", ()), whole)
-    found |= {one.name: getattr(record, one.figure.error) for one in known if one.figure.error}
+    for one in known:
+        if one.figure.error:
+            error = getattr(record, one.figure.error)
+            found[one.name] = error[one.name] if isinstance(error, Mapping) else error
     return {
         name: float(error)
         for name, error in found.items()

@@ -105,8 +105,11 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
         return {head: lambda cycle: number(float(read_figure(cycle, name, width).values), digits)}
 
     def ends(cycle: MeshCycle) -> str:
-        secant = read_figure(cycle, "secant_stiffness", face_width).values
-        return f"{secant.min():.4g} to {secant.max():.4g}"
+        least, most = (
+            float(read_figure(cycle, f"{which}_secant_stiffness", face_width).values)
+            for which in ("least", "greatest")
+        )
+        return f"{least:.4g} to {most:.4g}"
 
     return Table.of(
         cycles,
@@ -116,7 +119,8 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
             **shown("mean_stiffness", 5, face_width),
             "range of secant": ends,
             **shown("transmission_error_range", 4),
-            "numerical error": lambda cycle: percent(cycle.mean_error),
+            "numerical error of the secant": lambda cycle: percent(cycle.mean_error),
+            "of the peak to peak": lambda cycle: percent(cycle.range_error),
         },
     )
 
@@ -168,10 +172,12 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
     numerical = f"error {percent(cycle.mean_error)}, {cycle.label}"
+    small = f"for small vibration; error {percent(cycle.errors['mean_stiffness'])}"
+    spread = f"peak to peak; error {percent(cycle.range_error)}"
     return [
         Headline(secant.meaning, f"{float(secant.values):.4g}", numerical, secant.unit),
-        Headline(tangent.meaning, f"{float(tangent.values):.4g}", "for small vibration", tangent.unit),
-        Headline("loaded transmission error", f"{float(error.values):.3g}", "peak to peak", error.unit),
+        Headline(tangent.meaning, f"{float(tangent.values):.4g}", small, tangent.unit),
+        Headline("loaded transmission error", f"{float(error.values):.3g}", spread, error.unit),
     ]
 
 

@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from flankfilm.coupling.cycle import sampling_error
 from flankfilm.report.page import Part, Table, said
 from flankfilm.report.text import percent, seconds
 
@@ -56,8 +55,10 @@ def _work(name: str, results: Results) -> Work:
         unknowns = f"{value.cost.unknowns:,} unknowns"
         return Work("tooth compliance", plan.resolution.compliance, value.error, unknowns)
     if name == "dry cycle" and plan is not None:
-        sampled, positions = sampling_error(value.secant_stiffness), f"{value.position.size} positions"
-        return Work("mean stiffness, from sampling", plan.resolution.sampling, sampled, positions)
+        division = value.arcs.division
+        mean, error = division.arcs.mean("secant_stiffness")
+        samples = f"{len(division.arcs.arcs)} arcs, {division.samples} positions"
+        return Work("mean stiffness, from arcs", plan.resolution.sampling, error / mean, samples)
     if name == "fillets":
         unknowns = f"{value.cost.unknowns:,} unknowns"
         return Work("greatest root stress per load", tolerance, value.error, unknowns)

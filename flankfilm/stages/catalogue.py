@@ -137,7 +137,7 @@ def VERIFICATION(run: Engine) -> coupling.Verification:
 
 @stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, settings=_TEETH_DECIDED)
 def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
-    """Mesh stiffness without film, at as few positions as mean stiffness and transmission error need."""
+    """Mesh stiffness without film, its figures by arcs between events."""
     asked = run[PLAN].resolution
     return loaded_teeth(run).sampled(asked.sampling, asked.transmission_error)
 
@@ -275,7 +275,7 @@ def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, floa
         return None
     ends = [end for ranged in asked for end in ranged.frequency or ()]
     if not section.dimensionless:
-        mean = float(moving_mesh(run).curve(section.stiffness).mean())
+        mean = moving_mesh(run).mean(section.stiffness)
         extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
         scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
         ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]

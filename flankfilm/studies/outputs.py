@@ -175,7 +175,35 @@ def _differences() -> Iterator[Named]:
 
 def _harmonic(order: int) -> Named:
     about = Figure("1", f"amplitude of harmonic {order} of the secant stiffness over its mean")
-    return _output(f"harmonic_{order}", about, "stiffness", _of(MESH, methodcaller("harmonic", order)))
+    return _output(
+        f"harmonic_{order}",
+        about,
+        "stiffness",
+        _of(MESH, lambda cycle: cycle.secant_stiffness_harmonics[order - 1]),
+    )
+
+
+def _tangent_harmonic(order: int) -> Named:
+    about = Figure("1", f"amplitude of harmonic {order} of the tangent stiffness over its mean")
+    value = _of(MESH, lambda cycle: cycle.stiffness_harmonics[order - 1])
+    return _output(f"tangent_harmonic_{order}", about, "stiffness", value)
+
+
+def _error_of(figure: str, name: str) -> Named:
+    about = Figure("1", f"estimated relative error: {sentence(figures(MeshCycle)[figure].meaning)}")
+    return _output(name, about, "stiffness", _of(MESH, lambda cycle: cycle.errors[figure]))
+
+
+def _harmonics_error(curve: str, name: str) -> Named:
+    about = Figure(
+        "1", f"largest estimated error of the harmonics 1 to 5 of the {name} stiffness over its mean"
+    )
+
+    def largest(cycle: MeshCycle) -> Any:
+        errors = getattr(cycle, f"{curve}_harmonics_error")
+        return None if errors is None else np.max(errors[:5])
+
+    return _output(f"{name}_harmonics_error", about, "stiffness", _of(MESH, largest))
 
 
 OUTPUTS: Mapping[str, Output] = dict(
@@ -198,11 +226,16 @@ OUTPUTS: Mapping[str, Output] = dict(
         ),
         _per_face("mean_secant_stiffness"),
         _per_face("mean_stiffness"),
-        _per_face("secant_stiffness", np.min, "least_secant_stiffness", "least {}"),
-        _per_face("secant_stiffness", np.max, "largest_secant_stiffness", "largest {}"),
+        _per_face("least_secant_stiffness"),
+        _per_face("greatest_secant_stiffness", name="largest_secant_stiffness"),
         _mesh("transmission_error_range", name="transmission_error"),
         *(_harmonic(order) for order in range(1, 6)),
+        *(_tangent_harmonic(order) for order in range(1, 6)),
         _mesh("mean_error", name="stiffness_error"),
+        _error_of("mean_stiffness", "tangent_stiffness_error"),
+        _mesh("range_error", name="transmission_error_error"),
+        _harmonics_error("secant_stiffness", "secant"),
+        _harmonics_error("stiffness", "tangent"),
         *_roots(),
         _output(
             "efficiency",

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from flankfilm.cache import Cache
-from flankfilm.coupling.cycle import peak_to_peak_error, sampling_error
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.scene import Scene, parse_scene, template
 from flankfilm.stages import catalogue
@@ -162,31 +161,6 @@ def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
         film = Engine(by_formula, Cache(None))[FILM]
         changes.append((film.secant_stiffness_change, film.stiffness_change))
     assert np.allclose(*changes, rtol=0.02)
-
-
-def test_a_cusp_between_the_samples_is_known():
-    """Height of a triangle over one period whose tips lie anywhere between the midpoints."""
-    for n in (120, 360):
-        phase = (np.arange(n) + 0.5) / n
-        shifts = np.linspace(0, 1 / n, 31)
-        curves = [np.abs((phase - s) % 1.0 - 0.5) for s in shifts]
-        true = np.array([abs(np.ptp(c) / 0.5 - 1) for c in curves])
-        estimates = np.array([peak_to_peak_error(c) for c in curves])
-        assert np.all(estimates >= true * (1 - 1e-9))
-        assert np.all(estimates < 3 * true.max())
-    assert peak_to_peak_error(np.ones(9)) == 0.0
-
-
-def test_sampling_error_bounds_the_error_of_a_step():
-    true_mean = 0.37 * 2.0 + 0.63
-    for n in (40, 120, 360):
-        phase = (np.arange(n) + 0.5) / n
-        errors = [
-            np.where((phase - s) % 1.0 < 0.37, 2.0, 1.0).mean() / true_mean - 1
-            for s in np.linspace(0, 0.9, 97)
-        ]
-        estimate = sampling_error(np.where(phase < 0.37, 2.0, 1.0))
-        assert 0.5 < estimate / np.sqrt(np.mean(np.square(errors))) < 2.5
 
 
 def test_parts_of_a_result_are_kept_for_other_scenes(tmp_path):

@@ -1,0 +1,160 @@
+"""The loaded contact as a function of position: arcs between the events of a mesh cycle, on both meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from base import Array, SolverError
+from fem.bodies import Compliance
+from fem.local_law import Film
+from fem.setting import Setting
+from fem.sharing import Solution, solve
+from gears import LoadSharingError
+from gears.arcs import Arcs
+from gears.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
+from gears.mesh_figures import CURVES, MeshArcs
+
+__all__ = ["ContactProblem"]
+
+SAMPLING = 0.1
+"""Part of the tolerance that what the arcs leave out may be."""
+
+GRADING = 6.0
+"""Growth of the arcs away from a tip corner."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """A loaded contact that can be solved at any position.
+
+    Attributes
+    ----------
+    given : Setting
+    bodies : Compliance
+    force : float
+        Torque over the pinion's base radius [N].
+    film : Film or None
+    tolerance : float
+        Relative, of the figures.
+    corners : (n,) array, optional
+        Positions within a base pitch at which the film's law has corners.
+    film_yields : bool
+        Whether the secant counts the film's yielding along its tangent from zero force. A film separates the flanks
+        most where the force is least, so that the transmission error itself is less than without film, and the
+        force over it would call a film stiffer than none.
+    turn : (2,) array, optional
+        Turn of pinion and wheel per force that is left out of the deflection (``fem.references``) [m/N].
+    """
+
+    given: Setting
+    bodies: Compliance
+    force: float
+    film: Film | None = None
+    tolerance: float = 1e-3
+    corners: Array | None = None
+    film_yields: bool = False
+    turn: Array | None = None
+
+    def less(self, turn: Array) -> ContactProblem:
+        """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
+        return replace(self, turn=turn if self.turn is None else self.turn + turn)
+
+    def arcs(self) -> MeshArcs | None:
+        """Curves between events; None where a contact between the positions has no solution."""
+        before = self.bodies.coarser
+        try:
+            fine = self.divided()
+            coarse = None if before is None else self._alike(before, fine)
+        except (SolverError, LoadSharingError):
+            return None
+        return MeshArcs(fine, coarse, self.bodies.gain, self.bodies.fit_error)
+
+    def divided(self) -> Division:
+        """Arcs and events on the mesh in use alone."""
+        return self._divided(self.bodies)
+
+    def _sampler(self, bodies: Compliance) -> Sampler:
+        def sample(position: Array) -> Sampled:
+            found = solve(self.given.at(position), bodies, np.array([self.force]), self.film)
+            if found.refusal(0):
+                raise SolverError(found.refusal(0))
+            reserve = _reserve(found, self.force, self.given.even)
+            return Sampled(self._curves(found), reserve)
+
+        return sample
+
+    def _alike(self, bodies: Compliance, known: Division) -> Arcs:
+        """Arcs with another mesh, whose events are close to those that are known, but for a very near miss."""
+        found = arcs_alike(self._sampler(bodies), CURVES, known, self.given.pitches)
+        return self._divided(bodies).arcs if found is None else found
+
+    def _divided(self, bodies: Compliance) -> Division:
+        """Arcs with a mesh."""
+        sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
+        return arcs_between_events(sample, CURVES, self._corners(bodies), self.given.pitches, tolerance)
+
+    def _corners(self, bodies: Compliance) -> Array:
+        """Corners of the geometry, and places near the tips that part what the compliance does there.
+
+        Nearer to a tip corner than its fit goes, a flank's compliance stays the same; up to there it grows as a
+        logarithm, which arcs resolve that grow with the distance.
+        """
+        pair, (start, end) = self.given.pair, self.given.ends
+        clear = np.array(
+            [end - bodies.pinion.rho_range[1], pair.line_of_action - bodies.wheel.rho_range[1] - start]
+        )
+        places = []
+        for sign, first, at in ((-1.0, clear[0], end), (1.0, clear[1], start)):
+            if first > 0.0:
+                steps = first * GRADING ** np.arange(3)
+                places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
+        more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
+        film = np.zeros(0) if self.corners is None else self.corners
+        return np.concatenate([self.given.corners, more, film])
+
+    def _curves(self, found: Solution) -> Array:
+        """Transmission error, tangent and secant stiffness (3, positions)."""
+        share, where, turned = found.share, found.where, found.share.forces[0, 0]
+        deflection = share.transmission_error[0, 0]
+        moved, tangent, secant = deflection + found.touch[0], share.stiffness[0, 0], self.force / deflection
+        if self.film is not None and self.film_yields:
+            rho1 = np.where(where.touchable & ~where.edge, where.rho[0], np.nan)
+            separation, steepness = self.film(rho1, turned / found.kappa)
+            yields = np.where(np.isfinite(rho1), separation - turned / found.kappa * steepness, 0.0)
+            added = np.sum(turned * found.levers / self.force * yields, axis=1)
+            # the film's part counts in proportion to the whole transmission error
+            secant = secant * moved / (moved + added)
+        if self.turn is not None:
+            lever = np.where(turned > 0.0, where.lever, 0.0)
+            shift = self.turn @ np.sum(lever * turned / found.kappa, axis=-1)
+            slope = 1.0 - self.turn @ np.sum(lever * share.pair_stiffness[0, 0] / found.kappa, axis=-1)
+            moved, tangent, secant = (
+                moved - shift,
+                tangent / slope,
+                self.force / (self.force / secant - shift),
+            )
+        return np.stack([moved, tangent, secant])
+
+
+def _reserve(found: Solution, force: float, even: bool) -> Array:
+    """Reserves of contacts by force or gap, and of the nearest pair by what the next one is behind it.
+
+    Which pair is nearest without load changes between pairs on the path only where flanks deviate.
+    """
+    size = np.mean(found.share.transmission_error)
+    loads = found.share.forces[0, 0]
+    bears = np.where(loads > 0.0, loads / force, -np.maximum(found.open[0, 0], 0.0) / size - 1e-300)
+    if even:
+        return np.asarray(bears)
+    # flanks that both fit touch together: what is less than rounding is no difference
+    return np.concatenate([bears, _nearest(found.where.gap[0]) / size + 1e-10], axis=1)
+
+
+def _nearest(gap: Array) -> Array:
+    """By how much every pair is nearer than the nearest of the others (n, pairs) [m]; nan where it cannot touch."""
+    order = np.sort(gap, axis=1)
+    others = np.where(gap == order[:, :1], order[:, 1:2], order[:, :1]) if gap.shape[1] > 1 else gap
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isfinite(gap) & np.isfinite(others), others - gap, np.nan)

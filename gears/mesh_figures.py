@@ -1,0 +1,250 @@
+"""Figures of a mesh cycle that no choice of positions decides: means, extremes and harmonics, each with its error.
+
+All follow from the smooth arcs between the cycle's events. The error of a figure is that of its arcs' series and, by
+finite elements, that of the mesh: the figure is computed once more from the mesh before the last refinement, with
+events of its own.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+
+from base import Array, Integers, described, part, quantity, record
+from gears.arcs import Arcs
+from gears.events import Division
+
+__all__ = ["CURVES", "Estimate", "MeshArcs", "MeshFigures"]
+
+CURVES = ("transmission_error", "stiffness", "secant_stiffness")
+"""Curves of every mesh cycle on its arcs; those of the pairs' load shares follow them."""
+
+HARMONICS = 50
+"""Harmonics of the mesh frequency that are figures of a cycle."""
+
+SHOWN = 24
+"""Points of an arc in pictures."""
+
+
+@record
+class Estimate:
+    """A figure with its estimated error, both in the figure's unit."""
+
+    value: float = quantity("", "figure")
+    error: float | None = quantity("", "its error; None where it is unknown")
+
+    @property
+    def relative(self) -> float | None:
+        """Relative error."""
+        return None if self.error is None else self.error / abs(self.value) if self.value else self.error
+
+
+@record
+class MeshArcs:
+    """Curves of a mesh cycle on smooth arcs, and the same on the mesh before for an estimate."""
+
+    division: Division = part("arcs and events")
+    before: Arcs | None = part("curves on the mesh before the last refinement; None where there is no mesh")
+    gain: float = quantity("1", "by how much the last refinement reduced the error")
+    other: float | None = quantity(
+        "1", "further relative error of all figures; None where a model's is unknown"
+    )
+
+    @property
+    def arcs(self) -> Arcs:
+        """Curves on their arcs."""
+        return self.division.arcs
+
+    def mean(self, name: str) -> Estimate:
+        """Mean of a curve."""
+        value, error = self.arcs.mean(name)
+        coarse = None if self.before is None else self.before.mean(name)[0]
+        return self._estimate(value, error, coarse)
+
+    def extreme(self, name: str, greatest: bool) -> Estimate:
+        """Least or greatest value of a curve."""
+        value, error = self.arcs.extremes(name)[greatest]
+        coarse = None if self.before is None else self.before.extremes(name)[greatest][0]
+        return self._estimate(value, error, coarse)
+
+    def range(self, name: str) -> Estimate:
+        """Greatest less least value of a curve."""
+        (least, off), (most, more) = self.arcs.extremes(name)
+        coarse = None
+        if self.before is not None:
+            (low, _), (high, _) = self.before.extremes(name)
+            coarse = high - low
+        return self._estimate(most - least, off + more, coarse)
+
+    def harmonics(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
+        """Complex amplitudes of harmonics of the mesh frequency, and their errors, in the curve's unit."""
+        value, error = self.arcs.harmonics(name, orders)
+        if self.other is None:
+            return value, None
+        error = error + self.other * np.abs(value)
+        if self.before is not None:
+            error = error + np.abs(value - self.before.harmonics(name, orders)[0]) / self.gain
+        return value, error
+
+    def over_mean(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
+        """Complex amplitudes of harmonics over the mean, and their errors.
+
+        What changes the mean and all harmonics alike is no error of their ratio.
+        """
+        mean, off = self.arcs.mean(name)
+        found, error = self.arcs.harmonics(name, orders)
+        value = found / mean
+        if self.other is None:
+            return value, None
+        error = (error + np.abs(value) * off) / mean + self.other * np.abs(value)
+        if self.before is not None:
+            coarse = self.before.harmonics(name, orders)[0] / self.before.mean(name)[0]
+            error = error + np.abs(value - coarse) / self.gain
+        return value, error
+
+    def _estimate(self, value: float, sampling: float, coarse: float | None) -> Estimate:
+        if self.other is None:
+            return Estimate(value, None)
+        mesh = 0.0 if coarse is None else abs(value - coarse) / self.gain
+        return Estimate(value, sampling + mesh + self.other * abs(value))
+
+
+class MeshFigures(ABC):
+    """Figures of a cycle that has arcs; nan where its contact has no solution."""
+
+    @property
+    @abstractmethod
+    def arcs(self) -> MeshArcs | None:
+        """Curves on smooth arcs between events; None where the contact has no solution."""
+
+    @cached_property
+    def _estimates(self) -> dict[str, Estimate]:
+        found = self.arcs
+        if found is None:
+            return dict.fromkeys(_ESTIMATES, Estimate(float("nan"), None))
+        return {name: estimate(found) for name, estimate in _ESTIMATES.items()}
+
+    @property
+    def errors(self) -> Mapping[str, float | None]:
+        """Estimated relative errors of means and extremes by their names; None where they are unknown."""
+        return MappingProxyType({name: one.relative for name, one in self._estimates.items()})
+
+    @described("N/m", error="errors")
+    def mean_stiffness(self) -> float:
+        """Mean mesh stiffness (tangent)."""
+        return self._estimates["mean_stiffness"].value
+
+    @described("N/m", error="errors")
+    def mean_secant_stiffness(self) -> float:
+        """Mean mesh stiffness (secant)."""
+        return self._estimates["mean_secant_stiffness"].value
+
+    @described("m", shown="um", error="errors")
+    def transmission_error_range(self) -> float:
+        """Transmission error, peak to peak."""
+        return self._estimates["transmission_error_range"].value
+
+    @described("N/m", error="errors")
+    def least_stiffness(self) -> float:
+        """Least mesh stiffness (tangent)."""
+        return self._estimates["least_stiffness"].value
+
+    @described("N/m", error="errors")
+    def greatest_stiffness(self) -> float:
+        """Greatest mesh stiffness (tangent)."""
+        return self._estimates["greatest_stiffness"].value
+
+    @described("N/m", error="errors")
+    def least_secant_stiffness(self) -> float:
+        """Least mesh stiffness (secant)."""
+        return self._estimates["least_secant_stiffness"].value
+
+    @described("N/m", error="errors")
+    def greatest_secant_stiffness(self) -> float:
+        """Greatest mesh stiffness (secant)."""
+        return self._estimates["greatest_secant_stiffness"].value
+
+    @described("1", "harmonic")
+    def stiffness_harmonics(self) -> Array:
+        """Amplitudes of the harmonics 1, 2, ... of the tangent stiffness over its mean."""
+        return self._harmonics("stiffness")[0]
+
+    @described("1", "harmonic")
+    def stiffness_harmonics_error(self) -> Array | None:
+        """Estimated errors of the tangent stiffness' harmonics over the mean."""
+        return self._harmonics("stiffness")[1]
+
+    @described("1", "harmonic")
+    def secant_stiffness_harmonics(self) -> Array:
+        """Amplitudes of the harmonics 1, 2, ... of the secant stiffness over its mean."""
+        return self._harmonics("secant_stiffness")[0]
+
+    @described("1", "harmonic")
+    def secant_stiffness_harmonics_error(self) -> Array | None:
+        """Estimated errors of the secant stiffness' harmonics over the mean."""
+        return self._harmonics("secant_stiffness")[1]
+
+    @described("m", "harmonic", shown="um")
+    def transmission_error_harmonics(self) -> Array:
+        """Amplitudes of the harmonics 1, 2, ... of the transmission error."""
+        return self._harmonics("transmission_error")[0]
+
+    @described("m", "harmonic", shown="um")
+    def transmission_error_harmonics_error(self) -> Array | None:
+        """Estimated errors of the transmission error's harmonics."""
+        return self._harmonics("transmission_error")[1]
+
+    def _harmonics(self, name: str) -> tuple[Array, Array | None]:
+        """Amplitudes and errors; of a stiffness over its mean."""
+        order = np.arange(1, HARMONICS + 1)
+        if self.arcs is None:
+            return np.full(HARMONICS, np.nan), None
+        asked = self.arcs.harmonics if name == "transmission_error" else self.arcs.over_mean
+        found, error = asked(name, order)
+        return np.abs(found), error
+
+    @described("1", "event")
+    def event_position(self) -> Array:
+        """Events: where contacts begin or end, and where profiles have corners, base pitches from A."""
+        return np.zeros(0) if self.arcs is None else self.arcs.division.events.position
+
+    @described("1", "dense")
+    def dense_position(self) -> Array:
+        """Positions on the arcs, base pitches; events twice, before and after."""
+        if self.arcs is None:
+            return np.zeros(0)
+        unit = np.linspace(0.0, 1.0, SHOWN)
+        return np.concatenate([arc.low + arc.width * unit for arc in self.arcs.arcs.arcs])
+
+    @described("N/m", "dense")
+    def dense_stiffness(self) -> Array:
+        """Tangent stiffness on the arcs."""
+        return self._dense("stiffness")
+
+    @described("N/m", "dense")
+    def dense_secant_stiffness(self) -> Array:
+        """Secant stiffness on the arcs."""
+        return self._dense("secant_stiffness")
+
+    @described("m", "dense", shown="um")
+    def dense_transmission_error(self) -> Array:
+        """Transmission error on the arcs."""
+        return self._dense("transmission_error")
+
+    def _dense(self, name: str) -> Array:
+        return np.zeros(0) if self.arcs is None else self.arcs.arcs.on_each(name, SHOWN)
+
+
+_ESTIMATES: Mapping[str, Callable[[MeshArcs], Estimate]] = {
+    "mean_stiffness": lambda found: found.mean("stiffness"),
+    "mean_secant_stiffness": lambda found: found.mean("secant_stiffness"),
+    "transmission_error_range": lambda found: found.range("transmission_error"),
+    "least_stiffness": lambda found: found.extreme("stiffness", greatest=False),
+    "greatest_stiffness": lambda found: found.extreme("stiffness", greatest=True),
+    "least_secant_stiffness": lambda found: found.extreme("secant_stiffness", greatest=False),
+    "greatest_secant_stiffness": lambda found: found.extreme("secant_stiffness", greatest=True),
+}
