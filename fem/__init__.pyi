@@ -8,6 +8,7 @@ from .fillet_influence import fillets as fillets
 from .local_law import Film as Film
 from .pair_compliance import compliance as compliance
 from .single_pair import single_pair_stiffness as single_pair_stiffness
+from .solved_gear import Kept as Kept
 from .solved_gear import forget_gears as forget_gears
 from .support import Support as Support
 from .tooth_root import RootStress as RootStress

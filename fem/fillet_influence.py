@@ -9,8 +9,7 @@ give all of it. With the free edge's normal stress zero, sigma_t = E* eps_t(u_r)
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from math import ceil
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,8 +20,10 @@ from fem import flamant
 from fem.elasticity import MIRROR, PlaneElasticity, check_plane
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
 from fem.gear_compliance import CORNER_CLEARANCE
+from fem.gear_shape import GearShape, shapes
 from fem.line_load import LineLoads, flank_points, line_loads
 from fem.ring import Ring, ring_of
+from fem.solved_gear import Gears, Kept
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
@@ -38,6 +39,9 @@ may halve it."""
 
 TOLERANCE = Limit(0.0, low_open=True, remedy="0.005 is 0.5 %")
 FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
+
+ON_SAMPLE = 1e-4
+"""Of the samples' distance: a load nearer to a sample stands on it, where rounding would grow beyond bounds."""
 
 SIDES = ("left", "right")
 
@@ -68,6 +72,20 @@ class FilletInfluence:
     rho_range: tuple[float, float]
     series: Mapping[int, Array]
     noise: float
+
+    def scaled(self, profile: ToothProfile, law: PlaneElasticity) -> FilletInfluence:
+        """Give a gear in modules its size; the stress per line load does not depend on the modulus."""
+        module = profile.module
+        low, high = self.rho_range
+        series = {tooth: coefficients / module for tooth, coefficients in self.series.items()}
+        return FilletInfluence(
+            profile,
+            law,
+            fillet_line(profile),
+            (low * module, high * module),
+            series,
+            self.noise / module,
+        )
 
     def stress(self, tooth: int, rho: Array) -> Array:
         """Tangential stress (loads, 2, n) [Pa per N/m] on a tooth's left and right fillet.
@@ -107,11 +125,12 @@ def flamant_along(
     t2 = np.einsum("lpa,pa->lp", away, tangents) ** 2
     n2 = np.einsum("lpa,pa->lp", away, normals) ** 2
     # a load on the sample itself, at the foot of an involute that begins there, acts on the flank only
-    safe = np.where(r2 > 0, r2, 1.0)
-    return np.asarray(np.where(r2 > 0, -2 * along * (t2 - poisson * n2) / (np.pi * safe**2), 0.0))
+    apart = r2 > (ON_SAMPLE * np.linalg.norm(points[1] - points[0])) ** 2
+    safe = np.where(apart, r2, 1.0)
+    return np.asarray(np.where(apart, -2 * along * (t2 - poisson * n2) / (np.pi * safe**2), 0.0))
 
 
-def fillet_influence(ring: Ring, profile: ToothProfile, rho_low: float, reach: int) -> FilletInfluence:
+def fillet_influence(ring: Ring, profile: ToothProfile, reach: int) -> FilletInfluence:
     """Load the left flank at Chebyshev places, all with the ring's factorisation, and fit.
 
     Parameters
@@ -119,13 +138,10 @@ def fillet_influence(ring: Ring, profile: ToothProfile, rho_low: float, reach: i
     ring : Ring
     profile : gears.ToothProfile
         That the ring's mesh was made of.
-    rho_low : float
-        Smallest curvature radius that contact reaches [m].
     reach : int
         Teeth on either side of the loaded one.
     """
-    rho_form, rho_end = profile.flank_rho
-    low, high = max(rho_low, rho_form), rho_end - CORNER_CLEARANCE * profile.module
+    low, high = profile.flank_rho[0], profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
     unit = np.cos(np.pi * (np.arange(LOADS) + 0.5) / LOADS)
     unit /= unit[0]  # stretched to include both ends
     loads = line_loads(ring, flank_points(ring.mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit))
@@ -182,8 +198,23 @@ class Fillets:
     message: str
 
 
+@record
+class _SolvedFillets:
+    """Influence of one gear in modules, with its error and the size of what was solved."""
+
+    influence: FilletInfluence
+    error: float
+    unknowns: int
+    annulus_unknowns: int
+
+
 def fillets(
-    pair: GearPair, tolerance: float = 0.005, plane: str = "strain", fillet_edge: float | None = None
+    pair: GearPair,
+    tolerance: float = 0.005,
+    plane: str = "strain",
+    fillet_edge: float | None = None,
+    *,
+    kept: Kept | None = None,
 ) -> Fillets:
     """Influence functions of both gears on a mesh whose fillets are as fine as the tolerance asks for.
 
@@ -200,6 +231,8 @@ def fillets(
     plane : {"strain", "stress"}
     fillet_edge : float, optional
         Edge length on the fillets before the refinement, in modules; fixes the mesh instead of the tolerance.
+    kept : callable, optional
+        Where solved gears are kept beyond the process, as of `compliance`, which see: gears are used again here too.
 
     Raises
     ------
@@ -224,45 +257,51 @@ def fillets(
     watch = Stopwatch()
     edge = COARSEST if fillet_edge is None else fillet_edge
     smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
-    results = []
-    unknowns, cost = 0, Cost(0.0)
-    starts = pair.points.A, pair.line_of_action - pair.points.E
-    for profile, material, start in zip(pair.teeth_profiles, pair.materials, starts, strict=True):
-        law = PlaneElasticity.of(material, plane)
+    gears, results = Gears(kept), []
+    profiles = pair.teeth_profiles
+    for shape in shapes(pair, profiles, plane):
         gear_edge = edge
         while True:
-            influence, error, ring = _two_meshes(profile, law, gear_edge, start, ceil(pair.contact_ratio) + 2)
-            cost += ring.cost
-            if error <= tolerance or gear_edge <= smallest:
+            solved = gears.record(
+                "fillets", (shape, gear_edge), partial(_two_meshes, gears, shape, gear_edge)
+            )
+            if solved.error <= tolerance or gear_edge <= smallest:
                 break
             gear_edge *= 0.5
-        results.append((influence, error, gear_edge))
-        unknowns += ring.cost.unknowns
-        cost += Cost(0.0, counts={"annulus_unknowns": ring.unknowns})
-    error = max(result[1] for result in results)
+        results.append((solved, gear_edge))
+    error = max(solved.error for solved, _ in results)
     converged = error <= tolerance or fillet_edge is not None
-    finest = min(result[2] for result in results)
+    finest = min(gear_edge for _, gear_edge in results)
     message = f"edges of {0.5 * finest:.3g} modules on the fillets, error {error:.1e}"
     if not converged:
         message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
-    cost = replace(cost, seconds=watch.seconds, unknowns=unknowns)
-    return Fillets(pair, plane, results[0][0], results[1][0], 0.5 * finest, error, cost, converged, message)
+    pinion, wheel = (
+        solved.influence.scaled(profile, PlaneElasticity.of(material, plane))
+        for (solved, _), profile, material in zip(results, profiles, pair.materials, strict=True)
+    )
+    cost = Cost(
+        watch.seconds,
+        sum(solved.unknowns for solved, _ in results),
+        parts=sum(gears.costs, Cost(0.0)).parts,
+        counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
+    )
+    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, error, cost, converged, message)
 
 
-def _two_meshes(
-    profile: ToothProfile, law: PlaneElasticity, edge: float, rho_low: float, reach: int
-) -> tuple[FilletInfluence, float, Ring]:
-    """Influence on a refined mesh, its error against the mesh it refines, and its ring."""
+def _two_meshes(gears: Gears, shape: GearShape, edge: float) -> _SolvedFillets:
+    """Influence on a refined mesh, and its error against the mesh it refines."""
     from meshes import mesh_sector, refined
 
+    profile, law = shape.profile, shape.law
     coarse_mesh = mesh_sector(profile, _sizes(edge))
-    coarse = fillet_influence(ring_of(coarse_mesh, law), profile, rho_low, 0)
+    coarse = fillet_influence(ring_of(coarse_mesh, law), profile, 0)
     ring = ring_of(refined(coarse_mesh), law)
-    fine = fillet_influence(ring, profile, rho_low, reach)
+    fine = fillet_influence(ring, profile, shape.reach + 1)
     rho = np.linspace(*fine.rho_range, 15)
     greatest, other = (np.max(np.abs(found.stress(0, rho)), axis=2) for found in (fine, coarse))
-    change = np.max(np.abs(other / greatest - 1))
-    return fine, 0.5 * float(change) + fine.noise / float(np.max(greatest)), ring
+    error = 0.5 * float(np.max(np.abs(other / greatest - 1))) + fine.noise / float(np.max(greatest))
+    gears.costs.append(ring.cost)
+    return _SolvedFillets(fine, error, ring.cost.unknowns, ring.unknowns)
 
 
 def _sizes(edge: float) -> Sizes:

@@ -7,7 +7,7 @@ number of the shape; logarithms count lengths in modules.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import Sizes
 
-__all__ = ["GearShape", "MeshedShape", "shapes"]
+__all__ = ["GearShape", "MeshedShape", "plain", "shapes"]
 
 DIGITS = 12
 """Of lengths over the module: gears that differ in size alone have the same numbers, whatever the last bits are."""
@@ -79,16 +79,14 @@ class MeshedShape:
     sizes: Sizes
     refinements: int
 
-    def plain(self) -> dict[str, Any]:
-        """All of it as numbers and names, for keys of caches."""
 
-        def numbers(part: Any) -> Any:
-            if isinstance(part, dict):
-                return {name: numbers(value) for name, value in part.items()}
-            return part if part is None or isinstance(part, str) else float(part)
-
-        found: dict[str, Any] = numbers(asdict(self))
-        return found
+def plain(part: Any) -> Any:
+    """Turn what decides a record, nested records and numbers, into what keys of caches are made of."""
+    if is_dataclass(part):
+        return {one.name: plain(getattr(part, one.name)) for one in fields(part)}
+    if isinstance(part, tuple):
+        return [plain(inner) for inner in part]
+    return part if part is None or isinstance(part, str) else float(part)
 
 
 def shapes(

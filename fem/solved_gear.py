@@ -14,7 +14,7 @@ import numpy as np
 from base import Array, Cost, Stopwatch, record
 from fem.elasticity import PlaneElasticity
 from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
-from fem.gear_shape import MeshedShape
+from fem.gear_shape import MeshedShape, plain
 from fem.memo import Memo, read_only
 from fem.ring import Ring, ring_of
 from fem.tip_strips import TipStrips, tip_strips
@@ -110,25 +110,24 @@ class Gears:
 
     def flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
         """Flanks with loads at a number of places."""
-        return self._record("flanks", meshed, samples, lambda: self._flanks(meshed, samples))
+        return self.record("flanks", (meshed, samples), lambda: self._flanks(meshed, samples))
 
     def tips(self, meshed: MeshedShape) -> TipStrips:
         """Answer of the tip edges."""
-        return self._record("tips", meshed, 0, lambda: self._tips(meshed))
+        return self.record("tips", (meshed,), lambda: self._tips(meshed))
 
     def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         """Factorised gears, the coarser one first."""
         return _RINGS.obtain(meshed, lambda: self._rings(meshed))
 
-    def _record(self, name: str, meshed: MeshedShape, samples: int, compute: Callable[[], T]) -> T:
+    def record(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """Record of a name by all that decides it, solved where it is kept nowhere."""
         kept = self.kept
 
         def missing() -> T:
-            if kept is None:
-                return compute()
-            return kept(f"gear {name}", {"gear": meshed.plain(), "samples": samples}, compute)
+            return compute() if kept is None else kept(f"gear {name}", {"key": plain(key)}, compute)
 
-        found: T = _RECORDS.obtain((name, meshed, samples), lambda: read_only(missing()))
+        found: T = _RECORDS.obtain((name, key), lambda: read_only(missing()))
         return found
 
     def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:

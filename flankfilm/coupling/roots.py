@@ -13,6 +13,7 @@ from base import Cost, Stopwatch, part, quantity, record, unclocked
 from flankfilm.coupling.believed import believed
 
 if TYPE_CHECKING:
+    from fem import Kept
     from fem.fields import GearField
 
 
@@ -81,7 +82,9 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
     return RootStresses(found, iso, fault, found.error, Cost(watch.seconds))
 
 
-def fillets_of(pair: gears.GearPair, tolerance: float, plane: str = "strain") -> fem.Fillets:
+def fillets_of(
+    pair: gears.GearPair, tolerance: float, plane: str = "strain", kept: Kept | None = None
+) -> fem.Fillets:
     """What loads anywhere on the flanks do to the fillets, by a mesh made for them.
 
     Parameters
@@ -92,6 +95,8 @@ def fillets_of(pair: gears.GearPair, tolerance: float, plane: str = "strain") ->
         Relative, of the stress.
     plane : str
         ``"strain"`` or ``"stress"``.
+    kept : callable, optional
+        As of `fem.fillets`.
 
     Raises
     ------
@@ -105,7 +110,7 @@ def fillets_of(pair: gears.GearPair, tolerance: float, plane: str = "strain") ->
     >>> fillets_of(pair, tolerance=0.05).error < 0.05
     True
     """
-    return believed(fem.fillets(pair, tolerance=tolerance, plane=plane), "root stress")
+    return believed(fem.fillets(pair, tolerance=tolerance, plane=plane, kept=kept), "root stress")
 
 
 def pitch_point_fields(

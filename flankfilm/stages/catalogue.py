@@ -209,13 +209,14 @@ def MESH(run: Engine) -> coupling.MeshCycle:
     "root stress per load by finite elements",
     "pair material stiffness.plane tolerance",
     kept="gears meshes fem",
+    by_parts=True,
     of=plain_flanks,
 )
 def FILLETS(run: Engine) -> fem.Fillets:
     """What loads anywhere on the flanks do to the fillets."""
     scene = run.scene
     return coupling.fillets_of(
-        gear_pair(held_on_hubs(plain_flanks(scene))), scene.tolerance, scene.stiffness.plane
+        gear_pair(held_on_hubs(plain_flanks(scene))), scene.tolerance, scene.stiffness.plane, run.parts
     )
 
 

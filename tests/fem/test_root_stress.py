@@ -141,7 +141,7 @@ def test_influence_is_that_of_a_plain_annulus_with_a_nodal_force():
     force[gear.nodes[0][edges[pick, 0]]] = at.inward[0]
     u = np.zeros(2 * len(gear.points))
     u[free] = spsolve(csc_array(K[free][:, free]), force.ravel()[free])
-    influence = fillet_influence(ring_of(sector, LAW), profile, SMALL.points.A, 2)
+    influence = fillet_influence(ring_of(sector, LAW), profile, 2)
     greatest = np.abs(influence.stress(0, np.array([rho]))).max()
     for tooth in (-2, -1, 0, 1, 2):
         c, s = np.cos(2 * np.pi * tooth / z), np.sin(2 * np.pi * tooth / z)

@@ -10,15 +10,17 @@ import numpy as np
 import pytest
 
 import fem
+from fem.elasticity import PlaneElasticity
+from fem.fillet_influence import fillet_influence
 from fem.gear_compliance import gear_compliance, sample_places, sampled
 from fem.gear_shape import MeshedShape, shapes
 from fem.memo import Memo
-from fem.ring import mesh_and_factor
+from fem.ring import mesh_and_factor, ring_of
 from fem.solved_gear import MOST_RECORDS, Gears
 from fem.support import FIXED, Support, held_profiles
 from fem.tip_strips import tip_strips
 from gears import BasicRack, Gear, GearPair, Material, TipRelief
-from meshes import Sizes
+from meshes import Sizes, mesh_sector
 
 COARSE = Sizes().scaled(1.5)
 STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(2.5e9, 0.4, 1140.0)
@@ -237,3 +239,29 @@ def test_cost_is_of_what_was_solved_now():
     assert again.cost.parts == {}
     assert again.cost.seconds < 0.2 * first.cost.seconds
     assert again.cost.unknowns == first.cost.unknowns
+
+
+def test_fillets_are_kept_by_gear_and_have_the_stress_of_the_gear_itself():
+    fem.forget_gears()
+    shelf = Shelf()
+    options = {"fillet_edge": 0.32, "kept": shelf}
+    roots = fem.fillets(PAIR, **options)
+    assert shelf.computed == ["gear fillets"] * 2
+    other = fem.fillets(of_size(5.0, replace(PAIR, wheel=Gear(53)), material=PLASTIC), **options)
+    assert shelf.computed == ["gear fillets"] * 4  # PLASTIC has another Poisson's ratio
+    other = fem.fillets(of_size(5.0, replace(PAIR, wheel=Gear(53))), **options)
+    assert shelf.computed == ["gear fillets"] * 5
+    rho = np.linspace(*roots.pinion.rho_range, 5)
+    for tooth in (-1, 0, 2):
+        stress = roots.pinion.stress(tooth, rho)
+        np.testing.assert_allclose(
+            5 * other.pinion.stress(tooth, 5 * rho), stress, rtol=0, atol=1e-12 * np.abs(stress).max()
+        )
+    profile = PAIR.teeth_profiles[0]
+    mesh = mesh_sector(profile, Sizes(fillet=0.32, root=0.32, flank=0.25, corner=0.1), 1)
+    direct = fillet_influence(ring_of(mesh, PlaneElasticity.of(STEEL, "strain")), profile, 2)
+    for tooth in (0, 1):
+        stress = direct.stress(tooth, rho)
+        np.testing.assert_allclose(
+            roots.pinion.stress(tooth, rho), stress, rtol=0, atol=1e-6 * np.abs(stress).max()
+        )
