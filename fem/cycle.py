@@ -11,7 +11,7 @@ import numpy as np
 from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
-from fem.events import ContactProblem
+from fem.events import ContactProblem, measured_less
 from fem.references import check_reference, turns
 from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
@@ -134,7 +134,8 @@ class MeshCycle(MeshFigures):
         lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
         shift = less @ np.sum(lever * self.forces, axis=-1)
         slope = 1.0 - less @ np.sum(lever * self.pair_stiffness, axis=-1)  # dD'/dD
-        return replace(
+        found_arcs = self.__dict__.get("arcs")
+        measured = replace(
             self,
             reference=reference,
             bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
@@ -146,6 +147,10 @@ class MeshCycle(MeshFigures):
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
         )
+        if found_arcs is not None:
+            # copies that were pickled have nothing else, and all others need not solve the contact anew
+            measured.__dict__["arcs"] = measured_less(found_arcs, self.force, less)
+        return measured
 
     @cached_property
     def arcs(self) -> MeshArcs | None:

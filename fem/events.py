@@ -16,10 +16,13 @@ from gears.arcs import Arcs
 from gears.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
 
-__all__ = ["ContactProblem"]
+__all__ = ["ContactProblem", "measured_less"]
 
 SAMPLING = 0.1
 """Part of the tolerance that what the arcs leave out may be."""
+
+NAMES = (*CURVES, "moment_pinion", "moment_wheel", "slope_pinion", "slope_wheel")
+"""Curves on the arcs: those of every mesh cycle, N_g/F, and dN_g/dD of pinion and wheel (``fem.references``)."""
 
 GRADING = 6.0
 """Growth of the arcs away from a tip corner."""
@@ -87,13 +90,13 @@ class ContactProblem:
 
     def _alike(self, bodies: Compliance, known: Division) -> Arcs:
         """Arcs with another mesh, whose events are close to those that are known, but for a very near miss."""
-        found = arcs_alike(self._sampler(bodies), CURVES, known, self.given.pitches)
+        found = arcs_alike(self._sampler(bodies), NAMES, known, self.given.pitches)
         return self._divided(bodies).arcs if found is None else found
 
     def _divided(self, bodies: Compliance) -> Division:
         """Arcs with a mesh."""
         sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
-        return arcs_between_events(sample, CURVES, self._corners(bodies), self.given.pitches, tolerance)
+        return arcs_between_events(sample, NAMES, self._corners(bodies), self.given.pitches, tolerance)
 
     def _corners(self, bodies: Compliance) -> Array:
         """Corners of the geometry, and places near the tips that part what the compliance does there.
@@ -115,7 +118,7 @@ class ContactProblem:
         return np.concatenate([self.given.corners, more, film])
 
     def _curves(self, found: Solution) -> Array:
-        """Transmission error, tangent and secant stiffness (3, positions)."""
+        """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
         share, where, turned = found.share, found.where, found.share.forces[0, 0]
         deflection = share.transmission_error[0, 0]
         moved, tangent, secant = deflection + found.touch[0], share.stiffness[0, 0], self.force / deflection
@@ -126,16 +129,41 @@ class ContactProblem:
             added = np.sum(turned * found.levers / self.force * yields, axis=1)
             # the film's part counts in proportion to the whole transmission error
             secant = secant * moved / (moved + added)
-        if self.turn is not None:
-            lever = np.where(turned > 0.0, where.lever, 0.0)
-            shift = self.turn @ np.sum(lever * turned / found.kappa, axis=-1)
-            slope = 1.0 - self.turn @ np.sum(lever * share.pair_stiffness[0, 0] / found.kappa, axis=-1)
-            moved, tangent, secant = (
-                moved - shift,
-                tangent / slope,
-                self.force / (self.force / secant - shift),
-            )
-        return np.stack([moved, tangent, secant])
+        lever = np.where(turned > 0.0, where.lever, 0.0) / found.kappa
+        moments = np.sum(lever * turned, axis=-1) / self.force
+        slopes = np.sum(lever * share.pair_stiffness[0, 0], axis=-1)
+        curves = np.stack([moved, tangent, secant, *moments, *slopes])
+        return curves if self.turn is None else _less(curves, self.force, self.turn)
+
+
+def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
+    """Arcs with a turn of pinion and wheel per force (2,) [m/N] left out of the deflection (``fem.references``).
+
+    Parameters
+    ----------
+    found : MeshArcs
+        By finite elements.
+    force : float
+        [N]
+    turn : (2,) array
+    """
+
+    def less(arcs: Arcs) -> Arcs:
+        every = tuple(replace(arc, values=_less(arc.values, force, turn)) for arc in arcs.arcs)
+        return replace(arcs, arcs=every)
+
+    before = None if found.before is None else less(found.before)
+    division = replace(found.division, arcs=less(found.division.arcs))
+    return replace(found, division=division, before=before)
+
+
+def _less(curves: Array, force: float, turn: Array) -> Array:
+    """Curves (7, n) with a turn per force left out of the deflection."""
+    moved, tangent, secant = curves[:3]
+    moments, slopes = curves[3:5], curves[5:]
+    shift, slope = force * (turn @ moments), 1.0 - turn @ slopes
+    secant = force / (force / secant - shift)
+    return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
 
 
 def _reserve(found: Solution, force: float, even: bool) -> Array:

@@ -135,6 +135,24 @@ def test_a_shaft_that_twists_counts_at_the_bore_alone_and_one_that_bends_everywh
     np.testing.assert_allclose(bent.against("body").stiffness, on_path.against("body").stiffness, rtol=1e-12)
 
 
+def test_figures_between_events_follow_the_reference(cycle):
+    """From the problem, from arcs that are known, and from a copy that was pickled: the same figures."""
+    names = ("mean_stiffness", "mean_secant_stiffness", "transmission_error_range", "greatest_stiffness")
+    solved = [getattr(cycle.against("body"), name) for name in names]  # no arcs are known yet
+    for known in (cycle, pickle.loads(pickle.dumps(cycle))):
+        assert known.arcs is not None
+        found = known.against("body")
+        assert "arcs" in vars(found)
+        assert [getattr(found, name) for name in names] == pytest.approx(solved, rel=1e-4)
+        np.testing.assert_allclose(
+            found.stiffness_harmonics, cycle.against("body").stiffness_harmonics, rtol=1e-6, atol=1e-12
+        )
+        back = found.against("bore")
+        assert [getattr(back, n) for n in names] == pytest.approx(
+            [getattr(cycle, n) for n in names], rel=1e-9
+        )
+
+
 def test_load_sharing_with_and_without_a_common_compliance():
     """The identity by itself, with levers: forces stay, tangents differ by Sherman and Morrison's formula."""
 

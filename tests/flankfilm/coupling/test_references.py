@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 
 import numpy as np
@@ -74,6 +75,8 @@ def test_a_film_yields_by_as_much_against_every_reference(bodies):
     # tip edges, whose levers about the wheel are shorter, carry a little less with a film
     np.testing.assert_allclose(yields[0], yields[1], rtol=5e-3)
     np.testing.assert_allclose(np.median(yields[0] / yields[1]), 1.0, rtol=1e-6)
+    kept = pickle.loads(pickle.dumps(wet)).against("body")  # as the results cache gives it back
+    assert kept.mean_secant_stiffness == pytest.approx(body.mean_secant_stiffness, rel=1e-6)
     assert body.secant_stiffness_change < wet.secant_stiffness_change < 0  # of a stiffer mesh
 
 
@@ -88,15 +91,16 @@ def test_the_oscillator_of_a_pair_takes_the_body(cycle):
     assert default.reference == "body"
     assert MEANINGS["body"] in default.message
     assert any("bodies" in text for _, text, _ in default.rows())
-    assert default.natural_frequency == pytest.approx(found["body"].natural_frequency, rel=1e-12)
+    assert default.natural_frequency == pytest.approx(found["body"].natural_frequency, rel=1e-7)
     series = mesh_series(cycle, order=3)
     fitted = ff.pair_oscillator(PAIR, series, TORQUE, SPEED, extra_inertia=inertia)
     assert fitted.series.order == 3
-    assert fitted.natural_frequency == pytest.approx(default.natural_frequency, rel=1e-12)
+    # arcs of a cycle that was measured twice are interpolated twice
+    assert fitted.natural_frequency == pytest.approx(default.natural_frequency, rel=1e-7)
     assert found["bore"].natural_frequency < default.natural_frequency < found["teeth"].natural_frequency
     for reference, one in found.items():
         mean = cycle.against(reference, inertia).mean_secant_stiffness
-        assert one.scales.mean_stiffness == pytest.approx(mean, rel=1e-12)
+        assert one.scales.mean_stiffness == pytest.approx(mean, rel=1e-7)
     # inertia on the bores holds them: less of the hubs' wind-up is left out
     free = ff.pair_oscillator(PAIR, cycle, TORQUE, SPEED)
     assert free.scales.mean_stiffness > default.scales.mean_stiffness
