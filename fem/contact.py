@@ -10,10 +10,12 @@ import numpy as np
 
 from base import Array, Booleans, Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
-from fem.contact_candidates import ContactCandidates
 from fem.cycle import MeshCycle
+from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
+from fem.flamant import hertz_half_width
 from fem.local_law import Film
+from fem.moving_contact import model_error, moved_places
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, held_turns
 from fem.setting import Deviations, Setting
@@ -25,6 +27,12 @@ if TYPE_CHECKING:
 __all__ = ["MeshCycle", "mesh_cycle"]
 
 TORQUE = Limit(0.0, unit="N m", low_open=True, remedy="the pinion drives; give its torque")
+
+LARGE_DEFLECTION = 0.03
+"""Part of the module above which a deflection is told."""
+
+WIDE_CONTACT = 0.07
+"""Part of the radius of relative curvature above which a contact's half-width is told."""
 
 Options = ParamSpec("Options")
 
@@ -75,6 +83,7 @@ def mesh_cycle(
     tip_rounding: float | tuple[float, float] = 0.0,
     friction: float = 0.0,
     reference: str = "bore",
+    moving_contact: bool = False,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -116,6 +125,10 @@ def mesh_cycle(
         What D is measured against: the turn of what holds the bores, of the bodies weighted by their inertia
         (what motion needs), or of the root circles (what closed forms describe). No force depends on it
         (``MeshCycle.against``). A compliance that leaves parts out measures its own way at "bore".
+    moving_contact : bool
+        Whether contacts on the path move under load (``fem.moving_contact``), to the first order in the
+        deflection over the module; a position is then that of the wheel, and the pinion takes up D. Otherwise
+        contacts stay where undeformed teeth touch. ``model_error`` holds what either leaves out.
 
     Returns
     -------
@@ -136,7 +149,17 @@ def mesh_cycle(
     >>> round(cycle.mean_stiffness / 40e-3 / 1e9, 1)  # N/(mm um)
     21.4
     """
-    given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding, friction)
+    given = Setting(
+        pair,
+        positions,
+        beyond_path,
+        deviations,
+        pitches,
+        first_teeth,
+        tip_rounding,
+        friction,
+        moving_contact=moving_contact,
+    )
     _check(given, torque, compliance, reference)
     watch = Stopwatch()
     bodies = (
@@ -192,8 +215,14 @@ def _result(
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
-    rho = np.where(where.touchable, where.rho, np.nan)
+    share = turned * contact.levers
+    rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, given.pitches, 1))
+    if given.moving_contact:
+        share = share - 0.5 * turned * contact.moves.rolled(turned)
+        moved = moved_places(contact.moves, turned, contact.share.transmission_error[number])
+        rho = _on_flanks(given.pair, rho + moved.reshape(rho.shape))
     held, supports = held_turns(bodies)
+    error = model_error(contact.moves, turned, contact.share.transmission_error[number], given.moving_contact)
     return MeshCycle(
         torque=torque,
         force=force,
@@ -201,9 +230,9 @@ def _result(
         pair_offset=where.offset,
         rho1=np.tile(np.where(on_path, where.rho[0], np.nan), (given.pitches, 1)),
         edge=edge,
-        flank_rho=np.tile(rho, (1, given.pitches, 1)),
+        flank_rho=rho,
         forces=forces,
-        load_share=(turned * contact.levers).reshape(-1, pairs) / force + bad,
+        load_share=share.reshape(-1, pairs) / force + bad,
         gaps=where.gap.reshape(-1, pairs),
         transmission_error=deflection + touch + bad,
         stiffness=contact.share.stiffness[number].ravel() + bad,
@@ -212,9 +241,14 @@ def _result(
         plane=bodies.plane,
         beyond_path=given.beyond_path,
         error=bodies.error,
+        model_error=error + bad,
+        moving_contact=given.moving_contact,
         cost=cost,
         converged=bodies.converged and not refusal,
-        message=refusal or "; ".join([bodies.message, *_remarks(given, where, forces, edge, closing)]),
+        message=refusal
+        or "; ".join(
+            [bodies.message, *_remarks(given, contact, number, forces, edge, closing, bodies.plane)]
+        ),
         pair=given.pair,
         candidates=where,
         friction=float(given.friction),
@@ -224,11 +258,33 @@ def _result(
     )
 
 
+def _on_flanks(pair: GearPair, rho: Array) -> Array:
+    """Curvature radii (gear, ...), moved to the ends of the flanks where they are beyond."""
+    ends = [profile.flank_rho for profile in pair.teeth_profiles]
+    return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
+
+
+def _large(given: Setting, contact: Solution, number: int, forces: Array, plane: str) -> list[str]:
+    """Deflections and contacts that are large for a law of the first order."""
+    part = np.max(contact.share.transmission_error[number]) / given.pair.module
+    loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
+    rho1, rho2 = contact.where.rho
+    radius = rho1 * rho2 / (rho1 + rho2)
+    width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
+    wide = np.max(width / radius)
+    found = []
+    if part > LARGE_DEFLECTION:
+        found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
+    if wide > WIDE_CONTACT:
+        found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
+    return found
+
+
 def _remarks(
-    given: Setting, where: ContactCandidates, forces: Array, edge: Booleans, closing: Array
+    given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans, closing: Array, plane: str
 ) -> list[str]:
     """What a reader of the figures should know."""
-    remarks = []
+    where, remarks = contact.where, []
     if np.any(forces[edge] > 0):
         sharp = [one.radius == 0.0 for one in given.rounds]
         form = (
@@ -239,6 +295,7 @@ def _remarks(
             f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
             "several per cent for real edges"
         )
+    remarks.extend(_large(given, contact, number, forces, plane))
     if given.friction:
         remarks.append("friction changes the lever arms only, not the compliance")
     if np.min(where.back_gap) < 0:

@@ -83,6 +83,11 @@ class MeshCycle(MeshFigures):
     plane: str = part('"strain" or "stress", as of the compliance')
     beyond_path: bool = part("whether tip edges were among the candidates")
     error: float = quantity("1", "estimated relative numerical error of stiffness and transmission error")
+    model_error: float = quantity(
+        "1",
+        "estimated relative error of transmission error and secant stiffness by the model of the contacts, apart "
+        "from `error`: large strain, second order, and their motion if they stay; of the tangent about twice that",
+    )
     cost: Cost
     converged: bool
     message: str
@@ -91,6 +96,7 @@ class MeshCycle(MeshFigures):
         "places, teeth, levers and unloaded gaps of all contacts that were looked for"
     )
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
+    moving_contact: bool = part("whether contacts on the path move under load", default=False)
     supports: tuple[Support, Support] = part(
         "how the bores are held, of what the compliance counts", default=(FIXED, FIXED)
     )

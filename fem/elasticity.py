@@ -100,16 +100,16 @@ INTEGRATION = 4
 """Order of the quadrature: exact for the stiffness of straight elements with room for curved ones."""
 
 
-def _physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Array) -> tuple[Array, Array]:
+def physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Array) -> tuple[Array, Array]:
     """Gradients (m, q, 6, 2) in space and Jacobian determinants (m, q) at reference points (q,)."""
     reference = shape_gradients(xi, eta)
-    jacobian = np.einsum("mix,qir->mqxr", points[triangles], reference)
+    jacobian = points[triangles].swapaxes(1, 2)[:, None] @ reference
     determinant = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
     inverse = np.empty_like(jacobian)
     inverse[..., 0, 0], inverse[..., 1, 1] = jacobian[..., 1, 1], jacobian[..., 0, 0]
     inverse[..., 0, 1], inverse[..., 1, 0] = -jacobian[..., 0, 1], -jacobian[..., 1, 0]
     inverse /= determinant[..., None, None]
-    return np.einsum("qir,mqrx->mqix", reference, inverse), determinant
+    return reference @ inverse, determinant
 
 
 def element_matrices(points: Array, triangles: Integers, law: PlaneElasticity) -> Array:
@@ -185,7 +185,7 @@ def nodal_stress_matrix(points: Array, triangles: Integers, law: PlaneElasticity
     from scipy.sparse import coo_array
 
     lam, mu = law.lame
-    gradient, _ = _physical_gradients(points, triangles, NODES[:, 0], NODES[:, 1])
+    gradient, _ = physical_gradients(points, triangles, NODES[:, 0], NODES[:, 1])
     share = 1.0 / np.bincount(triangles.ravel(), minlength=len(points))[triangles]
     dx, dy = (gradient[..., axis] * share[:, :, None] for axis in (0, 1))  # (elements, node at, node of)
     blocks = np.stack(
@@ -214,7 +214,7 @@ def stress_at(
         [m]
     """
     lam, mu = law.lame
-    gradient, _ = _physical_gradients(points, triangles, xi, eta)
+    gradient, _ = physical_gradients(points, triangles, xi, eta)
     slope = np.einsum("mia,mqib->mqab", displacement[triangles], gradient)
     trace = slope[..., 0, 0] + slope[..., 1, 1]
     stress: Array = mu * (slope + slope.swapaxes(-1, -2))

@@ -113,6 +113,9 @@ class ContactProblem:
             if first > 0.0:
                 steps = first * GRADING ** np.arange(3)
                 places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
+        if self.given.moving_contact:  # beyond these ends the flanks' motion stays the same
+            places += [*bodies.pinion.motion.rho_range]
+            places += [pair.line_of_action - rho for rho in bodies.wheel.motion.rho_range]
         more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
         film = np.zeros(0) if self.corners is None else self.corners
         return np.concatenate([self.given.corners, more, film])

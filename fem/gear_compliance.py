@@ -21,6 +21,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
+from fem.flank_motion import FlankMotion, flank_motion
 from fem.line_load import flank_points, joined, line_loads
 from fem.ring import Ring
 
@@ -69,6 +70,8 @@ class GearCompliance:
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
     fit_error : float
         What the series leave out, estimated from the decay of their coefficients [m per N/m].
+    motion : FlankMotion
+        How the flank moves beyond yielding along its normal, for contacts that move.
     """
 
     rho_range: tuple[float, float]
@@ -82,6 +85,7 @@ class GearCompliance:
     corner_series: Mapping[int, Array]
     hub_windup: float
     fit_error: float
+    motion: FlankMotion
 
     def scaled(self, module: float, law: PlaneElasticity) -> GearCompliance:
         """Give a gear in modules and E* its size [m] and modulus."""
@@ -99,6 +103,7 @@ class GearCompliance:
             {tooth: series / modulus for tooth, series in self.corner_series.items()},
             self.hub_windup / modulus,
             self.fit_error / modulus,
+            self.motion.scaled(module, law),
         )
 
     def _unit(self, rho: Array) -> Array:
@@ -111,6 +116,13 @@ class GearCompliance:
         away = (self.rho_end**2 - rho**2) / (2 * self.base_radius)
         own = chebyshev.chebval(self._unit(rho), self.own_series)
         return np.asarray(own + self.logarithm * np.log(away / self.module))
+
+    def own_slope(self, rho: Array) -> Array:
+        """Differentiate ``own`` by rho [1 per N/m]; places beyond the range of ``motion`` are moved to its end."""
+        rho = np.clip(rho, *self.motion.rho_range)
+        low, high = self.rho_range
+        slope = chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series)) * 2 / (high - low)
+        return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
 
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
         """Displacement along the inward normal of another tooth by a load on tooth 0.
@@ -130,6 +142,16 @@ class GearCompliance:
         series = self.cross_series[tooth]
         loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
         return np.asarray(np.sum((loads @ series) * points, axis=-1))
+
+    def cross_slope(self, tooth: int, load: Array, point: Array) -> Array:
+        """Change of ``cross`` as load and point move on together [1 per N/m]; arguments as there."""
+        low, high = self.rho_range
+        series = self.cross_series[tooth]
+        by_load, by_point = (chebyshev.chebder(series, axis=axis) for axis in (0, 1))
+        loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
+        slope = np.sum((loads[..., :-1] @ by_load) * points, axis=-1)
+        slope = slope + np.sum((loads @ by_point) * points[..., :-1], axis=-1)
+        return np.asarray(slope * 2 / (high - low))
 
     def corner(self, tooth: int, load: Array) -> Array:
         """Displacement of another tooth's tip corner along its flank's tangent, towards the tip.
@@ -249,7 +271,11 @@ def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> Flan
 
 
 def gear_compliance(
-    ring: Ring, profile: ToothProfile, samples: FlankSamples, flank: str = "left"
+    ring: Ring,
+    profile: ToothProfile,
+    samples: FlankSamples,
+    flank: str = "left",
+    motion: FlankMotion | None = None,
 ) -> GearCompliance:
     """Interpolate samples at ``sample_places``.
 
@@ -259,6 +285,8 @@ def gear_compliance(
     profile : gears.ToothProfile
     samples : FlankSamples
     flank : {"left", "right"}
+    motion : FlankMotion, optional
+        Computed on the same ring unless given.
     """
     rho, rho_end = samples.rho, profile.flank_rho[1]
     low, high = float(rho[0]), float(rho[-1])
@@ -283,6 +311,7 @@ def gear_compliance(
         {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
         hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
         max(_tail(own), remainder),
+        motion or flank_motion(ring, flank),
     )
 
 

@@ -64,6 +64,7 @@ class Setting:
     tip_rounding: float | tuple[float, float] = 0.0
     friction: float = 0.0
     stations: Stations | None = None
+    moving_contact: bool = False
 
     def at(self, position: Array) -> Setting:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""

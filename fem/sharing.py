@@ -10,6 +10,7 @@ from base import Array, Integers, record
 from fem.bodies import Compliance
 from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
 from fem.local_law import Film, FilmLaw, PairLaws, Table
+from fem.moving_contact import ContactMoves, contact_moves, moved_share
 from fem.setting import Setting
 from fem.tip_contact import edge_laws
 
@@ -24,7 +25,8 @@ class Solution:
     """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
 
     kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
-    closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear.
+    closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear. With moving
+    contacts that do not settle, share is the one of contacts that stay, and settled is False.
     """
 
     where: ContactCandidates
@@ -34,6 +36,8 @@ class Solution:
     largest: Array
     closing: Array
     open: Array
+    moves: ContactMoves
+    settled: bool
 
     @property
     def touch(self) -> Array:
@@ -43,6 +47,12 @@ class Solution:
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
         where, turned = self.where, self.share.forces[number]
+        if not self.settled:
+            most = 1e3 * np.max(self.share.transmission_error)
+            return (
+                f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move; reduce the "
+                "torque, or let contacts stay"
+            )
         if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
             return "a tip edge presses over more than the strips cover; reduce the torque"
         if np.max(self.closing[number] + self.touch) > where.reach_gap:
@@ -84,13 +94,21 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
             oil,
             levers if given.friction else None,
         )
+        moves, settled = contact_moves(bodies, where), True
+        if given.moving_contact:
+            gaps = where.gap - touch[..., None]
+            moved = moved_share(share, force[:, None, None], matrix, laws, gaps, oil, levers, moves)
+            settled = moved is not None
+            share = share if moved is None else moved
         closing = share.transmission_error - bodies.turning * force[:, None, None]
         if np.max(closing + touch) <= where.reach_gap:
             break
     propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
     bent = (matrix @ share.forces[..., None])[..., 0] + where.gap - touch[..., None]
     left = bent - propped - share.transmission_error[..., None]
-    return Solution(where, share, kappa, levers, largest, closing, left)
+    if given.moving_contact:
+        left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
+    return Solution(where, share, kappa, levers, largest, closing, left, moves, settled)
 
 
 def _levers(given: Setting, where: ContactCandidates) -> Array:

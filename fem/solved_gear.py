@@ -13,6 +13,7 @@ import numpy as np
 
 from base import Array, Cost, Stopwatch, record
 from fem.elasticity import PlaneElasticity
+from fem.flank_motion import flank_motion
 from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
 from fem.gear_shape import MeshedShape, plain
 from fem.memo import Memo, read_only
@@ -146,9 +147,10 @@ class Gears:
         watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
         places = sample_places(profile, samples)
         there, before = sampled(fine, places, reach), sampled(coarse, places, reach)
+        motion = flank_motion(coarse)  # a correction: the coarser mesh will do
         found = SolvedFlanks(
-            gear_compliance(fine, profile, there),
-            gear_compliance(coarse, profile, before),
+            gear_compliance(fine, profile, there, motion=motion),
+            gear_compliance(coarse, profile, before, motion=motion),
             places,
             there.own - before.own,
             float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
