@@ -118,18 +118,23 @@ class KeptPart:
     cache : Cache
     packages : tuple of str
         Whose code decides the parts.
+    on_start : callable
+        Called before the first part that has to be computed.
     found : list of bool
         Grows by one with each part asked for.
     """
 
     cache: Cache
     packages: tuple[str, ...]
-    found: list[bool]
+    on_start: Callable[[], None]
+    found: list[bool] = field(default_factory=list)
 
     def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
         """Part of a name with plain inputs, from the cache or computed."""
         key = self.cache.key(name, inputs, self.packages)
         value: T | None = self.cache.get(key)
+        if value is None and all(self.found):
+            self.on_start()
         self.found.append(value is not None)
         if value is None:
             value = compute()
@@ -182,13 +187,14 @@ class Engine:
         start = time.perf_counter()
         self._elsewhere.append(0.0)
         packages, whole_kept = packages_of(stage), bool(stage.kept) and not stage.by_parts
-        self._parts.append(KeptPart(self.cache, packages, []))
+        self._parts.append(KeptPart(self.cache, packages, lambda: self.on_start(stage)))
         key = self.cache.key(stage.name, self.inputs(stage), packages) if whole_kept else ""
         value: T | None = self.cache.get(key) if whole_kept else None
         cached = value is not None
         caught: list[warnings.WarningMessage] = []
         if value is None:
-            self.on_start(stage)
+            if not stage.by_parts:
+                self.on_start(stage)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 value = stage.compute(self)

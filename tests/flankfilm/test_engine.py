@@ -174,12 +174,18 @@ def test_parts_of_a_result_are_kept_for_other_scenes(tmp_path):
 
     stage = Stage("whole", "whole", compute, lambda s: {}, (), ("gears",), by_parts=True)
 
+    started = []
+
     def run(title: str) -> Engine:
-        engine = Engine(scene().model_copy(update={"title": title}), Cache(tmp_path))
+        started.clear()
+        engine = Engine(scene().model_copy(update={"title": title}), Cache(tmp_path), started.append)
         assert engine[stage] == title.upper().split()
         return engine
 
     assert not run("a b").runs["whole"].cached
+    assert started == [stage]
     assert not run("b c").runs["whole"].cached
+    assert started == [stage]
     assert run("c a").runs["whole"].cached
+    assert started == []
     assert computed == ["a", "b", "c"]
