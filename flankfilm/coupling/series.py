@@ -64,7 +64,7 @@ class MeshSeries:
 
     @described("1", "position")
     def position(self) -> Array | None:
-        """Position of the samples that were fitted, base pitches from A."""
+        """Position, base pitches from A."""
         return None if self.cycle is None else self.cycle.position
 
     @described("N/m", "position")
