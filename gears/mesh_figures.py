@@ -26,6 +26,9 @@ CURVES = ("transmission_error", "stiffness", "secant_stiffness")
 HARMONICS = 50
 """Harmonics of the mesh frequency that are figures of a cycle."""
 
+STEP = 1e-3
+"""Least relative step of the tangent stiffness that is an event of its own."""
+
 SHOWN = 24
 """Points of an arc in pictures."""
 
@@ -58,6 +61,15 @@ class MeshArcs:
     def arcs(self) -> Arcs:
         """Curves on their arcs."""
         return self.division.arcs
+
+    @property
+    def events(self) -> Array:
+        """Where contacts begin or end: where a switch turns, or the tangent stiffness steps by 0.1 % (events,)."""
+        events, row = self.division.events, self.arcs.names.index("stiffness")
+        ends = np.array([arc.values[row, [0, -1]] for arc in self.arcs.arcs])
+        before, after = np.roll(ends[:, 1], 1), ends[:, 0]
+        steps = np.append(np.abs(after / before - 1) > STEP, False)
+        return np.asarray(events.position[steps | (events.switched >= 0)])
 
     def mean(self, name: str) -> Estimate:
         """Mean of a curve."""
@@ -209,8 +221,8 @@ class MeshFigures(ABC):
 
     @described("1", "event")
     def event_position(self) -> Array:
-        """Events: where contacts begin or end, and where profiles have corners, base pitches from A."""
-        return np.zeros(0) if self.arcs is None else self.arcs.division.events.position
+        """Events: where contacts begin or end, base pitches from A."""
+        return np.zeros(0) if self.arcs is None else self.arcs.events
 
     @described("1", "dense")
     def dense_position(self) -> Array:

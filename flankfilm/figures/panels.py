@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,11 +38,29 @@ def curves(axes: Axes, x: Array, family: Mapping[str, Reading], meaning: str = "
 
 
 def over_two_pitches(
-    axes: Axes, position: Reading, family: Mapping[str, Reading], meaning: str = "", **options: Any
+    axes: Axes,
+    position: Reading,
+    family: Mapping[str, Reading],
+    meaning: str = "",
+    at: Mapping[str, Array] | None = None,
+    **options: Any,
 ) -> None:
-    """Draw curves of the mesh cycle, repeated over a second base pitch; arguments as of `curves`."""
-    twice = {label: replace(curve, values=np.tile(curve.values, 2)) for label, curve in family.items()}
-    curves(axes, np.concatenate([position.values, position.values + 1]), twice, meaning, **options)
+    """Draw curves of the mesh cycle, repeated over a second base pitch.
+
+    Parameters
+    ----------
+    axes, family, meaning, options
+        As of `curves`.
+    position : Reading
+        Of the curves.
+    at : mapping, optional
+        Label to positions of a curve that has its own.
+    """
+    for (label, curve), look in zip(family.items(), looks(len(family)), strict=True):
+        own = (at or {}).get(label, position.values)
+        twice = np.concatenate([own, own + 1]), np.tile(curve.values, 2)
+        axes.plot(*twice, label=label, **{**look, **options})
+        axes.set(ylabel=curve.named(meaning or curve.meaning))
     axes.set(xlabel=position.label)
 
 

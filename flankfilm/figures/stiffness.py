@@ -10,7 +10,7 @@ import numpy as np
 from base import Array
 from flankfilm.figures.panels import curves, over_path, over_two_pitches
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
-from flankfilm.figures.style import Style, colours, from_zero, sheet
+from flankfilm.figures.style import MARK, Style, colours, from_zero, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -74,16 +74,24 @@ def transmission_error(results: xr.Dataset, *, style: Style | None = None) -> Fi
 def _over_the_cycle(
     results: xr.Dataset, what: str, height: float, style: Style | None, *, per_face: bool = False
 ) -> Figure:
-    """Draw a curve of the mesh cycle over two base pitches by every model, the one that counts first."""
+    """Draw a curve of the mesh cycle over two base pitches by every model, the one that counts first.
+
+    On the arcs between events, with its steps; the events of the one that counts are marked.
+    """
     prefix = _final(results)
     own = list(dict.fromkeys((prefix, "dry")))
-    need(results, STIFFNESS, *(f"{name}_{what}" for name in own))
+    need(results, STIFFNESS, *(f"{name}_dense_{what}" for name in own))
+    labels = {text(results, f"{name}_label"): name for name in own}
     cycles = {
-        text(results, f"{name}_label"): read(results, f"{name}_{what}", per_face=per_face) for name in own
+        label: read(results, f"{name}_dense_{what}", per_face=per_face) for label, name in labels.items()
     }
     cycles |= beside(results, f"other_{what}", per_face=per_face)
+    places = {label: results[f"{name}_dense_position"].values for label, name in labels.items()}
     with sheet(style, height=height, legend=2) as (drawn, (axes,)):
-        over_two_pitches(axes, read(results, f"{prefix}_position"), cycles)
+        over_two_pitches(axes, read(results, f"{prefix}_position"), cycles, at=places)
+        events = results[f"{prefix}_event_position"].values
+        marked = np.concatenate([events, events + 1])
+        axes.vlines(marked, 0.0, 1.0, MARK, linewidth=0.8, transform=axes.get_xaxis_transform(), zorder=0)
     return drawn
 
 

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 OF_EACH = ("reference_radii", "base_radii", "root_radii", "form_radii", "tip_radii", "bore_radii")
 """Figures of both gears."""
 
+LISTED = 6
+"""Harmonics in the table of a mesh cycle."""
+
 OF_THE_PAIR = {
     "module": 4,
     "face_width": 4,
@@ -89,7 +92,8 @@ def stiffness(
         [m]
     results : xarray.Dataset
     """
-    shown, tables = ["mesh_stiffness", "load_share", "transmission_error"], [_cycles(cycles, face_width)]
+    shown = ["mesh_stiffness", "load_share", "transmission_error"]
+    tables = [_cycles(cycles, face_width), _harmonics(cycles[0])]
     if single is not None:
         shown.insert(0, "single_pairs")
         tables.append(iso_table(single.iso))
@@ -147,6 +151,21 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
     tables = Table(heads, tuple(means)), Table(("mean deflection, dry", "µm", "of all"), tuple(parts))
     title = "What the deflection is measured against"
     return Part("references", title, tables=tables, notes=(said("references"),))
+
+
+def _harmonics(cycle: MeshCycle) -> Table:
+    """First harmonics of the cycle that counts, with their errors."""
+    names = ("secant_stiffness_harmonics", "stiffness_harmonics", "transmission_error_harmonics")
+    heads, columns = ["harmonic"], [[str(order) for order in range(1, LISTED + 1)]]
+    for name in names:
+        values, errors = read_figure(cycle, name), getattr(cycle, f"{name}_error")
+        heads += [values.label, "error"]
+        columns.append([number(one, 4) for one in values.values[:LISTED].tolist()])
+        scale = values.values[0] / getattr(cycle, name)[0]
+        columns.append(
+            ["unknown"] * LISTED if errors is None else [number(scale * one, 2) for one in errors[:LISTED]]
+        )
+    return Table(tuple(heads), tuple(zip(*columns, strict=True)), f"Harmonics of the mesh: {cycle.label}.")
 
 
 def iso_table(iso: Any) -> Table:

@@ -49,6 +49,9 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     """First harmonic and what the series leaves out."""
     kappa = stage.amplitude[0] / stage.mean if stage.order else 0.0
     left = "given" if stage.remainder is None else f"remainder {100 * stage.remainder:.2g} % of the mean"
+    if stage.left_out is not None and stage.left_out.motion is not None:
+        motion = percent(float(stage.left_out.motion[stage.order]))
+        left += f"; order {stage.order} leaves out up to {motion} of the motion"
     return [Headline("first harmonic over the mean", f"{kappa:.4f}", left)]
 
 

@@ -98,7 +98,7 @@ class DynamicsSection(Section):
     }
 
     fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = key(
-        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows', 1, shown=True
+        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows', 1, example="auto"
     )
     stiffness: Literal["secant", "tangent"] = key(
         "force over deflection, or the slope for small vibration", "secant", shown=True
