@@ -23,6 +23,9 @@ __all__ = ["Events", "Sampled", "Sampler", "arcs_alike", "arcs_between_events"]
 BESIDE = 1e-11
 """Distance from a corner of the geometry at which curves are sampled on either side [base pitches]."""
 
+AT_END = 1e-9
+"""Reserve at the end of an arc below which its switch turns there."""
+
 LOCATED = 1e-9
 """Width of the bracket in which an event is left [base pitches]; steps of a curve there count by that much."""
 
@@ -189,9 +192,10 @@ class _Piece:
         return np.asarray(np.clip(first + 0.5 * (last - first) * (1 + lobatto(self.degree)), first, last))
 
     def brackets(self) -> list[_Bracket]:
-        """Neighbours between which a switch turns."""
+        """Neighbours between which a switch turns; one that turns at the very end of the arc has its event there."""
         bears, place = self.reserve >= 0.0, self.positions
         known = np.isfinite(self.reserve)
+        known[[0, -1]] &= np.abs(self.reserve[[0, -1]]) > AT_END
         return [
             _Bracket(switch, place, self.reserve[:, switch], node)
             for node, switch in np.argwhere((bears[1:] != bears[:-1]) & known[1:] & known[:-1]).tolist()
