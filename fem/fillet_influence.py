@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
+from math import floor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,6 +37,10 @@ LOADS, DEGREE = 24, 14
 COARSEST, HALVINGS = 0.16, 3
 """Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
 may halve it."""
+
+START = 0.25
+"""Steps [modules] of the least curvature radius of loads, so that mates of nearly equal reach share a solution.
+Nearer to the fillet no short series follows the stress, of undercut teeth least of all."""
 
 TOLERANCE = Limit(0.0, low_open=True, remedy="0.005 is 0.5 %")
 FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
@@ -130,7 +135,7 @@ def flamant_along(
     return np.asarray(np.where(apart, -2 * along * (t2 - poisson * n2) / (np.pi * safe**2), 0.0))
 
 
-def fillet_influence(ring: Ring, profile: ToothProfile, reach: int) -> FilletInfluence:
+def fillet_influence(ring: Ring, profile: ToothProfile, reach: int, rho_low: float = 0.0) -> FilletInfluence:
     """Load the left flank at Chebyshev places, all with the ring's factorisation, and fit.
 
     Parameters
@@ -140,8 +145,10 @@ def fillet_influence(ring: Ring, profile: ToothProfile, reach: int) -> FilletInf
         That the ring's mesh was made of.
     reach : int
         Teeth on either side of the loaded one.
+    rho_low : float
+        Least curvature radius of loads [m], if the flank goes on below it.
     """
-    low, high = profile.flank_rho[0], profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
+    low, high = max(rho_low, profile.flank_rho[0]), profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
     unit = np.cos(np.pi * (np.arange(LOADS) + 0.5) / LOADS)
     unit /= unit[0]  # stretched to include both ends
     loads = line_loads(ring, flank_points(ring.mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit))
@@ -259,11 +266,12 @@ def fillets(
     smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
     gears, results = Gears(kept), []
     profiles = pair.teeth_profiles
-    for shape in shapes(pair, profiles, plane):
-        gear_edge = edge
+    starts = pair.points.A, pair.line_of_action - pair.points.E
+    for shape, start in zip(shapes(pair, profiles, plane), starts, strict=True):
+        gear_edge, low = edge, START * floor(start / (START * pair.module))
         while True:
             solved = gears.record(
-                "fillets", (shape, gear_edge), partial(_two_meshes, gears, shape, gear_edge)
+                "fillets", (shape, gear_edge, low), partial(_two_meshes, gears, shape, gear_edge, low)
             )
             if solved.error <= tolerance or gear_edge <= smallest:
                 break
@@ -288,15 +296,15 @@ def fillets(
     return Fillets(pair, plane, pinion, wheel, 0.5 * finest, error, cost, converged, message)
 
 
-def _two_meshes(gears: Gears, shape: GearShape, edge: float) -> _SolvedFillets:
-    """Influence on a refined mesh, and its error against the mesh it refines."""
+def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> _SolvedFillets:
+    """Influence of loads from a curvature radius on, on a refined mesh, and its error against the mesh it refines."""
     from meshes import mesh_sector, refined
 
     profile, law = shape.profile, shape.law
     coarse_mesh = mesh_sector(profile, _sizes(edge))
-    coarse = fillet_influence(ring_of(coarse_mesh, law), profile, 0)
+    coarse = fillet_influence(ring_of(coarse_mesh, law), profile, 0, low)
     ring = ring_of(refined(coarse_mesh), law)
-    fine = fillet_influence(ring, profile, shape.reach + 1)
+    fine = fillet_influence(ring, profile, shape.reach + 1, low)
     rho = np.linspace(*fine.rho_range, 15)
     greatest, other = (np.max(np.abs(found.stress(0, rho)), axis=2) for found in (fine, coarse))
     error = 0.5 * float(np.max(np.abs(other / greatest - 1))) + fine.noise / float(np.max(greatest))

@@ -13,24 +13,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, Integers, part, quantity, record
-from gears.arcs import Arc, Arcs, lobatto
+from gears.arcs import Arcs
+from gears.pieces import LOCATED, Bracket, End, Piece, Sampled
 
 __all__ = ["Events", "Sampled", "Sampler", "arcs_alike", "arcs_between_events"]
-
-BESIDE = 1e-11
-"""Distance from a corner of the geometry at which curves are sampled on either side [base pitches]."""
-
-AT_END = 1e-9
-"""Reserve at the end of an arc below which its switch turns there."""
-
-LOCATED = 1e-9
-"""Width of the bracket in which an event is left [base pitches]; steps of a curve there count by that much."""
-
-SPREAD = np.concatenate([-(10.0 ** -np.arange(1.0, 8.0)), [0.0], 10.0 ** -np.arange(7.0, 0.0, -1.0)])
-"""Places asked for about a foreseen event, over the bracket's width."""
 
 NEAR = np.concatenate([-(4.0 ** -np.arange(9.0)), 4.0 ** -np.arange(8.0, -1.0, -1.0)])
 """Places about a known event at which slightly different gears are asked for theirs."""
@@ -46,19 +34,6 @@ LOOKS = 4
 
 SHORTEST = 1e-8
 """Arcs shorter than this are one event [base pitches]."""
-
-
-@record
-class Sampled:
-    """Curves at some positions, and what decides where they are smooth."""
-
-    curves: Array = quantity("", "values", "curve position")
-    reserve: Array = quantity(
-        "1",
-        "force over the whole force where a pair bears, else minus the gap that is left over the deflection; likewise "
-        "any other switch between two laws. Its sign alone decides; nan where it cannot switch",
-        "position switch",
-    )
 
 
 Sampler = Callable[[Array], Sampled]
@@ -138,150 +113,6 @@ def arcs_alike(sample: Sampler, names: tuple[str, ...], division: Division, pitc
     return _Search(sample, names, pitches, 1.0).alike(division)
 
 
-@dataclass(frozen=True)
-class _End:
-    """A boundary of arcs: last position before it, first one after it, the switch that makes it."""
-
-    before: float
-    after: float
-    switch: int = -1
-
-    @classmethod
-    def at(cls, position: float) -> _End:
-        return cls(position - BESIDE, position + BESIDE)
-
-
-@dataclass
-class _Piece:
-    """An arc that is being resolved."""
-
-    low: _End
-    high: _End
-    curves: Array
-    reserve: Array
-    degree: int = 0
-    halvings: int = 0
-
-    @classmethod
-    def between(cls, low: _End, high: _End, halvings: int = 0) -> _Piece:
-        return cls(low, high, np.empty((0, 0)), np.empty((0, 0)), 0, halvings)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        return self.low.after, self.high.before
-
-    def place(self, degree: int) -> Array:
-        """Chebyshev points; of a higher degree than before only the new ones."""
-        first, last = self.ends
-        unit = lobatto(degree) if self.degree == 0 else lobatto(degree)[1::2]
-        # both ends exactly: beyond them another law holds
-        return np.clip(first + 0.5 * (last - first) * (1 + unit), first, last)
-
-    def add(self, degree: int, found: Sampled) -> None:
-        """Take samples at `place` of a degree."""
-        if self.degree == 0:
-            self.curves, self.reserve = found.curves, found.reserve
-        else:
-            self.curves = _interleaved(self.curves.T, found.curves.T).T
-            self.reserve = _interleaved(self.reserve, found.reserve)
-        self.degree = degree
-
-    @property
-    def positions(self) -> Array:
-        first, last = self.ends
-        return np.asarray(np.clip(first + 0.5 * (last - first) * (1 + lobatto(self.degree)), first, last))
-
-    def brackets(self) -> list[_Bracket]:
-        """Neighbours between which a switch turns; one that turns at the very end of the arc has its event there."""
-        bears, place = self.reserve >= 0.0, self.positions
-        known = np.isfinite(self.reserve)
-        known[[0, -1]] &= np.abs(self.reserve[[0, -1]]) > AT_END
-        return [
-            _Bracket(switch, place, self.reserve[:, switch], node)
-            for node, switch in np.argwhere((bears[1:] != bears[:-1]) & known[1:] & known[:-1]).tolist()
-            if place[node + 1] - place[node] > LOCATED
-        ]
-
-    def missed(self) -> float | None:
-        """Where a switch may turn for a moment between two samples; None where none does."""
-        unit = np.linspace(lobatto(self.degree)[1], lobatto(self.degree)[-2], 8 * self.degree + 1)
-        for switch in range(self.reserve.shape[1]):
-            values = self.reserve[:, switch]
-            if not np.all(np.isfinite(values)) or np.ptp(values) < 1e-9:
-                continue
-            series = chebyshev.chebfit(lobatto(self.degree), values, self.degree)
-            between = chebyshev.chebval(unit, series) * (1.0 if values[self.degree // 2] >= 0.0 else -1.0)
-            lowest = int(np.argmin(between))
-            if between[lowest] < -1e-9 * np.max(np.abs(values)):
-                first, last = self.ends
-                return float(first + 0.5 * (last - first) * (1 + unit[lowest]))
-        return None
-
-
-def _interleaved(old: Array, new: Array) -> Array:
-    """Rows of old and new, in turn."""
-    both = np.empty((len(old) + len(new), old.shape[1]))
-    both[::2], both[1::2] = old, new
-    return both
-
-
-class _Bracket:
-    """Neighbouring positions between which a switch turns, with what is known about it nearby.
-
-    The gap that is left is smooth up to the event, where a force begins steeply: the event is foreseen from the side
-    of negative reserve by inverse interpolation, and asked for with places close about it on both sides.
-    """
-
-    def __init__(self, switch: int, place: Array, reserve: Array, node: int) -> None:
-        self.switch = switch
-        self.place, self.reserve, self.node = place, reserve, node
-
-    @property
-    def low(self) -> float:
-        return float(self.place[self.node])
-
-    @property
-    def high(self) -> float:
-        return float(self.place[self.node + 1])
-
-    @property
-    def width(self) -> float:
-        return self.high - self.low
-
-    def foreseen(self) -> float:
-        """Where the reserve vanishes, from up to four places on its negative side; else the middle."""
-        middle = 0.5 * (self.low + self.high)
-        left = bool(self.reserve[self.node] < 0.0)
-        chosen = self.node - np.arange(4) if left else self.node + 1 + np.arange(4)
-        chosen = chosen[(chosen >= 0) & (chosen < len(self.place))]
-        values = self.reserve[chosen]
-        good = np.logical_and.accumulate((values < 0.0) & np.isfinite(values))
-        good &= np.logical_and.accumulate(np.diff(values, prepend=1.0) < 0.0)
-        places, values = self.place[chosen[good]], values[good]
-        if len(places) < 2:
-            return middle
-        weights = np.array(
-            [np.prod(np.delete(values, i) / (np.delete(values, i) - one)) for i, one in enumerate(values)]
-        )
-        found = float(weights @ places)
-        return found if self.low < found < self.high else middle
-
-    def asked(self) -> Array:
-        """Places inside the bracket, closest about the foreseen one."""
-        near = self.foreseen() + self.width * SPREAD
-        least = 0.25 * LOCATED
-        inside = near[(near > self.low + least) & (near < self.high - least)]
-        return np.unique(np.append(inside, 0.5 * (self.low + self.high)))
-
-    def add(self, place: Array, reserve: Array) -> None:
-        """Take in what was asked for; the bracket becomes the closest one in which the switch turns."""
-        first, last = self.node, self.node + 1
-        self.place = np.concatenate([self.place[:last], place, self.place[last:]])
-        self.reserve = np.concatenate([self.reserve[:last], reserve, self.reserve[last:]])
-        bears = self.reserve[first : last + len(place) + 1] >= 0.0
-        self.node = first + int(np.flatnonzero(bears[1:] != bears[:-1])[0])
-
-
 class _Search:
     """Search for events and degrees."""
 
@@ -303,9 +134,9 @@ class _Search:
         known = np.append((np.arange(self.pitches)[:, None] + within).ravel(), self.pitches)
         known = known[np.diff(known, prepend=-1.0) > SHORTEST]
         known[-1] = self.pitches
-        ends = [_End.at(float(one)) for one in known]
-        pending = [_Piece.between(*both) for both in pairwise(ends)]
-        done: list[_Piece] = []
+        ends = [End.at(float(one)) for one in known]
+        pending = [Piece.between(*both) for both in pairwise(ends)]
+        done: list[Piece] = []
         resolved = True
         while pending:
             self._sampled(pending)
@@ -327,7 +158,7 @@ class _Search:
     def alike(self, division: Division) -> Arcs | None:
         """Follow known events, and sample the arcs between them at known degrees."""
         events, known = division.events, []
-        ends = [_End.at(one) for one in events.position.tolist()]
+        ends = [End.at(one) for one in events.position.tolist()]
         for number in np.flatnonzero(events.switched >= 0).tolist():
             room = float(np.min(np.diff(events.position)[max(number - 1, 0) : number + 1]))
             known.append((number, events.position[number] + 0.4 * min(room, 0.05) * NEAR))
@@ -340,19 +171,19 @@ class _Search:
                 turns = np.flatnonzero((reserve[1:] >= 0.0) != (reserve[:-1] >= 0.0))
                 if len(turns) != 1 or not np.all(np.isfinite(reserve)):
                     return None
-                brackets.append(_Bracket(switch, place, reserve, int(turns[0])))
+                brackets.append(Bracket(switch, place, reserve, int(turns[0])))
             for (number, _), end in zip(known, self._located(brackets), strict=True):
                 ends[number] = end
-        pieces = [_Piece.between(*both) for both in pairwise(ends)]
+        pieces = [Piece.between(*both) for both in pairwise(ends)]
         degrees = [arc.values.shape[1] - 1 for arc in division.arcs.arcs]
         self._take(pieces, degrees)
         return self._division(pieces, True).arcs
 
-    def _sampled(self, pieces: list[_Piece]) -> None:
+    def _sampled(self, pieces: list[Piece]) -> None:
         """Sample pieces at their next degree, all at once."""
         self._take(pieces, [next(one for one in DEGREES if one > piece.degree) for piece in pieces])
 
-    def _take(self, pieces: list[_Piece], degrees: list[int]) -> None:
+    def _take(self, pieces: list[Piece], degrees: list[int]) -> None:
         """Sample pieces at given degrees."""
         places = [piece.place(degree) for piece, degree in zip(pieces, degrees, strict=True)]
         found, start = self.ask(np.concatenate(places)), 0
@@ -363,15 +194,17 @@ class _Search:
         self.low = least if self.low.size == 0 else np.minimum(self.low, least)
         self.high = most if self.high.size == 0 else np.maximum(self.high, most)
 
-    def _divided(self, piece: _Piece, events: list[_End]) -> list[_Piece] | None:
+    def _divided(self, piece: Piece, events: list[End]) -> list[Piece] | None:
         """Parts that have to be sampled again, the piece itself for a higher degree; None if it is good."""
         first, last = piece.ends
         if last - first < SHORTEST:
             return None
-        inside = sorted((one for one in events if first < one.before and one.after < last), key=_before)
+        inside = sorted(
+            (one for one in events if first < one.before and one.after < last), key=lambda one: one.before
+        )
         if inside:
             ends = [piece.low, *_apart(inside), piece.high]
-            return [_Piece.between(*both, piece.halvings) for both in pairwise(ends)]
+            return [Piece.between(*both, piece.halvings) for both in pairwise(ends)]
         look = piece.degree == DEGREES[0] and piece.halvings < LOOKS
         middle = piece.missed() if look else None
         if middle is None and self._smooth(piece):
@@ -380,17 +213,17 @@ class _Search:
             return [piece]
         if middle is None and piece.halvings >= HALVINGS:
             return None
-        end = _End.at(0.5 * (first + last) if middle is None else middle)
+        end = End.at(0.5 * (first + last) if middle is None else middle)
         more = piece.halvings + 1
-        return [_Piece.between(piece.low, end, more), _Piece.between(end, piece.high, more)]
+        return [Piece.between(piece.low, end, more), Piece.between(end, piece.high, more)]
 
-    def _smooth(self, piece: _Piece) -> bool:
+    def _smooth(self, piece: Piece) -> bool:
         """Whether the series of all curves have decayed."""
         size = np.maximum(self.high - self.low, 0.01 * np.maximum(np.abs(self.low), np.abs(self.high)))
-        arc = _arc(piece)
+        arc = piece.arc()
         return bool(np.all(arc.tail * min(1.0, 4.0 * arc.width) <= self.tolerance * size))
 
-    def _located(self, brackets: list[_Bracket]) -> list[_End]:
+    def _located(self, brackets: list[Bracket]) -> list[End]:
         """Events in brackets, all at once."""
         while wide := [one for one in brackets if one.width > LOCATED]:
             asked = [one.asked() for one in wide]
@@ -398,33 +231,24 @@ class _Search:
             for one, places in zip(wide, asked, strict=True):
                 one.add(places, found[start : start + len(places), one.switch])
                 start += len(places)
-        return [_End(one.low, one.high, one.switch) for one in brackets]
+        return [End(one.low, one.high, one.switch) for one in brackets]
 
-    def _division(self, pieces: list[_Piece], resolved: bool) -> Division:
+    def _division(self, pieces: list[Piece], resolved: bool) -> Division:
         ends = [piece.low for piece in pieces] + [pieces[-1].high]
         middle = np.array([0.5 * (end.before + end.after) for end in ends])
         arcs = tuple(
-            _arc(piece, low, high) for piece, (low, high) in zip(pieces, pairwise(middle), strict=True)
+            piece.arc(low, high) for piece, (low, high) in zip(pieces, pairwise(middle), strict=True)
         )
         events = Events(middle, np.array([end.switch for end in ends]))
         return Division(Arcs(self.names, arcs, self.pitches), events, resolved, self.samples, self.calls)
 
 
-def _before(end: _End) -> float:
-    return end.before
-
-
-def _apart(ends: list[_End]) -> list[_End]:
+def _apart(ends: list[End]) -> list[End]:
     """Events that do not overlap; of those that do, one over both."""
     kept = [ends[0]]
     for end in ends[1:]:
         if end.before - kept[-1].after < SHORTEST:
-            kept[-1] = _End(kept[-1].before, max(end.after, kept[-1].after), end.switch)
+            kept[-1] = End(kept[-1].before, max(end.after, kept[-1].after), end.switch)
         else:
             kept.append(end)
     return kept
-
-
-def _arc(piece: _Piece, low: float | None = None, high: float | None = None) -> Arc:
-    first, last = piece.ends
-    return Arc(first if low is None else low, last if high is None else high, piece.curves)

@@ -47,7 +47,7 @@ def mesh_cycle(
     >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
     >>> cycle = mesh_cycle(pair, torque=600.0, model="potential-energy", pairs="independent")
     >>> cycle.secant_stiffness.shape, round(cycle.mean_secant_stiffness / 40e6, 1)  # N/(mm um)
-    ((120,), 20.2)
+    ((120,), 20.3)
     """
     loaded, asked = resolved(LoadedTeeth(pair, torque, **teeth), tolerance)
     return (

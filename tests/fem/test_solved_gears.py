@@ -259,7 +259,9 @@ def test_fillets_are_kept_by_gear_and_have_the_stress_of_the_gear_itself():
         )
     profile = PAIR.teeth_profiles[0]
     mesh = mesh_sector(profile, Sizes(fillet=0.32, root=0.32, flank=0.25, corner=0.1), 1)
-    direct = fillet_influence(ring_of(mesh, PlaneElasticity.of(STEEL, "strain")), profile, 2)
+    direct = fillet_influence(
+        ring_of(mesh, PlaneElasticity.of(STEEL, "strain")), profile, 2, roots.pinion.rho_range[0]
+    )
     for tooth in (0, 1):
         stress = direct.stress(tooth, rho)
         np.testing.assert_allclose(
