@@ -38,7 +38,7 @@ COARSEST, HALVINGS = 0.16, 3
 """Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
 may halve it."""
 
-START = 0.25
+START = 0.05
 """Steps [modules] of the least curvature radius of loads, so that mates of nearly equal reach share a solution.
 Nearer to the fillet no short series follows the stress, of undercut teeth least of all."""
 
