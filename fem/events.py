@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, SolverError
 from fem.bodies import Compliance
-from fem.local_law import Film
+from fem.local_law import Film, film_yielding
 from fem.setting import Setting
 from fem.sharing import Solution, solve
 from gears import LoadSharingError
@@ -44,9 +44,7 @@ class ContactProblem:
     corners : (n,) array, optional
         Positions within a base pitch at which the film's law has corners.
     film_yields : bool
-        Whether the secant counts the film's yielding along its tangent from zero force. A film separates the flanks
-        most where the force is least, so that the transmission error itself is less than without film, and the
-        force over it would call a film stiffer than none.
+        Whether the secant counts what the film yields (``fem.local_law.film_yielding``).
     turn : (2,) array, optional
         Turn of pinion and wheel per force that is left out of the deflection (``fem.references``) [m/N].
     """
@@ -127,9 +125,8 @@ class ContactProblem:
         moved, tangent, secant = deflection + found.touch[0], share.stiffness[0, 0], self.force / deflection
         if self.film is not None and self.film_yields:
             rho1 = np.where(where.touchable & ~where.edge, where.rho[0], np.nan)
-            separation, steepness = self.film(rho1, turned / found.kappa)
-            yields = np.where(np.isfinite(rho1), separation - turned / found.kappa * steepness, 0.0)
-            added = np.sum(turned * found.levers / self.force * yields, axis=1)
+            shares = turned * found.levers / self.force
+            added = film_yielding(self.film, rho1, turned / found.kappa, shares)
             # the film's part counts in proportion to the whole transmission error
             secant = secant * moved / (moved + added)
         lever = np.where(turned > 0.0, where.lever, 0.0) / found.kappa

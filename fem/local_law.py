@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Booleans, record
 
-__all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table"]
+__all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table", "film_yielding"]
 
 LEAST_FORCE = 1e-9
 """Force [N] below which the Hertz indentation is taken as linear, since its slope at zero is infinite."""
@@ -130,6 +130,27 @@ class Film(Protocol):
         forces : (positions, pairs) array
             Normal forces [N], zero included.
         """
+
+
+def film_yielding(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
+    r"""What films yield beyond the transmission error, counted along their tangents from zero force (positions,) [m].
+
+    A film separates the flanks most where the force is least, so that the transmission error D itself is less
+    than without film and F/D would call a film stiffer than no film. What yields is the bodies' deflection
+    :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and the mean over the pairs
+    weighted by their shares, a stiff film gives the dry secant back.
+
+    Parameters
+    ----------
+    film : Film
+    rho1 : (positions, pairs) array
+        Places [m]; nan where a pair is dry.
+    forces, shares : (positions, pairs) arrays
+        Forces [N] and their shares of the whole.
+    """
+    separation, slope = film(rho1, forces)
+    yields = np.where(np.isfinite(rho1), separation - forces * slope, 0.0)
+    return np.asarray(np.sum(shares * yields, axis=1))
 
 
 @record

@@ -182,7 +182,7 @@ class MeshFigures(ABC):
 
     @described("1", "harmonic")
     def stiffness_harmonics(self) -> Array:
-        """Amplitudes of the harmonics 1, 2, ... of the tangent stiffness over its mean."""
+        """Amplitudes of the tangent stiffness' harmonics over its mean."""
         return self._harmonics("stiffness")[0]
 
     @described("1", "harmonic")
@@ -192,7 +192,7 @@ class MeshFigures(ABC):
 
     @described("1", "harmonic")
     def secant_stiffness_harmonics(self) -> Array:
-        """Amplitudes of the harmonics 1, 2, ... of the secant stiffness over its mean."""
+        """Amplitudes of the secant stiffness' harmonics over its mean."""
         return self._harmonics("secant_stiffness")[0]
 
     @described("1", "harmonic")
@@ -202,7 +202,7 @@ class MeshFigures(ABC):
 
     @described("m", "harmonic", shown="um")
     def transmission_error_harmonics(self) -> Array:
-        """Amplitudes of the harmonics 1, 2, ... of the transmission error."""
+        """Amplitudes of the transmission error's harmonics."""
         return self._harmonics("transmission_error")[0]
 
     @described("m", "harmonic", shown="um")

@@ -10,6 +10,7 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Faults, SolverError, Stopwatch
+from fem.local_law import film_yielding
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
@@ -274,24 +275,6 @@ class SinglePairsProblem:
         placed = None if film is None else Placed(film, rho1)
         share = gears.share_load(force, bulk, Placed(_no_hertz, rho1), gaps, placed)
         return share, force / np.asarray(share.transmission_error)
-
-
-def film_yielding(film: FilmLaw, rho1: Array, forces: Array, shares: Array) -> Array:
-    r"""What films yield beyond the transmission error, counted along their tangents from zero force (positions,) [m].
-
-    A film separates the flanks most where the force is least, so that the transmission error D itself is less
-    than without film and F/D would call a film stiffer than no film. What yields is the bodies' deflection
-    :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and the mean over the pairs
-    weighted by their shares, a stiff film gives the dry secant back.
-
-    Parameters
-    ----------
-    film : FilmLaw
-    rho1, forces, shares : ndarray, shape (positions, pairs)
-        Places [m], forces [N] and their shares of the whole.
-    """
-    separation, slope = film(rho1, forces)
-    return np.asarray(np.sum(shares * (separation - forces * slope), axis=1))
 
 
 def contact_places(pair: gears.GearPair, positions: int) -> tuple[Array, Array]:

@@ -11,11 +11,12 @@ import numpy as np
 import ehl
 import gears
 from base import Array, SolverError, Stopwatch, described, part, quantity, record, unclocked
+from fem.local_law import film_yielding
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of, held_the_other_way, law_of
-from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions, film_yielding
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.resolution import Resolution
 from flankfilm.coupling.warned import warned_once

@@ -101,14 +101,15 @@ def stiffness_references(
         allowed = "requires a loaded contact by finite elements of coupled pairs"
         raise InputError.at("cycle", cycle.label, allowed, "take a mesh cycle by finite elements")
     each = [cycle.against(name, bore_inertia) for name in MEANINGS]
+    errors = np.array([one.mean_error for one in each], dtype=float)
     parts = deflection_parts(cycle.contact, compliance)
     return StiffnessReferences(
         reference=tuple(MEANINGS),
         mean_stiffness=np.array([one.mean_stiffness for one in each]),
         mean_secant_stiffness=np.array([one.mean_secant_stiffness for one in each]),
-        mean_error=np.array([one.mean_error for one in each]),
+        mean_error=errors,
         iso_mesh_stiffness=1e9 * pair.face_width * iso6336(pair, force=cycle.contact.force).c_gamma,
         deflection={name: float(part.mean()) for name, part in parts.items()},
-        error=max(one.mean_error or 0.0 for one in each),
+        error=float(np.max(errors)),  # nan where a contact between the positions has no solution
         cost=Cost(watch.seconds),
     )

@@ -104,7 +104,7 @@ class MeshSeries:
 
     @described("1", "sampled")
     def harmonics(self) -> Array | None:
-        """Amplitude over the mean of the harmonics 1, 2, ... of the curve."""
+        """Amplitudes of the harmonics over the mean."""
         return None if self.fit is None else np.array(self.fit.harmonics)
 
     @described("1")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Quantity
+from base.results import figures
 from flankfilm.build import pinion_speed
 from flankfilm.figures import drawn
 from flankfilm.output.branches import branch_tables
@@ -19,6 +20,7 @@ from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
 from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
 from flankfilm.plan.decisions import decisions
+from gears.mesh_figures import MeshFigures
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +56,6 @@ RECORDS = {
     "reference": "references",
     "torque": "torques",
     "pair": "pair",
-    "revolution": "revolution",
 }
 """Prefix of the variables of each stage whose result is one record."""
 
@@ -129,6 +130,10 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
     if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
         yield of_record("dry", dry.contact, CONTACTS)
         yield of_quantities("dry", _sliding(dry.contact, speed))
+    if (revolution := values.get("revolution")) is not None:
+        # curves alone: what follows from arcs is not looked for over a revolution
+        known = [name for name in figures(type(revolution)) if name not in vars(MeshFigures)]
+        yield of_record("revolution", revolution, known)
     if others := values.get("other cycles"):
         yield of_models("other", {cycle.label: cycle for cycle in others}, "model of the mesh cycle")
     if (lubricated := values.get("film")) is not None:

@@ -39,6 +39,7 @@ def test_the_scene_s_own_torque_is_one_of_the_sweep(results):
 def test_a_revolution_shows_every_tooth_and_the_runout(results):
     travel = results.revolution_position.values
     assert travel.size == 36 * 40
+    assert "revolution_mean_stiffness" not in results  # curves alone, no figures without arcs
     unloaded = results.revolution_unloaded_transmission_error.values
     # once around the pinion: a sine of 6 um in cumulative pitch turns it by 6 cos 20 degrees along the line of action
     first = 2 * np.abs(np.mean(unloaded * np.exp(-2j * np.pi * travel / 36)))
