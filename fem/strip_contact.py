@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from base import Array, Booleans, Integers
+from base import Array, Integers
 from fem.elasticity import PlaneElasticity
 
 __all__ = ["flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest"]
@@ -88,26 +88,26 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
     """As ``from_the_corner`` for any gaps: with tip relief or a rounding the corner need not be nearest.
 
     From the nearest strip on, the approach grows until the next strip closes, and so on: each closing is a
-    point of the law. Strips that have closed stay closed. The inverse of the closed strips' kernel grows by
-    bordering, one row and column for each closing.
+    point of the law. Strips that have closed stay closed. The elimination of ``from_the_corner`` takes them in the
+    order of their closing; what it leaves of levers and gaps in the rows of open strips is how fast these near
+    the other body, and how far away they would be without any approach.
     """
     contacts, strips = gaps.shape
     rows = np.arange(contacts)
-    kernel = np.broadcast_to(kernel, (contacts, strips, strips))
-    inverse = np.zeros((contacts, strips, strips))
+    whole = np.zeros((contacts, strips + 1, strips + 2))
+    whole[:, :strips, :strips] = kernel
+    whole[:, -1, :strips] = whole[:, :strips, -2] = levers
+    whole[:, :strips, -1] = gaps
     closed = np.zeros((contacts, strips), dtype=bool)
     touching = gaps / levers
     force, approach = [np.zeros(contacts)], [touching.min(axis=1)]
     following, more = touching.argmin(axis=1), np.ones(contacts, dtype=bool)
     for _ in range(strips - 1):
-        _close(inverse, kernel, closed, rows[more], following[more])
+        _eliminate(whole, rows[more], following[more])
         closed[rows[more], following[more]] = True
-        x = np.einsum("cij,cj->ci", inverse, np.where(closed, levers, 0.0))
-        y = np.einsum("cij,cj->ci", inverse, np.where(closed, gaps, 0.0))
         # a strip that moves as fast as the rest never closes
-        nearing = np.where(closed, 0.0, levers - np.einsum("cij,cj->ci", kernel, x))
-        coming = nearing > 1e-9
-        away = gaps - np.einsum("cij,cj->ci", kernel, y)
+        nearing, away = whole[:, :strips, -2], whole[:, :strips, -1]
+        coming = ~closed & (nearing > 1e-9)
         closing = np.where(coming, away / np.where(coming, nearing, 1.0), np.inf)
         # two strips that close together make one step of the law, not a vertical one
         closing = np.maximum(closing, approach[-1][:, None] + 1e-12)
@@ -115,28 +115,15 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
         level = closing[rows, following]
         more = np.isfinite(level)  # else the same strips go on bearing
         level = np.where(more, level, 2 * approach[-1] - approach[0] + 1e-9)
-        force.append(
-            np.maximum(
-                level * np.sum(levers * x, axis=1) - np.sum(levers * y, axis=1), force[-1] * (1 + 1e-12)
-            )
-        )
+        borne = whole[:, -1, -1] - level * whole[:, -1, -2]
+        force.append(np.maximum(borne, force[-1] * (1 + 1e-12)))
         approach.append(level)
     return np.array(force).T, np.array(approach).T
 
 
-def _close(
-    inverse: Array,
-    kernel: Array,
-    closed: Booleans,
-    rows: Integers,
-    strip: Integers,
-) -> None:
-    """Add one closed strip to the inverse of each row; other rows and columns of the inverse are zero."""
-    held = closed[rows]
-    column, row = (np.where(held, part, 0.0) for part in (kernel[rows, :, strip], kernel[rows, strip]))
-    before = inverse[rows]
-    right, left = np.einsum("cij,cj->ci", before, column), np.einsum("ci,cij->cj", row, before)
-    pivot = kernel[rows, strip, strip] - np.einsum("ci,ci->c", row, right)
-    each = np.arange(len(rows))
-    right[each, strip] = left[each, strip] = -1.0
-    inverse[rows] = before + right[:, :, None] * (left / pivot[:, None])[:, None, :]
+def _eliminate(whole: Array, rows: Integers, strip: Integers) -> None:
+    """Eliminate one strip of each row's system; of its own equation nothing is left."""
+    pivot = whole[rows, strip, strip]
+    line, column = whole[rows, strip], whole[rows, :, strip]
+    each = slice(None) if len(rows) == len(whole) else rows
+    whole[each] -= (column / pivot[:, None])[:, :, None] * line[:, None, :]
