@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
 
-from base import Array, Booleans, Cost, Faults, Limit, Stopwatch
+from base import Array, Booleans, Cost, Faults, Limit, RangeWarning, Stopwatch
 from fem.bodies import Compliance
 from fem.cycle import MeshCycle
 from fem.elasticity import reduced_modulus
@@ -140,6 +141,11 @@ def mesh_cycle(
     base.InputError
         Input that makes no sense, or the compliance of another pair.
 
+    Warns
+    -----
+    base.RangeWarning
+        Deflections above 0.03 modules, half-widths above 0.07 of the radius of relative curvature.
+
     Examples
     --------
     >>> from fem import compliance, mesh_cycle
@@ -217,10 +223,16 @@ def _result(
     on_path = where.touchable & ~where.edge
     share = turned * contact.levers
     rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, given.pitches, 1))
+    lost: Array | float = 0.0
     if given.moving_contact:
-        share = share - 0.5 * turned * contact.moves.rolled(turned)
+        lost = 0.5 * contact.moves.rolled(turned)
+        share = share - turned * lost
+        lost = lost.reshape(-1, pairs)
         moved = moved_places(contact.moves, turned, contact.share.transmission_error[number])
         rho = _on_flanks(given.pair, rho + moved.reshape(rho.shape))
+    large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
+    if large:
+        warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
     error = model_error(contact.moves, turned, contact.share.transmission_error[number], given.moving_contact)
     return MeshCycle(
@@ -243,12 +255,11 @@ def _result(
         error=bodies.error,
         model_error=error + bad,
         moving_contact=given.moving_contact,
+        lever_loss=lost,
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
-        or "; ".join(
-            [bodies.message, *_remarks(given, contact, number, forces, edge, closing, bodies.plane)]
-        ),
+        or "; ".join([bodies.message, *_remarks(given, contact, forces, edge, closing), *large]),
         pair=given.pair,
         candidates=where,
         friction=float(given.friction),
@@ -280,9 +291,7 @@ def _large(given: Setting, contact: Solution, number: int, forces: Array, plane:
     return found
 
 
-def _remarks(
-    given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans, closing: Array, plane: str
-) -> list[str]:
+def _remarks(given: Setting, contact: Solution, forces: Array, edge: Booleans, closing: Array) -> list[str]:
     """What a reader of the figures should know."""
     where, remarks = contact.where, []
     if np.any(forces[edge] > 0):
@@ -295,7 +304,6 @@ def _remarks(
             f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
             "several per cent for real edges"
         )
-    remarks.extend(_large(given, contact, number, forces, plane))
     if given.friction:
         remarks.append("friction changes the lever arms only, not the compliance")
     if np.min(where.back_gap) < 0:

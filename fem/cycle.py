@@ -97,6 +97,11 @@ class MeshCycle(MeshFigures):
     )
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
     moving_contact: bool = part("whether contacts on the path move under load", default=False)
+    lever_loss: Array | float = part(
+        "part of the pinion's base radius by which the tilt of a loaded flank shortens the lever of each force, half "
+        "as much as a further load does; zero where contacts stay",
+        default=0.0,
+    )
     supports: tuple[Support, Support] = part(
         "how the bores are held, of what the compliance counts", default=(FIXED, FIXED)
     )
@@ -138,8 +143,9 @@ class MeshCycle(MeshFigures):
         less = turns(self.pair, self.supports, self.reference, self.bore_inertia)
         less = less - turns(self.pair, self.supports, reference, bore_inertia)
         lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
-        shift = less @ np.sum(lever * self.forces, axis=-1)
-        slope = 1.0 - less @ np.sum(lever * self.pair_stiffness, axis=-1)  # dD'/dD
+        lost = np.where(self.forces > 0, self.lever_loss, 0.0)
+        shift = less @ np.sum((lever - lost) * self.forces, axis=-1)
+        slope = 1.0 - less @ np.sum((lever - 2 * lost) * self.pair_stiffness, axis=-1)  # dD'/dD
         found_arcs = self.__dict__.get("arcs")
         measured = replace(
             self,

@@ -130,8 +130,11 @@ class ContactProblem:
             # the film's part counts in proportion to the whole transmission error
             secant = secant * moved / (moved + added)
         lever = np.where(turned > 0.0, where.lever, 0.0) / found.kappa
-        moments = np.sum(lever * turned, axis=-1) / self.force
-        slopes = np.sum(lever * share.pair_stiffness[0, 0], axis=-1)
+        lost = (
+            0.5 * found.moves.rolled(turned) if self.given.moving_contact else 0.0
+        )  # as MeshCycle.lever_loss
+        moments = np.sum((lever - lost) * turned, axis=-1) / self.force
+        slopes = np.sum((lever - 2 * lost) * share.pair_stiffness[0, 0], axis=-1)
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn)
 

@@ -51,7 +51,7 @@ class Solution:
             most = 1e3 * np.max(self.share.transmission_error)
             return (
                 f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move; reduce the "
-                "torque, or let contacts stay"
+                "torque, or let contacts stay (moving_contact)"
             )
         if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
             return "a tip edge presses over more than the strips cover; reduce the torque"

@@ -73,6 +73,13 @@ class MeshCycle(MeshFigures):
         'what the deflection is measured against: "bore", "body" or "teeth", as which closed forms count',
         default="teeth",
     )
+    model_error: float | None = quantity(
+        "1",
+        "estimated relative error of transmission error and secant stiffness by the model of the contacts: large "
+        "strain and second order; not known of closed forms",
+        shown="%",
+        default=None,
+    )
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
         """Measure the deflection of coupled finite elements against something else; no force changes.

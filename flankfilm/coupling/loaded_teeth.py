@@ -40,16 +40,19 @@ class Flanks:
         Radii of the tip edges of pinion and wheel [m].
     friction : float
         Coefficient of friction by which the forces are tilted.
+    moving_contact : bool
+        Whether contacts on the path move under load.
     """
 
     beyond_path: bool = True
     deviations: tuple[gears.GearDeviations | None, gears.GearDeviations | None] | None = None
     tip_rounding: tuple[float, float] = (0.0, 0.0)
     friction: float = 0.0
+    moving_contact: bool = True
 
 
 PLAIN_FLANKS = Flanks()
-"""Sharp edges without deviations or friction; they may touch outside the path."""
+"""Sharp edges without deviations or friction; they may touch outside the path, and contacts move under load."""
 
 
 class TeethOptions(TypedDict, total=False):

@@ -28,7 +28,7 @@ PARTS: Mapping[str, str] = {
     "coupling": "coupling of teeth through the bodies",
     "windup": "wind-up of the hubs",
     "support": "supports",
-    "rest": "gaps and tip edges",
+    "rest": "gaps, tip edges and contacts that move",
 }
 """Parts of a deflection, in words."""
 

@@ -125,6 +125,9 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
             **shown("transmission_error_range", 4),
             "numerical error of the secant": lambda cycle: percent(cycle.mean_error),
             "of the peak to peak": lambda cycle: percent(cycle.range_error),
+            "error of the contacts' model": lambda cycle: (
+                "not known" if cycle.model_error is None else percent(cycle.model_error)
+            ),
         },
     )
 
@@ -191,6 +194,8 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
     numerical = f"error {percent(cycle.mean_error)}, {cycle.label}"
+    if cycle.model_error is not None:
+        numerical += f"; model of the contacts {percent(cycle.model_error)}"
     small = f"for small vibration; error {percent(cycle.errors['mean_stiffness'])}"
     spread = f"peak to peak; error {percent(cycle.range_error)}"
     return [

@@ -29,7 +29,7 @@ from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.scene.section import required
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = "stiffness.pairs stiffness.contact_beyond_path operating tolerance"
+TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact operating tolerance"
 """Keys of all that is loaded."""
 
 
@@ -116,6 +116,7 @@ def loaded_teeth(run: Engine, *, by_elements: bool = False, pitch: bool = False)
         deviations(scene, pair, pitch=pitch),
         tip_roundings(scene),
         scene.operating.friction if scene.operating else 0.0,
+        scene.stiffness.moving_contact,
     )
     compliance = run[COMPLIANCE] if model == "fem" else None
     return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)

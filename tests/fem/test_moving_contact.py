@@ -187,3 +187,23 @@ def test_model_error_holds_the_large_strain_law(plastic):
     found = model_error(moves, moved.forces, moved.transmission_error, True)
     law = moves.thrust(moved.forces, 1)[0] / moved.transmission_error
     assert found >= abs(float(law.ravel()[0]))
+
+
+def test_the_hubs_of_moving_contacts_carry_the_whole_torque(plastic):
+    """The tilted flank's shorter lever and the law agree on it, whatever the deflection is measured against."""
+    held = fem.mesh_cycle(PLASTIC, 10.0, 8, plastic, beyond_path=False, moving_contact=True)
+    teeth = held.against("teeth")
+    np.testing.assert_allclose(
+        held.transmission_error - teeth.transmission_error,
+        sum(plastic.hub_windup) * held.force,
+        rtol=1e-10,
+    )
+    part = 1e-4
+    less, more = (
+        fem.mesh_cycle(
+            PLASTIC, 10.0 * (1 + s), 8, plastic, beyond_path=False, moving_contact=True, reference="teeth"
+        )
+        for s in (-part, part)
+    )
+    slope = (more.force - less.force) / (more.transmission_error - less.transmission_error)
+    np.testing.assert_allclose(teeth.stiffness, slope, rtol=1e-6)

@@ -16,7 +16,7 @@ from ehl import Meniscus, OilLayer, Roughness
 from flankfilm.build import gear_pair, pinion_speed
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
-from flankfilm.coupling import LubricatedCycle, MeshCycle
+from flankfilm.coupling import Flanks, LubricatedCycle, MeshCycle
 from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
 from flankfilm.stages.engine import Engine
 from tests.flankfilm.scenes import ARTICLE
@@ -165,3 +165,28 @@ def test_speeds_need_scales_and_one_range():
     for ranges in ({}, {"speed": (1.0, 2.0)}, {"speed": (1.0, 2.0), "frequency": (0.5, 0.6)}):
         with pytest.raises(InputError, match="speed"):
             ff.jump_speeds(motion, **ranges)
+
+
+def test_contacts_move_unless_they_are_told_to_stay():
+    """With a plastic wheel it counts; scene, plain call and finite elements mean the same."""
+    text = HEAD.replace("WANTS", '"stiffness"') + ARTICLE.replace(
+        "pinion_torque_Nm = 600", "pinion_torque_Nm = 50"
+    )
+    plastic = text.replace("[material]", "[material.pinion]", 1) + (
+        "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n"
+        "[stiffness]\nmodel = 'fem'\nmoving_contact = MOVES\n"
+    )
+    cycles = {}
+    for moves in (True, False):
+        run = Engine(ff.parse_scene(plastic.replace("MOVES", str(moves).lower())), Cache(None))
+        cycles[moves] = cycle = run[DRY_CYCLE]
+        flanks = Flanks(moving_contact=moves)
+        plain = ff.mesh_cycle(gear_pair(run.scene), 50.0, tolerance=0.01, flanks=flanks)
+        np.testing.assert_allclose(plain.stiffness, cycle.stiffness, rtol=1e-12)
+        assert cycle.contact is not None
+        assert cycle.contact.moving_contact is moves
+        assert cycle.model_error == cycle.contact.model_error
+    secant = {moves: cycle.secant_stiffness for moves, cycle in cycles.items()}
+    change = np.max(np.abs(secant[True] / secant[False] - 1))
+    assert 1e-3 < change < cycles[False].model_error
+    assert cycles[True].model_error < 0.6 * cycles[False].model_error
