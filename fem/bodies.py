@@ -144,8 +144,8 @@ class Compliance:
 
     @described("m", "gear", shown="mm")
     def rim_thickness(self) -> tuple[float, float]:
-        """Thickness from the radius at which pinion and wheel are held to the root circle."""
-        first, second = (p.root_radius - p.bore_radius for p in held_profiles(self.pair, self.supports))
+        """Thickness of pinion's and wheel's rim below the root circle; of a disc down to where it is held."""
+        first, second = (profile.rim_thickness for profile in held_profiles(self.pair, self.supports))
         return first, second
 
     @property

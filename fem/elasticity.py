@@ -143,8 +143,10 @@ def element_matrices(points: Array, triangles: Integers, law: PlaneElasticity) -
     return np.asarray(element.reshape(-1, 12, 12))
 
 
-def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
-    """Stiffness matrix per unit thickness [Pa], assembled of ``element_matrices``; unknown 2 i + a for node i.
+def stiffness_matrix(
+    points: Array, triangles: Integers, law: PlaneElasticity, thickness: Array | float = 1.0
+) -> csc_array:
+    """Stiffness matrix per unit face width [Pa], assembled of ``element_matrices``; unknown 2 i + a for node i.
 
     Parameters
     ----------
@@ -152,6 +154,8 @@ def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -
         [m]
     triangles : (m, 6) array
     law : PlaneElasticity
+    thickness : float or (m,) array
+        Of the triangles, over the face width.
 
     Returns
     -------
@@ -160,7 +164,7 @@ def stiffness_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -
     with unclocked():
         from scipy.sparse import coo_array
 
-    element = element_matrices(points, triangles, law)
+    element = element_matrices(points, triangles, law) * np.reshape(thickness, (-1, 1, 1))
     unknown = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 12)
     rows, columns = np.repeat(unknown, 12, axis=1).ravel(), np.tile(unknown, 12).ravel()
     size = 2 * len(points)
@@ -177,16 +181,22 @@ def curved_mesh(points: Array, triangles: Integers) -> MeshTri2:
     return MeshTri2(np.ascontiguousarray(points.T), np.ascontiguousarray(triangles.T))
 
 
-def nodal_stress_matrix(points: Array, triangles: Integers, law: PlaneElasticity) -> csc_array:
+def nodal_stress_matrix(
+    points: Array, triangles: Integers, law: PlaneElasticity, thickness: Array
+) -> csc_array:
     """Matrix (3n, 2n) from displacements to sigma_xx, sigma_yy, tau_xy at the nodes, averaged over elements.
 
-    Row 3 i + c is component c at node i.
+    Row 3 i + c is component c at node i. Where elements of different thickness (m,) meet, the thinnest alone count:
+    their stress is the greatest.
     """
     from scipy.sparse import coo_array
 
     lam, mu = law.lame
     gradient, _ = physical_gradients(points, triangles, NODES[:, 0], NODES[:, 1])
-    share = 1.0 / np.bincount(triangles.ravel(), minlength=len(points))[triangles]
+    least = np.full(len(points), np.inf)
+    np.minimum.at(least, triangles, thickness[:, None])
+    counts = thickness[:, None] == least[triangles]
+    share = counts / np.bincount(triangles[counts], minlength=len(points))[triangles]
     dx, dy = (gradient[..., axis] * share[:, :, None] for axis in (0, 1))  # (elements, node at, node of)
     blocks = np.stack(
         [

@@ -122,7 +122,8 @@ def write_abaqus(path: Path, *gears: LoadedGear) -> Path:
     """Write gears as an input file of Abaqus or CalculiX that runs as it stands.
 
     Elements CPE6 or CPS6, the bore held, the forces as ``*CLOAD``, one static step that prints all displacements
-    and the sum of the bore's reactions. The thickness is the face width in plane strain. In plane stress it is a
+    and the sum of the bore's reactions. The thickness is the face width in plane strain, that of the web in the web.
+    In plane stress it is a
     slice of it, with the forces in proportion: CalculiX makes solids of plane elements, and a solid in plane stress
     has to be thin against its edges. Nodes, elements and sets are written by meshio.
 
@@ -148,8 +149,11 @@ def write_abaqus(path: Path, *gears: LoadedGear) -> Path:
     for prefix, gear in zip(prefixes, gears, strict=True):
         model += [f"*MATERIAL, NAME={prefix}MATERIAL", "*ELASTIC"]
         model += [f"{number(gear.law.E)}, {number(gear.law.nu)}"]
-        model += [f"*SOLID SECTION, ELSET={prefix}GEAR, MATERIAL={prefix}MATERIAL"]
-        model += [number(part * gear.face_width)]
+        web = float(gear.mesh.thickness.min())
+        sections = {"GEAR": 1.0} if web == 1.0 else {"RIM_AND_HUB": 1.0, "WEB": web}
+        for name, thickness in sections.items():
+            model += [f"*SOLID SECTION, ELSET={prefix}{name}, MATERIAL={prefix}MATERIAL"]
+            model += [number(part * thickness * gear.face_width)]
         held.append(f"{prefix}BORE, 1, 2")
         forces = part * gear.forces
         for node in np.flatnonzero(np.any(forces != 0, axis=1)):

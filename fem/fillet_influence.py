@@ -8,6 +8,7 @@ give all of it. With the free edge's normal stress zero, sigma_t = E* eps_t(u_r)
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from functools import partial
 from math import floor
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from base import Array, Cost, Faults, Integers, Limit, Stopwatch, part, quantity, record
+from base import Array, Cost, Faults, Integers, Limit, RangeWarning, Stopwatch, part, quantity, record
 from fem import flamant
 from fem.elasticity import MIRROR, PlaneElasticity, check_plane
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
@@ -25,6 +26,7 @@ from fem.gear_shape import GearShape, shapes
 from fem.line_load import LineLoads, flank_points, line_loads
 from fem.ring import Ring, ring_of
 from fem.solved_gear import Gears, Kept
+from gears.closed_form.root_stress import THIN_RIM, rim_factor
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
@@ -246,6 +248,12 @@ def fillets(
     base.InputError
         Tolerance, plane or edge length that make no sense.
 
+    Warns
+    -----
+    base.RangeWarning
+        For a disc whose bore leaves a rim below 1.2 tooth depths. Held all round on its inside such a rim cannot bend,
+        and its root stress falls with its thickness, while that of a rim on a web rises.
+
     Examples
     --------
     >>> from fem import fillets
@@ -261,6 +269,7 @@ def fillets(
     if fillet_edge is not None:
         found.number("fillet_edge", fillet_edge, FILLET_EDGE)
     found.raise_if_any()
+    _warn_of_held_rims(pair)
     watch = Stopwatch()
     edge = COARSEST if fillet_edge is None else fillet_edge
     smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
@@ -294,6 +303,20 @@ def fillets(
         counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
     )
     return Fillets(pair, plane, pinion, wheel, 0.5 * finest, error, cost, converged, message)
+
+
+def _warn_of_held_rims(pair: GearPair) -> None:
+    """Warn of discs whose bore leaves so little that ISO 6336-3 raises the root stress for the rim's own bending."""
+    for name, profile in zip(("pinion", "wheel"), pair.teeth_profiles, strict=True):
+        if profile.steps or profile.rim_ratio >= THIN_RIM:
+            continue
+        message = (
+            f"root stress of the {name}: its rim of {profile.rim_ratio:.3g} tooth depths is held at the bore, where it "
+            "cannot bend, and its stress comes out too low (unsafe) unless a stiff shaft fills the bore"
+        )
+        if profile.rim_ratio > 0.5:
+            message += f"; ISO 6336-3 raises it by Y_B = {rim_factor(profile.rim_ratio):.3g}"
+        warnings.warn(f"{message}. Give the gear its rim and web (blank)", RangeWarning, stacklevel=3)
 
 
 def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> _SolvedFillets:

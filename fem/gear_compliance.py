@@ -219,15 +219,15 @@ def wedge_logarithms(angle: float, law: PlaneElasticity) -> tuple[float, float, 
     return c_nn, c_nt, c_tt
 
 
-def hub_windup(base_radius: float, bore_radius: float, root_radius: float, law: PlaneElasticity) -> float:
+def hub_windup(profile: ToothProfile, law: PlaneElasticity) -> float:
     """Turn the body on its held bore, measured along the line of action [m per N/m].
 
-    That of a ring in shear by a torque, which is the mean turn of a gear's root circle exactly
-    (``gears.closed_form.ring_wind_up``). Closed forms of tooth deflection leave it out.
+    That of rings in shear by a torque, which is the mean turn of a gear's root circle exactly
+    (``gears.closed_form.body_wind_up``). Closed forms of tooth deflection leave it out.
     """
-    from gears.closed_form import ring_wind_up
+    from gears.closed_form import body_wind_up
 
-    return ring_wind_up(root_radius, bore_radius, base_radius, law.shear_modulus)
+    return body_wind_up(profile.zones, profile.base_radius, law.shear_modulus)
 
 
 @record
@@ -309,7 +309,7 @@ def gear_compliance(
         own,
         {tooth + 1: series for tooth, series in enumerate(cross)},
         {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
-        hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, ring.law),
+        hub_windup(profile, ring.law),
         max(_tail(own), remainder),
         motion or flank_motion(ring, flank),
     )

@@ -8,11 +8,12 @@ number of the shape; logarithms count lengths in modules.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from fem.elasticity import PlaneElasticity
-from gears import BasicRack, Gear
+from gears import BasicRack, Blank, Gear
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
@@ -31,7 +32,8 @@ class GearShape:
     Attributes
     ----------
     gear : gears.Gear
-        All lengths in modules, the bore where the gear is held; without relief, which no mesh shows.
+        All lengths in modules, the bore where the gear is held, the web's thickness in face widths; without relief,
+        which no mesh shows.
     rack : gears.BasicRack
     poisson : float
         nu*, in which plane strain and plane stress are one.
@@ -46,7 +48,7 @@ class GearShape:
         """Tooth of module 1."""
         from gears.profile import generate
 
-        found = generate(self.gear, 1.0, self.rack)
+        found = generate(self.gear, 1.0, self.rack, 1.0)
         assert found is not None  # the pair that it comes from has teeth
         return found
 
@@ -102,8 +104,14 @@ def shapes(
     plane : {"strain", "stress"}
     """
 
-    def modules(length: float) -> float:
-        return float(f"{length / pair.module:.{DIGITS}g}")
+    def over(unit: float, length: float) -> float:
+        return float(f"{length / unit:.{DIGITS}g}")
+
+    modules = partial(over, pair.module)
+
+    def scaled(blank: Blank) -> Blank:
+        hub = None if blank.hub_radius is None else modules(blank.hub_radius)
+        return Blank(modules(blank.rim_thickness), over(pair.face_width, blank.web_thickness), hub)
 
     first, second = (
         GearShape(
@@ -113,6 +121,7 @@ def shapes(
                 thickness_allowance=modules(gear.thickness_allowance),
                 tip_chamfer=modules(gear.tip_chamfer),
                 tip_relief=None,
+                blank=None if gear.blank is None else scaled(gear.blank),
             ),
             pair.rack,
             PlaneElasticity.of(material, plane).plane_poisson,

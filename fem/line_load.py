@@ -4,7 +4,8 @@ In the loaded sector u = u_s + u_r with u_s Flamant's half-plane (``fem.flamant`
 element edge at the load; the force may lean from the flank's normal. u_r is regular and solves the elasticity
 problem with the tractions -sigma_s n on the edges and -u_s on the hub; in every other sector the unknown is u
 itself. On the cuts of the loaded sector the unknown is u, so u_r = u - u_s there and sigma_s n of the cut
-enters the load. No element is refined at the load, and one factorisation serves all loads.
+enters the load. Where the body's thickness steps from t to t', sigma_s n acts as on a free edge of thickness t - t'.
+No element is refined at the load, and one factorisation serves all loads.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from fem import flamant
 from fem.edge_work import LineForces, edge_points, nodal, traction_integrals
 from fem.ring import Ring
 from meshes import SectorMesh
+from meshes.sector import STEPS
 
 __all__ = ["FlankPoints", "LineLoads", "flank_points", "joined", "line_loads"]
 
@@ -202,13 +204,13 @@ class LineLoads:
 def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     """Solve for unit line loads at flank points, all with the ring's factorisation."""
     mesh, law, length = ring.mesh, ring.law, ring.mesh.module
-    sides = np.concatenate([facets for name, facets in mesh.facets.items() if name.startswith("side")])
-    free = np.concatenate(
-        [f for name, f in mesh.facets.items() if name != "bore" and not name.startswith("side")]
-    )
-    edges = np.concatenate([free, sides, mesh.facets["bore"]])
+    free, thickness = _free_edges(mesh)
+    sides = np.concatenate([mesh.facets["side_right"], mesh.facets["side_left"]])
+    held = np.concatenate([sides, mesh.facets["bore"]])
+    thickness = np.concatenate([thickness, mesh.thickness_at(mesh.points[held[:, 2]])])
     loads = LineForces(at.points, at.inward, at.leans)
-    pulls, work = traction_integrals(mesh.points, edges, loads, law, length)
+    pulls, work = traction_integrals(mesh.points, np.concatenate([free, held]), loads, law, length)
+    pulls, work = pulls * thickness[:, None, None, None], work * thickness[:, None]
     on_free = nodal(free, pulls[: len(free)], len(mesh.points))
     on_sides = nodal(sides, pulls[len(free) : len(free) + len(sides)], len(mesh.points))
     bordering = np.concatenate([ring.cut, ring.hub])
@@ -222,3 +224,15 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
     known = work[len(free) + len(sides) :].sum(axis=0) - work[: len(free)].sum(axis=0)
     known -= np.sum(border * (force - on_free)[bordering], axis=0)
     return LineLoads(ring, at, ring.polar.T @ cut_force, reduced, held + known)
+
+
+def _free_edges(mesh: SectorMesh) -> tuple[Integers, Array]:
+    """Free edges (k, 3) with their thickness over the face width; a step counts with that by which it changes."""
+    edges = [*mesh.free.values()]
+    thickness = [np.ones(len(some)) for some in edges]
+    outside = 1.0
+    for name, (_, below) in zip(STEPS, mesh.steps, strict=False):
+        edges.append(mesh.facets[name])
+        thickness.append(np.full(len(edges[-1]), outside - below))
+        outside = below
+    return np.concatenate(edges), np.concatenate(thickness)

@@ -68,9 +68,7 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
     from scipy.sparse import coo_array, csr_array, diags_array, vstack
 
     nodes, tangents, strains = [], [], []
-    for name, edges in mesh.facets.items():
-        if name == "bore" or name.startswith("side"):
-            continue
+    for edges in mesh.free.values():
         own, along, strain = _on_curve(mesh.points, edges)
         nodes.append(own)
         tangents.append(along)
@@ -85,7 +83,7 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
         ((spread * share[:, None]).ravel(), (rows.ravel(), columns.ravel())),
         shape=(3 * len(mesh.points), len(listed)),
     )
-    averaged = nodal_stress_matrix(mesh.points, mesh.triangles, law)
+    averaged = nodal_stress_matrix(mesh.points, mesh.triangles, law, mesh.thickness)
     inside = diags_array(np.repeat(np.where(count == 0, 1.0, 0.0), 3))
     matrix = csr_array(inside @ averaged + to_tensor.tocsr() @ vstack(strains, format="csr"))
     return NodalStress(matrix, listed, t, share)

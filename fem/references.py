@@ -7,9 +7,9 @@ same for all pairs in contact and changes no force:
     D' = D - sum_g (c_g - c'_g) N_g,   dD'/dD = 1 - sum_g (c_g - c'_g) dN_g/dD,
 
 N_g the moment of the normal forces about the gear's axis over its base radius, F without friction and tip edges. With
-the torsional stiffness k_t of the support, the ring's wind-up w between the held radius and the root circle
-(``gears.closed_form.ring_wind_up``), and the share lambda of it that is left where inertia balances the torque
-(``gears.closed_form.inertial_share``), the turn c per force that D holds is
+the torsional stiffness k_t of the support, the body's wind-up w between the held radius and the root circle
+(``gears.closed_form.body_wind_up``), and the share lambda of it that is left where inertia balances the torque
+(``gears.closed_form.inertial_wind_up``), the turn c per force that D holds is
 
 - bore: w + r_b^2/k_t, all up to what holds the gear: the static transmission error between the shafts;
 - body: lambda w, against the turn of the ring weighted by its inertia, the torque balanced by that inertia: what the
@@ -29,9 +29,8 @@ import numpy as np
 
 from base import Array, Faults, Limit
 from fem.elasticity import PlaneElasticity
-from fem.gear_compliance import hub_windup
 from fem.support import Support, held_profiles
-from gears.closed_form import inertial_share
+from gears.closed_form import body_wind_up, inertial_wind_up
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
@@ -64,18 +63,16 @@ def turns(
     """
     found = []
     for gear, profile in enumerate(held_profiles(pair, supports)):
-        base, root, held = profile.base_radius, profile.root_radius, profile.bore_radius
-        material = pair.materials[gear]
-        # the plane's state does not matter in torsion
-        turn = hub_windup(base, held, root, PlaneElasticity.of(material, "strain")) / pair.face_width
+        base, material, width = profile.base_radius, pair.materials[gear], pair.face_width
+        body = profile.zones, base, PlaneElasticity.of(material, "strain").shear_modulus
         if reference == "teeth":
             turn = 0.0
         elif reference == "bore":
-            turn += supports[gear].turn(base)
+            turn = body_wind_up(*body) / width + supports[gear].turn(base)
         else:
-            disc = 0.5 * pi * material.density * pair.face_width * root**4
-            filled = (held**4 - pair.bore_radii[gear] ** 4) / root**4
-            turn *= inertial_share(held / root, bore_inertia[gear] / disc + filled)
+            filled = profile.bore_radius**4 - pair.bore_radii[gear] ** 4
+            inside = bore_inertia[gear] / (0.5 * pi * material.density * width) + filled
+            turn = inertial_wind_up(*body, inside) / width
         found.append(turn)
     return np.array(found)
 

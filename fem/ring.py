@@ -3,7 +3,7 @@
 All sectors of a gear are copies of one another. The sector's stiffness matrix is factorised once, its inner
 unknowns are condensed onto the two cuts to its neighbours (``fem.condensation``), and the ring of z such
 sectors, in polar components, is closed by ``fem.chain``. The result is that of the whole annulus with the same
-elements in every sector, to rounding.
+elements in every sector, to rounding. Where a web is thinner than the face its elements are softer in proportion.
 
 Notation: sector j (counted anticlockwise) lies between interface j on its right and interface j + 1 on its
 left; the hub (bore) is held.
@@ -129,7 +129,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
         from scipy.sparse import csc_array
 
     watch = Stopwatch()
-    elements = element_matrices(mesh.points, mesh.triangles, law)
+    elements = element_matrices(mesh.points, mesh.triangles, law) * mesh.thickness[:, None, None]
     assembled = watch.seconds
     hub_nodes = np.unique(mesh.facets["bore"])
     right = np.setdiff1d(mesh.side_nodes("right"), hub_nodes, assume_unique=True)

@@ -133,6 +133,7 @@ def third_order(loads: LineLoads) -> Array:
     mesh, law, count = ring.mesh, ring.law, len(loads.at.rho)
     xi, eta, weight = _quadrature(0)
     gradient, area = physical_gradients(mesh.points, mesh.triangles, xi, eta)
+    area *= mesh.thickness[:, None]
     total = np.zeros((3, count))
     for tooth in range(-NEIGHBOURS, NEIGHBOURS + 1):
         moved = _displacements(loads, tooth)
@@ -178,6 +179,7 @@ def _near(ring: Ring, moved: Array, place: tuple[Array, Array], half_width: floa
             continue
         xi, eta, weight = _quadrature(depth)
         gradient, area = physical_gradients(mesh.points, some, xi, eta)
+        area *= mesh.thickness[level == depth, None]
         strain, turn = _strained(_slopes(gradient, moved, some))
         own, own_turn = _pressed(_points(mesh.points[some], xi, eta), place, half_width, ring.law)
         sums = strain[0][..., 0] + own[0], strain[1][..., 0] + own[1], strain[2][..., 0] + own[2]

@@ -161,7 +161,7 @@ def tip_strips(ring: Ring, profile: ToothProfile, flank: str = "left") -> TipStr
     )
     flat = flat_kernels(distance, width, law, m)
     kernel, mixed, tangential = (part + half_plane for part, half_plane in zip(regular, flat, strict=True))
-    turned = hub_windup(profile.base_radius, profile.bore_radius, profile.root_radius, law)
+    turned = hub_windup(profile, law)
     return TipStrips(distance, width, rho, kernel, mixed, tangential, law, m, profile.base_radius, turned)
 
 

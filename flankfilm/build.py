@@ -50,8 +50,12 @@ def _both(sections: tuple[S, S], build: Callable[[S], B]) -> tuple[B, B]:
 
 
 def _gear(section: GearSection) -> gears.Gear:
-    relief = section.tip_relief
-    return gears.Gear(**section.si(), tip_relief=None if relief is None else gears.TipRelief(**relief.si()))
+    relief, blank = section.tip_relief, section.blank
+    return gears.Gear(
+        **section.si(),
+        tip_relief=None if relief is None else gears.TipRelief(**relief.si()),
+        blank=None if blank is None else gears.Blank(**blank.si()),
+    )
 
 
 def _rack(section: PairSection) -> gears.BasicRack:

@@ -1,4 +1,5 @@
 from . import closed_form as closed_form
+from .blank import Blank as Blank
 from .deviations import GearDeviations as GearDeviations
 from .deviations import PitchDeviations as PitchDeviations
 from .deviations import ProfileDeviation as ProfileDeviation

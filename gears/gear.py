@@ -1,10 +1,11 @@
-"""One gear as it is specified: teeth, shift, blank, allowance and tip corrections."""
+"""One gear as it is specified: teeth, shift, bore and blank, allowance and tip corrections."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
 from base import Fault, Faults, Limit, shorten
+from gears.blank import Blank
 
 RELIEF_LIMITS = {
     "amount": Limit(0.0, 1.0, "m", "give the material removed at the tip in metres"),
@@ -70,6 +71,8 @@ class Gear:
         Relief of the flank towards the tip.
     tip_chamfer : float
         Radial height of a chamfer of 45 deg at the tip edges [m].
+    blank : Blank or None
+        Rim, web and hub; None is a disc as wide as the face.
 
     Examples
     --------
@@ -84,6 +87,7 @@ class Gear:
     thickness_allowance: float = 0.0  # arc at the reference circle, m
     tip_relief: TipRelief | None = None
     tip_chamfer: float = 0.0  # radial height, m
+    blank: Blank | None = None
 
     def __repr__(self) -> str:
         """Teeth, and what differs from the defaults."""
@@ -101,4 +105,6 @@ class Gear:
         found = Faults.of(self, LIMITS, f"{where}.")
         if self.tip_relief is not None:
             found.extend(self.tip_relief.faults(f"{where}.tip_relief"))
+        if self.blank is not None:
+            found.extend(self.blank.faults(f"{where}.blank"))
         return tuple(found.found)

@@ -38,11 +38,13 @@ class Findings(Faults):
         self.warnings: list[str] = []
 
 
-def check_gear(found: Findings, name: str, gear: Gear, module: float, rack: BasicRack) -> None:
+def check_gear(
+    found: Findings, name: str, gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
+) -> None:
     """Note faults and warnings of one generated gear.
 
     They are: root against axis and bore, a tooth cut through by its fillets, a pointed tip, chamfer and relief
-    longer than the flank; thin tips and rims as warnings.
+    longer than the flank, a blank that does not fit; thin tips and rims as warnings.
 
     Parameters
     ----------
@@ -52,6 +54,8 @@ def check_gear(found: Findings, name: str, gear: Gear, module: float, rack: Basi
         ``pinion`` or ``wheel``.
     gear, module, rack : Gear, float, BasicRack
         Specification, free of value faults.
+    face_width : float, optional
+        Against which the web is checked [m]; it is not unless given.
     """
     shift = f"{name}.profile_shift", f"{gear.profile_shift:g}"
     root = module * (0.5 * gear.teeth - rack.h_fP + gear.profile_shift)
@@ -64,6 +68,9 @@ def check_gear(found: Findings, name: str, gear: Gear, module: float, rack: Basi
         allowed = f"must be less than the tooth depth, {depth:.4g} m"
         found.add(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less")
         return
+    bore = 0.5 * root if gear.bore_radius is None else gear.bore_radius
+    if gear.blank is not None:
+        gear.blank.check(found, f"{name}.blank", root, bore, module, face_width)
     tooth = generate(gear, module, rack)
     if tooth is not None and tooth.flank_end_radius > tooth.form_radius * (1.0 + ROUNDING):
         _check_tooth(found, name, gear, tooth)
@@ -74,7 +81,7 @@ def check_gear(found: Findings, name: str, gear: Gear, module: float, rack: Basi
         )
         remedy += "the tip chamfer"
         found.add(*shift, "must leave an involute between fillet and tip", remedy)
-        _check_rim(found, name, root, 0.5 * root if gear.bore_radius is None else gear.bore_radius, module)
+        _check_rim(found, name, root, bore, module)
 
 
 def _check_tooth(found: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:

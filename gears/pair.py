@@ -80,9 +80,10 @@ class GearPair(PairGeometry):
         self._check_values(found)
         wrong = [fault.where for fault in found.found]
         if not any(where == "module" or where.startswith("rack") for where in wrong):
+            width = None if "face_width" in wrong else self.face_width
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
                 if not any(where.startswith(name) for where in wrong):
-                    check_gear(found, name, gear, self.module, self.rack)
+                    check_gear(found, name, gear, self.module, self.rack, width)
         if not found.found:
             check_mesh(found, self)
         found.raise_if_any()

@@ -49,7 +49,9 @@ class PairGeometry:
     @cached_property
     def teeth_profiles(self) -> tuple[ToothProfile, ToothProfile]:
         """Generated teeth of pinion and wheel."""
-        first, second = (generate(gear, self.module, self.rack) for gear in (self.pinion, self.wheel))
+        first, second = (
+            generate(gear, self.module, self.rack, self.face_width) for gear in (self.pinion, self.wheel)
+        )
         assert first is not None
         assert second is not None
         return first, second
@@ -60,6 +62,19 @@ class PairGeometry:
     tip_radii = _of_both("tip_radius", "Tip radius, r_a = r + m (h_aP + x + k).")
     form_radii = _of_both("form_radius", "Form radius, at which the involute starts.")
     bore_radii = _of_both("bore_radius", "Bore radius, half the root radius where none was given.")
+
+    rim_thicknesses = _of_both(
+        "rim_thickness", "Rim thickness below the root circle, of a disc down to the bore."
+    )
+
+    @described("m", "gear", shown="mm")
+    def web_thicknesses(self) -> tuple[float, float]:
+        """Thickness of the web along the axis, of a disc the face width."""
+        first, second = (
+            self.face_width * (tooth.zones[1].thickness if tooth.steps else 1.0)
+            for tooth in self.teeth_profiles
+        )
+        return first, second
 
     @described("1")
     def ratio(self) -> float:
@@ -157,13 +172,19 @@ class PairGeometry:
 
     @property
     def moments_of_inertia(self) -> tuple[float, float]:
-        """Polar moments of inertia of discs from the bore to the reference circle [kg m^2].
+        """Polar moments of inertia from the bore to the reference circle, zone by zone [kg m^2].
 
-        J = pi rho b (r^4 - r_bore^4) / 2
+        J = pi rho b Sum t (r_o^4 - r_i^4) / 2, t the thickness of a zone over b, 1 in a disc
         """
         scale = 0.5 * math.pi * self.face_width
         first, second = (
-            scale * material.density * (tooth.reference_radius**4 - tooth.bore_radius**4)
+            scale
+            * material.density
+            * (
+                tooth.reference_radius**4
+                - tooth.bore_radius**4
+                - sum((1.0 - zone.thickness) * (zone.outer**4 - zone.inner**4) for zone in tooth.zones)
+            )
             for material, tooth in zip(self.materials, self.teeth_profiles, strict=True)
         )
         return first, second

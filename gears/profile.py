@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array
+from gears.blank import Zone
 from gears.gear import Gear, TipRelief
 from gears.involute import involute_function
 from gears.plane import polar
@@ -42,6 +43,9 @@ class ToothProfile:
         Whether the fillet cuts the involute.
     tip_relief : TipRelief or None
         Relief of the flank.
+    steps : tuple of (float, float)
+        Radii at which the body's thickness changes, outer ones first [m], each with the thickness below it over the
+        face width; none in a disc.
     """
 
     teeth: int
@@ -58,6 +62,7 @@ class ToothProfile:
     tip_half_angle: float  # rad
     undercut: bool
     tip_relief: TipRelief | None = None
+    steps: tuple[tuple[float, float], ...] = ()  # m, -
 
     def __repr__(self) -> str:
         """One line: the tooth among its like."""
@@ -71,6 +76,27 @@ class ToothProfile:
     def pitch_angle(self) -> float:
         """Angle between neighbouring teeth, 2 pi / z [rad]."""
         return 2.0 * math.pi / self.teeth
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """Rings of the body between root circle and bore, the outermost first: rim, web, hub; one ring in a disc."""
+        found, outer, thickness = [], self.root_radius, 1.0
+        for radius, below in self.steps:
+            if radius > self.bore_radius:
+                found.append(Zone(radius, outer, thickness))
+                outer, thickness = radius, below
+        return (*found, Zone(self.bore_radius, outer, thickness))
+
+    @property
+    def rim_thickness(self) -> float:
+        """s_R, from the root circle to the inside of the rim; of a disc to the bore [m]."""
+        rim = self.zones[0]
+        return rim.outer - rim.inner
+
+    @property
+    def rim_ratio(self) -> float:
+        """Rim thickness over tooth depth, s_R/h_t."""
+        return self.rim_thickness / (self.tip_radius - self.root_radius)
 
     @property
     def root_half_angle(self) -> float:
@@ -229,7 +255,9 @@ class ToothProfile:
         return np.asarray(np.arctan2(points[..., 0], points[..., 1]))
 
 
-def generate(gear: Gear, module: float, rack: BasicRack) -> ToothProfile | None:
+def generate(
+    gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
+) -> ToothProfile | None:
     """Generate the tooth that the rack cuts.
 
     The thickness allowance displaces each generating flank sideways by half its amount: flank and fillet turn
@@ -243,6 +271,8 @@ def generate(gear: Gear, module: float, rack: BasicRack) -> ToothProfile | None:
         m [m].
     rack : BasicRack
         The generating profile.
+    face_width : float, optional
+        b, to which the web's thickness is referred [m]; the body is a disc unless given.
 
     Returns
     -------
@@ -282,6 +312,7 @@ def generate(gear: Gear, module: float, rack: BasicRack) -> ToothProfile | None:
         tip_half_angle=_top_land(base, base_half_angle, flank_end, tip),
         undercut=undercut,
         tip_relief=gear.tip_relief,
+        steps=() if gear.blank is None or face_width is None else gear.blank.steps(root, face_width),
     )
 
 

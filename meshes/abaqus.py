@@ -60,8 +60,9 @@ def mesh_text(gears: Mapping[str, GearMesh], element: str = "CPE6") -> str:
     Returns
     -------
     str
-        Sets of nodes and elements ``GEAR``, sets of elements ``TOOTH_0`` and so on; for each name of
-        ``set_names`` a set of nodes and, with the same name, a surface of element edges.
+        Sets of nodes and elements ``GEAR``, sets of elements ``TOOTH_0`` and so on, ``WEB`` and ``RIM_AND_HUB`` where
+        there is a web; for each name of ``set_names`` a set of nodes and, with the same name, a surface of element
+        edges.
     """
     import meshio
 
@@ -72,6 +73,9 @@ def mesh_text(gears: Mapping[str, GearMesh], element: str = "CPE6") -> str:
         triangles.append(mesh.triangles + node)
         nodes[f"{prefix}GEAR"] = np.arange(node, node + len(mesh.points))
         elements[f"{prefix}GEAR"] = [np.arange(first, first + len(mesh.triangles))]
+        if np.any(mesh.thickness < 1.0):
+            for name, some in (("WEB", mesh.thickness < 1.0), ("RIM_AND_HUB", mesh.thickness == 1.0)):
+                elements[f"{prefix}{name}"] = [first + np.flatnonzero(some)]
         for tooth in mesh.teeth:
             elements[f"{prefix}TOOTH_{_signed(tooth)}"] = [first + np.flatnonzero(mesh.tooth == tooth)]
         middles = mesh.triangles[:, 3:].ravel()

@@ -24,6 +24,8 @@ class GearMesh:
         Corners 0 1 2 anticlockwise, middles of 01, 12 and 20.
     tooth : (m,) array
         Tooth to whose sector a triangle belongs.
+    thickness : (m,) array
+        Of a triangle, over the face width.
     facets : mapping of str to (k, 3) array
         Edges of each named boundary, material on the left: first node, last node, middle.
     facet_tooth : mapping of str to (k,) array
@@ -35,6 +37,7 @@ class GearMesh:
     points: Array
     triangles: Integers
     tooth: Integers
+    thickness: Array
     facets: Mapping[str, Integers]
     facet_tooth: Mapping[str, Integers]
     nodes: Mapping[int, Integers]
@@ -82,7 +85,7 @@ def gear_mesh(
     wanted = range(z) if teeth is None else teeth
     others = others or {}
     points: list[Array] = []
-    triangles, tooth, nodes = [], [], {}
+    triangles, tooth, thickness, nodes = [], [], [], {}
     facets: dict[str, list[Integers]] = {}
     owners: dict[str, list[Integers]] = {}
     start = 0
@@ -110,6 +113,7 @@ def gear_mesh(
         nodes[k] = number
         triangles.append(number[mesh.triangles])
         tooth.append(np.full(len(mesh.triangles), k))
+        thickness.append(mesh.thickness)
         for name, edges in mesh.facets.items():
             if not name.startswith("side"):
                 facets.setdefault(name, []).append(number[edges])
@@ -118,6 +122,7 @@ def gear_mesh(
         np.concatenate(points),
         np.concatenate(triangles),
         np.concatenate(tooth),
+        np.concatenate(thickness),
         MappingProxyType({name: np.concatenate(parts) for name, parts in facets.items()}),
         MappingProxyType({name: np.concatenate(parts) for name, parts in owners.items()}),
         MappingProxyType(nodes),

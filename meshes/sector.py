@@ -19,6 +19,11 @@ from meshes.triangle import NODES, shape_gradients
 if TYPE_CHECKING:
     from gears import ToothProfile
 
+Steps = tuple[tuple[float, float], ...]
+
+STEPS = ("rim_inner", "hub_outer")
+"""Names of the circles at which the body's thickness changes, outer ones first."""
+
 
 @record
 class SectorMesh:
@@ -33,13 +38,17 @@ class SectorMesh:
     facets : mapping of str to (k, 3) array
         Edges of each named boundary, material on the left: first node, last node, middle. The names are
         ``flank_left``, ``flank_right``, ``fillet_*``, ``root_*``, ``chamfer_*``, ``top``, ``bore`` and the
-        cuts to the neighbouring sectors ``side_left``, ``side_right``.
+        cuts to the neighbouring sectors ``side_left``, ``side_right``; ``rim_inner`` and ``hub_outer`` where
+        the thickness changes, outer material on the left.
     parameters : mapping of str to (k, 2) array
         The curve's parameter at both ends of each edge; its mean belongs to the middle node.
     curves : mapping of str to Curve
     teeth : int
     module, base_radius : float
         [m]
+    steps : tuple of (float, float)
+        Circles at which the body's thickness changes, outer ones first [m], each with the thickness below it over the
+        face width. Triangles do not cross them.
     coarser : SectorMesh or None
         The mesh that this one refines: its nodes are the first nodes here.
     """
@@ -52,6 +61,7 @@ class SectorMesh:
     teeth: int
     module: float
     base_radius: float
+    steps: Steps = ()
     coarser: SectorMesh | None = None
 
     @property
@@ -87,8 +97,27 @@ class SectorMesh:
             curves=MappingProxyType(curves),
             module=self.module * factor,
             base_radius=self.base_radius * factor,
+            steps=tuple((radius * factor, thickness) for radius, thickness in self.steps),
             coarser=None if self.coarser is None else self.coarser.scaled(factor),
         )
+
+    def thickness_at(self, points: Array) -> Array:
+        """Thickness over the face width at points (n, 2), which lie on no step."""
+        radii, found = np.linalg.norm(points, axis=1), np.ones(len(points))
+        for radius, below in self.steps:
+            found[radii < radius] = below
+        return found
+
+    @property
+    def thickness(self) -> Array:
+        """Thickness of each triangle over the face width (m,)."""
+        return self.thickness_at(self.points[self.triangles[:, :3]].mean(axis=1))
+
+    @property
+    def free(self) -> Mapping[str, Integers]:
+        """Boundaries of tooth and gaps: neither cuts nor circles inside the body."""
+        inside = "bore", "side", *STEPS
+        return {name: edges for name, edges in self.facets.items() if not name.startswith(inside)}
 
     def side_nodes(self, side: str) -> Integers:
         """Nodes of a cut to the neighbour (``"left"`` or ``"right"``) from the bore outwards."""
@@ -135,8 +164,8 @@ def mesh_sector(
     sizes = sizes or Sizes()
     m = profile.module
     rim = profile.root_radius - 0.8 * np.pi * m
-    layered = rim - profile.bore_radius > 0.6 * sizes.rim * m
-    bottom = rim if layered else profile.bore_radius
+    circles = [zone.inner for zone in profile.zones]  # the last is the bore
+    bottom = rim if rim - circles[0] > 0.6 * sizes.rim * m else circles[0]
     curves = list(sector_curves(profile, sizes, bottom, working))
     cuts = [cut(curve) for curve in curves]
     polygon = np.concatenate([curve.at(t[:-1]) for curve, t in zip(curves, cuts, strict=True)])
@@ -148,13 +177,17 @@ def mesh_sector(
         ends[curve.name] = (np.stack([nodes[:-1], nodes[1:]], axis=1), np.stack([t[:-1], t[1:]], axis=1))
         first += len(t) - 1
     named = {curve.name: curve for curve in curves}
-    if layered:
-        radii = _layer_radii(rim, profile.bore_radius, sizes, m)
-        points, triangles = _add_layers(points, triangles, ends, cuts[-1], radii)
-        half = 0.5 * profile.pitch_angle
-        named["bottom"] = arc("bore", profile.bore_radius, -half, half, curves[-1].size)
-    ends["bore"], named["bore"] = ends.pop("bottom"), named.pop("bottom")
-    mesh = _second_order(points, triangles, ends, named, (profile.teeth, m, profile.base_radius))
+    half, size = 0.5 * profile.pitch_angle, named.pop("bottom").size
+    above = bottom
+    for name, radius in zip((*STEPS[: len(circles) - 1], "bore"), circles, strict=True):
+        if radius < above:
+            radii = _layer_radii(above, radius, sizes, m)
+            points, triangles = _add_layers(points, triangles, ends, cuts[-1], radii)
+        ends[name], above = ends["bottom"], radius
+        named[name] = arc(name, radius, -half, half, size)
+    del ends["bottom"]
+    steps = tuple(zip(circles[:-1], [zone.thickness for zone in profile.zones[1:]], strict=True))
+    mesh = _second_order(points, triangles, ends, named, (profile.teeth, m, profile.base_radius, steps))
     for _ in range(refinements):
         mesh = refined(mesh)
     return mesh
@@ -215,7 +248,7 @@ def _second_order(
     triangles: Integers,
     ends: Mapping[str, tuple[Integers, Array]],
     curves: Mapping[str, Curve],
-    gear: tuple[int, float, float],
+    gear: tuple[int, float, float, Steps],
 ) -> SectorMesh:
     """Mid-side nodes: half-way on inner edges, at the mean parameter on the curves."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
@@ -282,7 +315,6 @@ def refined(mesh: SectorMesh) -> SectorMesh:
         half = t.mean(axis=1)
         nodes = np.stack([first, middle, middle, last], axis=1).reshape(-1, 2)
         ends[name] = (nodes, np.stack([t[:, 0], half, half, t[:, 1]], axis=1).reshape(-1, 2))
-    finer = _second_order(
-        mesh.points, children, ends, mesh.curves, (mesh.teeth, mesh.module, mesh.base_radius)
-    )
+    gear = mesh.teeth, mesh.module, mesh.base_radius, mesh.steps
+    finer = _second_order(mesh.points, children, ends, mesh.curves, gear)
     return replace(finer, coarser=mesh)

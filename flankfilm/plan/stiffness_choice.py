@@ -86,6 +86,8 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
         return 'the rack is not "ISO 53 A"'
     if any(s.tip_relief is not None or s.tip_alteration or s.tip_chamfer_mm for s in sections):
         return "tips are relieved, altered or chamfered"
+    if any(profile.steps for profile in pair.teeth_profiles):
+        return "a gear has a web"
     if pair.materials[0] != pair.materials[1]:
         return "the gears are of two materials"
     if scene.stiffness.plane != "strain":

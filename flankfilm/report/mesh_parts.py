@@ -30,7 +30,16 @@ if TYPE_CHECKING:
     from gears import GearPair
     from gears.closed_form import Iso6336RootStress
 
-OF_EACH = ("reference_radii", "base_radii", "root_radii", "form_radii", "tip_radii", "bore_radii")
+OF_EACH = (
+    "reference_radii",
+    "base_radii",
+    "root_radii",
+    "form_radii",
+    "tip_radii",
+    "bore_radii",
+    "rim_thicknesses",
+    "web_thicknesses",
+)
 """Figures of both gears."""
 
 LISTED = 6

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from base import Limit
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
+from gears.blank import LIMITS as BLANK
 from gears.gear import LIMITS as GEAR
 from gears.gear import RELIEF_LIMITS as RELIEF
 from gears.material import LIMITS as MATERIAL
@@ -92,6 +93,26 @@ class DeviationsSection(Section):
         return self
 
 
+class BlankSection(Section):
+    """Rim and hub as wide as the face, and a thinner web between them that runs all round."""
+
+    ground = BLANK
+
+    rim_thickness_mm: float = key("from the root circle to the inside of the rim", example=6.0)
+    web_thickness_mm: float = key("along the axis, at most the face width", example=12.0)
+    hub_mm: float | None = key(
+        "outer diameter of the hub; the web goes down to the bore if left out",
+        None,
+        diameter="hub_radius",
+        such_as=50.0,
+    )
+    web_offset_mm: float = key(
+        "distance of the web from the middle of the face; only 0, since a web off the middle tilts the rim, which is "
+        "three-dimensional",
+        0.0,
+    )
+
+
 class HubSection(Section):
     """Rigid hub of a gear on its shaft, bearings and shaft yielding under it."""
 
@@ -125,6 +146,7 @@ class GearSection(Section):
     bore_mm: float | None = key(
         "diameter of the bore; half the root diameter if left out", None, diameter="bore_radius", such_as=33.5
     )
+    blank: BlankSection | None = key("rim, web and hub; a disc as wide as the face if left out", None)
     tip_alteration: float = key("moves the tip outwards, times the module", 0.0)
     thickness_allowance_um: float = key("thins each tooth, arc at the reference circle", 0.0)
     tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)

@@ -11,5 +11,7 @@ from .sainsot import sainsot_body as sainsot_body
 from .tooth_stiffness import Iso6336Stiffness as Iso6336Stiffness
 from .tooth_stiffness import iso6336 as iso6336
 from .trapezoid import ishikawa as ishikawa
+from .wind_up import body_wind_up as body_wind_up
 from .wind_up import inertial_share as inertial_share
+from .wind_up import inertial_wind_up as inertial_wind_up
 from .wind_up import ring_wind_up as ring_wind_up

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Faults
+from base import Array, Faults, RangeWarning
 from gears.bisection import bisect
 from gears.errors import GeometryError
 from gears.material import Material
@@ -117,7 +118,19 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
     ------
     GeometryError
         If a point of the path is not on both involutes.
+
+    Warns
+    -----
+    RangeWarning
+        For a gear on a web: the formulas know bodies as wide as the face.
     """
+    webs = [
+        f"the {name}'s body is taken as a disc, without its web of {profile.zones[1].thickness:.3g} face widths"
+        for name, profile in zip(("pinion", "wheel"), pair.teeth_profiles, strict=True)
+        if profile.steps
+    ]
+    if webs:
+        warnings.warn("closed form: " + "; ".join(webs), RangeWarning, stacklevel=3)
     teeth = []
     with Faults(GeometryError) as found:
         for name, profile, material, rho in zip(

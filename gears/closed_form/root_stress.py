@@ -18,6 +18,9 @@ _SLOPE = math.pi / 3.0
 
 _ITERATIONS = 60
 
+THIN_RIM = 1.2
+"""Rim thickness over tooth depth below which a rim's own bending raises the root stress."""
+
 
 @record
 class RootSection:
@@ -74,7 +77,8 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
         h_Fe = [(cos(gamma_e) - sin(gamma_e) tan(alpha_Fen)) d_e - z cos(T - theta) - G/cos(theta) + rho]/2
         Y_F = 6 h_Fe cos(alpha_Fen)/(s_Fn^2 cos(alpha))
         Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)),  L = s_Fn/h_Fe,  q_s = s_Fn/(2 rho_F)
-        Y_B = 1.6 ln(2.242 h_t/s_R) for a rim s_R below 1.2 tooth depths h_t, else 1
+        Y_B = 1.6 ln(2.242 h_t/s_R) for a rim s_R below 1.2 tooth depths h_t, else 1; s_R is that of the blank, and
+        reaches from the root circle to the bore in a disc
 
     A thickness allowance A is taken into the geometry: E + A/(2 m), and the tooth's half angle less A/(2 r).
 
@@ -184,21 +188,41 @@ def _theta(name: str, teeth: int, G: float, H: float) -> float:
 
 
 def _rim_factor(name: str, profile: ToothProfile) -> float:
-    """Y_B of a gear whose bore carries it: s_R from the root circle to the bore, h_t from root to tip."""
-    depth = profile.tip_radius - profile.root_radius
-    ratio = (profile.root_radius - profile.bore_radius) / depth
+    """Y_B of a gear; refuses rims thinner than the standard has."""
+    ratio = profile.rim_ratio
     if ratio <= 0.5:
         allowed = "must leave a rim of more than half the tooth's depth"
         value = f"{ratio:.3g} tooth depths"
-        raise GeometryError.at(f"{name}.bore_radius", value, allowed, "ISO 6336-3 has no Y_B: use FE")
-    return 1.6 * math.log(2.242 / ratio) if ratio < 1.2 else 1.0
+        if profile.steps:
+            remedy = (
+                "ISO 6336-3 has no Y_B for it; finite elements (`fem.root_stress`) take the rim on its web"
+            )
+            raise GeometryError.at(f"{name}.blank.rim_thickness", value, allowed, remedy)
+        remedy = "ISO 6336-3 has no Y_B for it, and finite elements held at the bore are unsafe too, since a held rim "
+        remedy += "cannot bend: give the gear its rim and web (blank) and take finite elements"
+        raise GeometryError.at(f"{name}.bore_radius", value, allowed, remedy)
+    return rim_factor(ratio)
+
+
+def rim_factor(ratio: float) -> float:
+    """Y_B = 1.6 ln(2.242 h_t/s_R) of a rim of `ratio` s_R/h_t tooth depths below 1.2, else 1.
+
+    The standard has it for s_R/h_t above 0.5. It stands for the rim's own bending, which adds to the stress at the
+    fillet.
+
+    Examples
+    --------
+    >>> round(rim_factor(0.6), 3), rim_factor(1.2)
+    (2.109, 1.0)
+    """
+    return 1.6 * math.log(2.242 / ratio) if ratio < THIN_RIM else 1.0
 
 
 def _outside(name: str, profile: ToothProfile, section: RootSection) -> list[str]:
     found = []
     if not 1.0 <= section.q_s < 8.0:
         found.append(f"q_s = {section.q_s:.3g} of the {name} is not within 1 to 8")
-    rim = (profile.root_radius - profile.bore_radius) / profile.module
+    rim = profile.rim_thickness / profile.module
     if rim < 1.75:
         found.append(f"the {name}'s rim of {rim:.3g} modules is thinner than 1.75")
     if section.theta > profile.fillet_curve.end:

@@ -10,9 +10,16 @@ from base.units import factor
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
+from gears.profile import ToothProfile
 
 CORRECTION = 0.8
 """C_M, what measurements found of the theoretical stiffness of a solid disc."""
+
+WEB_RATIO = (0.2, 1.2)
+"""b_s/b for which C_R was made; beyond it counts as its end."""
+
+THINNEST_RIM = 1.0
+"""Rim [modules] below which C_R takes it as this thick."""
 
 LIGHT_LOAD = 100.0
 """Load per face width [N/mm] below which the stiffness falls with the fourth root of the load."""
@@ -27,7 +34,7 @@ class Iso6336Stiffness:
     c_th: float = quantity("N/(mm um)", "theoretical single stiffness c'_th")
     c_prime: float = quantity("N/(mm um)", "single stiffness c', the largest of one pair of teeth")
     c_gamma: float = quantity("N/(mm um)", "mesh stiffness c_gamma_alpha, mean over the mesh cycle")
-    C_R: float = quantity("1", "gear blank factor, 1 for a solid disc")
+    C_R: float = quantity("1", "gear blank factor, 1 for solid discs")
     C_B: float = quantity("1", "basic rack factor")
     face_width: float = quantity("m", "face width b", shown="mm")
 
@@ -45,11 +52,12 @@ class Iso6336Stiffness:
 
 
 def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
-    """Single and mesh stiffness of a pair of solid discs after ISO 6336-1.
+    """Single and mesh stiffness of a pair after ISO 6336-1.
 
     q' = 0.04723 + 0.15551/z1 + 0.25791/z2 - 0.00635 x1 - 0.11654 x1/z1 - 0.00193 x2 - 0.24188 x2/z2
-    + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B E/E_steel with C_R = 1 and
-    C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha)]; c_gamma = c' (0.75 epsilon_alpha + 0.25).
+    + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B E/E_steel with C_R of the
+    weaker blank (`blank_factor`) and C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha)];
+    c_gamma = c' (0.75 epsilon_alpha + 0.25).
 
     Parameters
     ----------
@@ -72,7 +80,7 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     Warns
     -----
     RangeWarning
-        Outside x1 >= x2, -0.5 <= x1 + x2 <= 2 and 1.2 <= epsilon_alpha <= 1.9.
+        Outside x1 >= x2, -0.5 <= x1 + x2 <= 2 and 1.2 <= epsilon_alpha <= 1.9, or of what C_R was made for.
 
     Examples
     --------
@@ -83,10 +91,10 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     """
     first, second = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift))
     z1, z2, x1, x2 = first.teeth, second.teeth, first.profile_shift, second.profile_shift
-    _warn_outside(x1, x2, pair.contact_ratio)
+    _warn_outside(x1, x2, pair)
     q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
     q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
-    C_R = 1.0
+    C_R = min(blank_factor(profile) for profile in pair.teeth_profiles)
     angle = math.degrees(pair.rack.alpha)
     C_B = (1.0 + 0.5 * (1.2 - pair.rack.h_fP)) * (1.0 - 0.02 * (20.0 - angle))
     E1, E2 = (material.youngs_modulus for material in pair.materials)
@@ -100,8 +108,33 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     return Iso6336Stiffness(1.0 / q, c_prime, c_gamma, C_R, C_B, pair.face_width)
 
 
-def _warn_outside(x1: float, x2: float, contact_ratio: float) -> None:
-    outside = []
+def blank_factor(profile: ToothProfile) -> float:
+    """C_R of a gear on a web: 1 + ln(b_s/b)/(5 exp(s_R/(5 m))), 1 for a solid disc.
+
+    Mean values for a mate of the same or a stiffer blank. b_s/b counts from 0.2 to 1.2, s_R/m from 1 on.
+
+    Parameters
+    ----------
+    profile : ToothProfile
+        Tooth with the steps of its blank.
+    """
+    if not profile.steps:
+        return 1.0
+    low, high = WEB_RATIO
+    web = min(max(profile.zones[1].thickness, low), high)
+    rim = max(profile.rim_thickness / profile.module, THINNEST_RIM)
+    return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))
+
+
+def _warn_outside(x1: float, x2: float, pair: GearPair) -> None:
+    outside, contact_ratio = [], pair.contact_ratio
+    for name, profile in zip(("pinion", "wheel"), pair.teeth_profiles, strict=True):
+        if profile.steps and profile.zones[1].thickness < WEB_RATIO[0]:
+            web = profile.zones[1].thickness
+            outside.append(f"the {name}'s web of {web:.3g} face widths counts as {WEB_RATIO[0]:g}")
+        if profile.steps and profile.rim_thickness < THINNEST_RIM * profile.module:
+            rim = profile.rim_thickness / profile.module
+            outside.append(f"the {name}'s rim of {rim:.3g} modules counts as {THINNEST_RIM:g}")
     if x1 < x2:
         outside.append(f"x1 = {x1:g} is less than x2 = {x2:g}")
     if not -0.5 <= x1 + x2 <= 2.0:

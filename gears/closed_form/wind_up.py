@@ -6,6 +6,9 @@ and Poisson's ratio do not enter. With M = T s(r), the deflection along the line
 
     r_b^2/(2 pi G) Int s(r)^2 dr/r^3,   r_h to r_f.
 
+Where rings of different thickness t b follow each other, as hub, web and rim do, each has its own t b and the turns add
+up.
+
 s = 1: all of the torque leaves at the held bore. A ring that turns freely hands the torque to its own inertia
 instead, and s(r) is the share of the inertia inside r, since that part is what the torque has still to accelerate.
 """
@@ -13,6 +16,9 @@ instead, and s(r) is the share of the inertia inside r, since that part is what 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+
+from gears.blank import Zone
 
 
 def ring_wind_up(root_radius: float, bore_radius: float, base_radius: float, shear_modulus: float) -> float:
@@ -74,3 +80,71 @@ def inertial_share(radius_ratio: float, bore_inertia: float = 0.0) -> float:
     g, i = radius_ratio**2, bore_inertia
     of_ring = g * (1.0 - g) ** 2 * (1.0 + 3.0 * g) / 3.0
     return (i**2 + 2.0 * i * g * (1.0 - g) + of_ring) / (i + 1.0 - g**2) ** 2
+
+
+def body_wind_up(zones: Sequence[Zone], base_radius: float, shear_modulus: float) -> float:
+    """Deflection along the line of action by the twist of a gear's body, held at its bore, times b / F.
+
+    Sum over the zones of `ring_wind_up` over their thickness t: the torque crosses all of them.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        `ToothProfile.zones`.
+    base_radius : float
+        r_b [m].
+    shear_modulus : float
+        G [Pa].
+
+    Returns
+    -------
+    float
+        delta b / F [m^2/N].
+
+    Examples
+    --------
+    >>> from gears.blank import Zone
+    >>> body_wind_up((Zone(30e-3, 33.5e-3, 1.0), Zone(16.75e-3, 30e-3, 0.3)), 33.83e-3, shear_modulus=79.2e9)
+    9.702...e-12
+    """
+    return sum(
+        ring_wind_up(zone.outer, zone.inner, base_radius, shear_modulus) / zone.thickness for zone in zones
+    )
+
+
+def inertial_wind_up(
+    zones: Sequence[Zone], base_radius: float, shear_modulus: float, bore_inertia: float = 0.0
+) -> float:
+    """Deflection as of `body_wind_up` of a body whose torque is balanced by its own inertia.
+
+    With the inertias J(r) inside a circle over pi rho b/2, the share of the torque that crosses a zone's outer circle
+    is J(r_o)/J, and inside the zone the torque falls as in a ring of thickness t whose bore carries J(r_i)/t:
+
+        Sum ring_wind_up(r_o, r_i)/t inertial_share(r_i/r_o, J(r_i)/(t r_o^4)) [J(r_o)/J]^2 .
+
+    Parameters
+    ----------
+    zones, base_radius, shear_modulus : Sequence of Zone, float, float
+        As of `body_wind_up`.
+    bore_inertia : float
+        Of what turns with the bore, over pi rho b/2 [m^4].
+
+    Returns
+    -------
+    float
+        delta b / F [m^2/N].
+
+    Examples
+    --------
+    >>> from gears.blank import Zone
+    >>> solid = (Zone(16.75e-3, 33.5e-3, 1.0),)
+    >>> inertial_wind_up(solid, 33.83e-3, 79.2e9) / body_wind_up(solid, 33.83e-3, 79.2e9)
+    0.0933...
+    """
+    inside, parts = bore_inertia, []
+    for zone in reversed(zones):
+        twist = ring_wind_up(zone.outer, zone.inner, base_radius, shear_modulus) / zone.thickness
+        share = inertial_share(zone.inner / zone.outer, inside / (zone.thickness * zone.outer**4))
+        inside += zone.thickness * (zone.outer**4 - zone.inner**4)
+        parts.append(twist * share * inside**2)
+    return sum(parts) / inside**2

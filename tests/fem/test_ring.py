@@ -14,17 +14,23 @@ from fem.elasticity import PlaneElasticity, stiffness_matrix
 from fem.flamant import hertz_indentation
 from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
-from gears import Gear, GearPair
+from gears import Blank, Gear, GearPair
 from gears.plane import turned
 from meshes import Sizes, gear_mesh, mesh_sector
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)
-SMALL = GearPair(Gear(18, profile_shift=0.2), Gear(24), 2e-3, 0.04)
+BLANKS = {"disc": None, "web": Blank(2.4e-3, 0.012, hub_radius=0.010), "web to the bore": Blank(6e-3, 0.004)}
+
+
+@pytest.fixture(scope="module", params=list(BLANKS))
+def profile(request):
+    pinion = Gear(18, profile_shift=0.2, bore_radius=0.008, blank=BLANKS[request.param])
+    return GearPair(pinion, Gear(24), 2e-3, 0.04).teeth_profiles[0]
 
 
 @pytest.fixture(scope="module")
-def ring():
-    return ring_of(mesh_sector(SMALL.teeth_profiles[0]), LAW)
+def ring(profile):
+    return ring_of(mesh_sector(profile), LAW)
 
 
 def harmonics(stiffness, links, j):
@@ -71,9 +77,9 @@ def test_a_ring_that_nothing_holds_is_refused():
         ring_of_links(free, 12)
 
 
-def whole_annulus(profile, sector, others=None):
+def whole_annulus(sector, others=None):
     gear = gear_mesh(sector, others=others)
-    K = stiffness_matrix(gear.points, gear.triangles, LAW)
+    K = stiffness_matrix(gear.points, gear.triangles, LAW, gear.thickness)
     hub = np.unique(gear.facets["bore"])
     free = np.setdiff1d(np.arange(2 * len(gear.points)), np.concatenate([2 * hub, 2 * hub + 1]))
     options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
@@ -90,7 +96,7 @@ def whole_annulus(profile, sector, others=None):
 def test_forces_on_any_tooth_give_the_whole_annulus_displacements(ring):
     """Forces on the tops of two teeth, condensed by hand, against the factorised annulus."""
     sector, z = ring.mesh, ring.mesh.teeth
-    gear, solve = whole_annulus(SMALL.teeth_profiles[0], sector)
+    gear, solve = whole_annulus(sector)
     rng = np.random.default_rng(4)
     top = np.unique(sector.facets["top"])
     pull = rng.normal(size=(len(top), 2))
@@ -119,16 +125,15 @@ def test_forces_on_any_tooth_give_the_whole_annulus_displacements(ring):
             )
 
 
-def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
+def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(profile):
     """No singularity taken out: the pressure itself on elements of a fifth of its half-width.
 
     It acts along the line of action everywhere, as between equal bodies, whose contact area is flat. (Were it to
     follow one body's own curvature, the result would differ by kappa a (1 - nu*)/(2 E*) 4/(3 pi), 0.05 %.)
     """
-    profile = SMALL.teeth_profiles[0]
     rho, a = 0.5 * sum(profile.flank_rho), 0.09 * profile.module
     fine = mesh_sector(profile, Sizes(flank=0.036), refinements=1)
-    gear, solve = whole_annulus(profile, mesh_sector(profile, refinements=1), {0: fine})
+    gear, solve = whole_annulus(mesh_sector(profile, refinements=1), {0: fine})
     edges, arcs = gear.nodes[0][fine.facets["flank_left"]], fine.parameters["flank_left"]
     middle = rho**2 / (2 * profile.base_radius)
     near = (arcs.max(axis=1) > middle - a) & (arcs.min(axis=1) < middle + a)
@@ -151,7 +156,7 @@ def test_resolved_hertz_pressure_on_the_whole_annulus_agrees(ring):
 
 def test_condensation_onto_the_cuts_is_the_schur_complement(ring):
     """By groups of elements, against a factorisation of the assembled sector."""
-    stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW)
+    stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW, ring.mesh.thickness)
     held = splu(csc_array(stiffness[ring.inner][:, ring.inner]))
     across = stiffness[ring.inner][:, ring.cut]
     inner_by_cut = held.solve(across.toarray())
@@ -166,7 +171,7 @@ def test_condensation_onto_the_cuts_is_the_schur_complement(ring):
 
 
 def test_forces_pass_up_to_held_cuts_and_displacements_down_from_moved_ones(ring):
-    stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW)
+    stiffness = stiffness_matrix(ring.mesh.points, ring.mesh.triangles, LAW, ring.mesh.thickness)
     held = splu(csc_array(stiffness[ring.inner][:, ring.inner]))
     across = stiffness[ring.inner][:, ring.cut]
     rng = np.random.default_rng(5)

@@ -22,6 +22,7 @@ import fem
 import fem.elasticity
 from fem.export import write_abaqus
 from fem.loaded_gears import loaded_gears
+from gears import Blank, Gear, GearPair
 
 CCX = shutil.which("ccx")
 REQUIRED = os.environ.get("FLANKFILM_REQUIRE_CCX") == "1"
@@ -32,9 +33,9 @@ pytestmark = pytest.mark.skipif(
 
 
 def ours(gear):
-    stiffness = (
-        fem.elasticity.stiffness_matrix(gear.mesh.points, gear.mesh.triangles, gear.law) * gear.face_width
-    )
+    mesh = gear.mesh
+    stiffness = fem.elasticity.stiffness_matrix(mesh.points, mesh.triangles, gear.law, mesh.thickness)
+    stiffness = stiffness * gear.face_width
     free = np.ones(len(gear.mesh.points), dtype=bool)
     free[np.unique(gear.mesh.facets["bore"])] = False
     free = np.repeat(free, 2)
@@ -119,3 +120,19 @@ def test_plane_stress(article_pair, cycles, tmp_path, monkeypatch):
     # its plane stress is a thin solid of free thickness, not exactly ours: 1e-4 at the load, less elsewhere
     assert largest < 5e-4
     assert mean < 1e-4
+
+
+@pytest.mark.parametrize(("plane", "neighbours", "allowed"), [("strain", None, 1e-6), ("stress", 3, 5e-4)])
+def test_rim_web_and_hub_by_sections_of_their_own_thickness(
+    tmp_path, monkeypatch, plane, neighbours, allowed
+):
+    """Sets of elements with the thickness of rim, web and hub, as CalculiX makes solids of them."""
+    monkeypatch.setattr(fem.elasticity, "INTEGRATION", 2)
+    blank = Blank(rim_thickness=5.4e-3, web_thickness=6e-3, hub_radius=0.018)
+    pair = GearPair(Gear(25), Gear(50, bore_radius=0.012, blank=blank), 2e-3, 0.02)
+    cycle = fem.mesh_cycle(pair, 100.0, 4, plane=plane)
+    gear = loaded_gears(pair, cycle, 1, refinements=0, neighbours=neighbours)[1]
+    assert sorted(set(gear.mesh.thickness.tolist())) == [0.3, 1.0]
+    moved, _ = calculix(gear, tmp_path)
+    largest, _ = apart(moved, ours(gear))
+    assert largest < allowed
