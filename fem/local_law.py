@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Booleans, record
 
-__all__ = ["Film", "FilmLaw", "HertzApproach", "PairLaws", "Table", "film_yielding"]
+__all__ = ["CutOff", "Film", "FilmLaw", "HertzApproach", "PairLaws", "Table", "film_yielding"]
 
 LEAST_FORCE = 1e-9
 """Force [N] below which the Hertz indentation is taken as linear, since its slope at zero is infinite."""
@@ -84,6 +84,44 @@ class Table:
 
 
 @record
+class CutOff:
+    """What a near tip corner adds to the flank's law of some contacts, over the force (``fem.cut_off``).
+
+    Cubic between its points in the force's logarithm; zero below the first one, straight beyond the last.
+
+    Attributes
+    ----------
+    at : boolean array
+        Which contacts (positions, pairs), n of them in row-major order.
+    log_force : (n, k) array
+        Logarithms of forces [N].
+    quotient, slope : (n, k) arrays
+        Further deflection over the force [m/N], and its derivative by the logarithm.
+    """
+
+    at: Booleans
+    log_force: Array
+    quotient: Array
+    slope: Array
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
+        log = np.log(np.maximum(force, LEAST_FORCE))
+        rows, last = np.arange(len(self.log_force)), self.log_force.shape[1] - 1
+        cell = np.clip((self.log_force <= log[..., None]).sum(axis=-1) - 1, 0, last - 1)
+        start, width = self.log_force[rows, cell], np.diff(self.log_force)[rows, cell]
+        q0, q1 = self.quotient[rows, cell], self.quotient[rows, cell + 1]
+        s0, s1 = self.slope[rows, cell] * width, self.slope[rows, cell + 1] * width
+        t = np.clip((log - start) / width, 0.0, 1.0)
+        beyond = np.maximum(log - start - width, 0.0) / width
+        quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
+        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t) + s1 * beyond
+        slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
+        inside = log > self.log_force[:, 0]
+        return np.where(inside, force * quotient, 0.0), np.where(inside, quotient + slope, 0.0)
+
+
+@record
 class PairLaws:
     """Hertz on the path of contact, a table for each tip-edge contact outside it.
 
@@ -95,17 +133,22 @@ class PairLaws:
         Contacts of a tip edge.
     table : Table or None
         One row for each of them, in row-major order.
+    cut_offs : tuple of CutOff
+        Corrections of contacts near tip corners.
     """
 
     hertz: HertzApproach
     edge: Booleans
     table: Table | None = None
+    cut_offs: tuple[CutOff, ...] = ()
 
     def approach(self, force: Array) -> Array:
         """Local deflection (positions, pairs) [m]."""
         local = self.hertz.approach(force)
         if self.table is not None:
             local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[0]
+        for one in self.cut_offs:
+            local[..., one.at] += one.value_and_slope(force[..., one.at])[0]
         return local
 
     def slope(self, force: Array) -> Array:
@@ -113,6 +156,8 @@ class PairLaws:
         local = self.hertz.slope(force)
         if self.table is not None:
             local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[1]
+        for one in self.cut_offs:
+            local[..., one.at] += one.value_and_slope(force[..., one.at])[1]
         return local
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.bodies import Compliance
 from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
+from fem.cut_off import cut_offs
 from fem.local_law import Film, FilmLaw, PairLaws, Table
 from fem.moving_contact import ContactMoves, contact_moves, moved_share
 from fem.setting import Setting
@@ -82,7 +83,9 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
         matrix /= kappa[..., :, None] * kappa[..., None, :]
         on_path = where.touchable & ~where.edge
         middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
-        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table)
+        # contacts that move have a law of their own near the corner
+        near = () if given.moving_contact else cut_offs(given, bodies, where, float(np.max(force)))
+        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table, near)
         oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
         levers = _levers(given, where) / kappa
         touch = where.gap.min(axis=-1)

@@ -12,7 +12,7 @@ import numpy as np
 from base import Array, Integers
 from fem.elasticity import PlaneElasticity
 
-__all__ = ["flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest"]
+__all__ = ["by_the_far_end", "flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest", "smoothed"]
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
@@ -84,6 +84,27 @@ def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> 
     return np.ascontiguousarray(force.T), np.ascontiguousarray(approach.T)
 
 
+def smoothed(force: Array, approach: Array) -> Array:
+    """Approach of a smooth law through the mean of a law by strips, whose points are those at which strips close.
+
+    Between two of them the same strips bear, so that the law by strips is their chord: its points lie above any
+    smooth law, first in the width of the strips, while its energy errs in a higher order. The smooth law with
+    the same energy in every interval h is lower by |D''| h_0^2 h_1^2/[6 (h_0^2 + h_1^2)], exact for a parabola
+    over intervals of one ratio. First and last points stay.
+
+    Parameters
+    ----------
+    force, approach : (contacts, strips) arrays
+        [N/m], [m]
+    """
+    before, after = np.diff(force)[:, :-1], np.diff(force)[:, 1:]
+    secant = np.diff(approach) / np.diff(force)
+    curvature = 2 * np.diff(secant) / (before + after)
+    lower = np.zeros_like(approach)
+    lower[:, 1:-1] = curvature * (before * after) ** 2 / (6 * (before**2 + after**2))
+    return np.asarray(approach + lower)
+
+
 def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array]:
     """As ``from_the_corner`` for any gaps: with tip relief or a rounding the corner need not be nearest.
 
@@ -92,6 +113,32 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
     order of their closing; what it leaves of levers and gaps in the rows of open strips is how fast these near
     the other body, and how far away they would be without any approach.
     """
+    force, approach, _ = _closings(kernel, gaps, levers)
+    return force, approach
+
+
+def by_the_far_end(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array]:
+    """As ``from_the_nearest``, at the instants at which strips close at the end away from the corner.
+
+    Strips at the other end, on a rounding, are so narrow that between two of these instants the law is a chord.
+
+    Returns
+    -------
+    force, approach : (contacts, strips) arrays
+        Line loads [N/m] and approach [m] at which each strip closes; nan for strips that close otherwise.
+    """
+    force, approach, strip = _closings(kernel, gaps, levers)
+    before = np.maximum.accumulate(strip, axis=1)[:, :-1]
+    point = np.zeros(strip.shape, dtype=bool)
+    point[:, 0], point[:, 1:] = True, strip[:, 1:] == before + 1
+    row, column = np.nonzero(point)
+    found = np.full((2, *gaps.shape), np.nan)
+    found[:, row, strip[row, column]] = force[row, column], approach[row, column]
+    return found[0], found[1]
+
+
+def _closings(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array, Integers]:
+    """Line loads and approach when strips close, and which (contacts, strips)."""
     contacts, strips = gaps.shape
     rows = np.arange(contacts)
     whole = np.zeros((contacts, strips + 1, strips + 2))
@@ -102,6 +149,7 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
     touching = gaps / levers
     force, approach = [np.zeros(contacts)], [touching.min(axis=1)]
     following, more = touching.argmin(axis=1), np.ones(contacts, dtype=bool)
+    order = [following]
     for _ in range(strips - 1):
         _eliminate(whole, rows[more], following[more])
         closed[rows[more], following[more]] = True
@@ -118,7 +166,8 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
         borne = whole[:, -1, -1] - level * whole[:, -1, -2]
         force.append(np.maximum(borne, force[-1] * (1 + 1e-12)))
         approach.append(level)
-    return np.array(force).T, np.array(approach).T
+        order.append(following)
+    return np.array(force).T, np.array(approach).T, np.array(order).T
 
 
 def _eliminate(whole: Array, rows: Integers, strip: Integers) -> None:

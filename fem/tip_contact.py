@@ -23,14 +23,14 @@ import numpy as np
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.strip_contact import flat_kernel, from_the_corner, from_the_nearest
+from fem.strip_contact import by_the_far_end, flat_kernel, from_the_corner, from_the_nearest, smoothed
 from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
 from fem.tip_strips import RATIO, REACH, TipStrips, sharp_layout
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["EdgeLaw", "edge_laws", "nearest_gap"]
+__all__ = ["EdgeLaw", "edge_laws", "nearest_gap", "rounded_law", "strip_law"]
 
 ARC_STRIP, ARC_FINE, ARC_REACH = 0.02, 0.25, 0.7
 """On a rounding: width of the strips, the length that is covered by them, and the length covered at all (in
@@ -173,26 +173,71 @@ def edge_laws(
     profile = pair.teeth_profiles[corner]
     rounding = rounding or tip_round(profile, 0.0)
     missing = removed or (_nothing, _nothing)
-    end, where = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
-    sharp = rounding.radius == 0.0
-    layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
-    tip = _surface(profile, *layout, rounding)
+    _, where = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
+    if rounding.radius == 0.0 and removed is None:
+        force, approach = strip_law(pair, strips, corner, rho1, other)
+    else:
+        sharp = rounding.radius == 0.0
+        layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
+        tip = _surface(profile, *layout, rounding)
+        answer = strips if sharp else strips.on(tip.distance, tip.width)
+        force, approach = from_the_nearest(*_strips(pair, answer, corner, rho1, other, tip, missing))
+        force = force * pair.face_width
+    force, approach, largest = _growing(force, approach)
+    return EdgeLaw(force, approach, where[:, 0], largest)
+
+
+def strip_law(
+    pair: GearPair, strips: TipStrips, corner: int, rho1: Array, other: PlaneElasticity
+) -> tuple[Array, Array]:
+    """Force [N] and approach [m] (n, k) of contacts that spread from a sharp corner inwards, strip by strip.
+
+    Arguments as for ``edge_laws``. On the path it is the law of contacts that bear at the corner; the first points,
+    whose strips would have to pull there, mean nothing.
+    """
+    profile = pair.teeth_profiles[corner]
+    sharp, missing = tip_round(profile, 0.0), (_nothing, _nothing)
+    end, where = _gaps(pair, corner, rho1, _at_corner(profile, sharp), missing)
+    first = (end / _levers(pair, corner, where, rho1))[:, 0]
+    tip = _surface(profile, strips.distance, strips.width, sharp)
+    kernel, gaps, levers = _strips(pair, strips, corner, rho1, other, tip, missing)
+    force, approach = from_the_corner(kernel, gaps, first, levers)
+    return force * pair.face_width, smoothed(force, approach)
+
+
+def rounded_law(
+    pair: GearPair, strips: TipStrips, corner: int, rho1: Array, other: PlaneElasticity, rounding: TipRound
+) -> tuple[Array, Array]:
+    """As ``strip_law`` for contacts on the path near a rounding, onto which they spread.
+
+    Points are the instants at which strips close away from the tip; nan for strips nearer to it than the contact.
+    """
+    tip = _surface(pair.teeth_profiles[corner], *round_layout(pair.module, rounding), rounding)
+    answer = strips.on(tip.distance, tip.width)
+    kernel, gaps, levers = _strips(pair, answer, corner, rho1, other, tip, (_nothing, _nothing))
+    force, approach = by_the_far_end(kernel, gaps, levers)
+    lower = smoothed(force, approach)
+    return force * pair.face_width, np.where(np.isfinite(lower), lower, approach)
+
+
+def _strips(
+    pair: GearPair,
+    strips: TipStrips,
+    corner: int,
+    rho1: Array,
+    other: PlaneElasticity,
+    tip: _Tip,
+    missing: tuple[Removed, Removed],
+) -> tuple[Array, Array, Array]:
+    """Kernel (n, k, k) of both bodies [m per N/m], gaps [m] and levers (n, k) of strips at a tip."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
-    answer = strips if sharp else strips.on(tip.distance, tip.width)
     place = rho1 if corner == 1 else pair.line_of_action - rho1
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     angle = opening(radii, pair.line_of_action, place, touched, tip.unrounded_rho)
-    own = answer.lever(angle)
-    turned = answer.hub_windup * own[:, :, None] * own[:, None, :]
-    kernel = answer.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
-    levers = _levers(pair, corner, touched, rho1)
-    if sharp and removed is None:
-        first = (end / _levers(pair, corner, where, rho1))[:, 0]
-        force, approach = from_the_corner(kernel, gaps, first, levers)
-    else:
-        force, approach = from_the_nearest(kernel, gaps, levers)
-    force, approach, largest = _growing(force * pair.face_width, approach)
-    return EdgeLaw(force, approach, where[:, 0], largest)
+    own = strips.lever(angle)
+    turned = strips.hub_windup * own[:, :, None] * own[:, None, :]
+    kernel = strips.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
+    return kernel, gaps, _levers(pair, corner, touched, rho1)
 
 
 def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:

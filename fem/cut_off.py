@@ -1,0 +1,183 @@
+"""Contacts on the path so near to a tip corner that it cuts off their pressure.
+
+Within a half-width a of A or E the strips that give a tip edge its law (``fem.tip_contact``) describe the contact on
+the path as well: it spreads from the corner as soon as the load is great enough. With d the contact's distance from
+the corner, the flank's own law, Hertz's indentation and the compliance at one point, is corrected by
+
+    Delta(F) = D_strips(F) - Hertz(F) - own F,            a(F) > JOIN d,
+
+so that nothing steps at A and E. Below that force the contact does not reach the corner. What is left of the
+difference comes from the slope of the tooth's answer along the flank and from its lean; both are of the second order,
+Delta = F^2 (k + l F) with value and slope of the strips where the two join. It fades out, over forces and over
+distances, towards the law of contacts that stay where undeformed teeth touch.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, Integers
+from fem.flamant import hertz_half_width
+from fem.local_law import CutOff
+from fem.tip_contact import rounded_law, strip_law
+from fem.tip_strips import RATIO
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fem.bodies import Compliance
+    from fem.contact_candidates import ContactCandidates
+    from fem.setting import Setting
+    from fem.tip_geometry import TipRound
+
+__all__ = ["cut_off", "cut_offs"]
+
+JOIN = 1.25
+"""Half-widths over distances from the corner at which a contact has come to it."""
+
+FADE = (1.0, 3.0)
+"""Distances from the corner, in half-widths, between which the correction fades out."""
+
+FAR = (0.06, 0.16)
+"""Distances [modules] between which it fades out in any case: strips about contacts farther in are too few."""
+
+FIRST, LAST = 4, 0.8
+"""Strip, counted from the corner, at which the least contact joins, and the part of the greatest force."""
+
+NEWTON = 5
+"""Steps to the number of strips at which a contact bears a force."""
+
+BELOW, ABOVE = 16, 32
+"""Forces of the table below and above the one at which the contact comes to the corner."""
+
+
+def cut_offs(
+    given: Setting, bodies: Compliance, where: ContactCandidates, force: float
+) -> tuple[CutOff, ...]:
+    """Corrections of all contacts on the path that may reach a corner under up to some force [N].
+
+    Flanks without relief or deviations alone: others open gradually.
+    """
+    if not given.beyond_path or given.removed is not None:
+        return ()
+    pair, found = bodies.pair, []
+    widest = hertz_half_width(
+        force / pair.face_width, where.rho.prod(axis=0) / pair.line_of_action, _reduced(bodies)
+    )
+    reach = np.minimum(FADE[1] * widest, FAR[1] * pair.module)
+    for corner, gear in ((1, bodies.wheel), (0, bodies.pinion)):
+        distance = (given.rounds[corner].rho ** 2 - where.rho[corner] ** 2) / (2 * gear.base_radius)
+        at = where.touchable & ~where.edge & (distance < reach)
+        if at.any():
+            found.append(cut_off(bodies, corner, where.place[at], at, given.rounds[corner]))
+    return tuple(found)
+
+
+def cut_off(
+    bodies: Compliance, corner: int, rho1: Array, at: Booleans, rounding: TipRound | None = None
+) -> CutOff:
+    """Correction of the flank's law for contacts on the path near one gear's corner.
+
+    Parameters
+    ----------
+    bodies : Compliance
+    corner : {0, 1}
+        The gear whose corner is near: 1 (the wheel) after A, 0 (the pinion) before E.
+    rho1 : (n,) array
+        Places of the contacts [m].
+    at : boolean array
+        Which contacts these are, n of them.
+    rounding : TipRound, optional
+        Of the corner; distances are then those from its start. Sharp unless given.
+    """
+    pair, width, line = bodies.pair, bodies.pair.face_width, bodies.pair.line_of_action
+    gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
+    rho = rho1 if corner == 0 else line - rho1
+    round_end = gear.rho_end if rounding is None else rounding.rho
+    distance = np.maximum(round_end**2 - rho**2, 0.0) / (2 * gear.base_radius)
+    of_one = hertz_half_width(1 / width, rho * (line - rho) / line, _reduced(bodies))
+    law: Callable[[Array], tuple[Array, Array]]
+    if rounding is None or rounding.radius == 0.0:
+        force, approach = strip_law(pair, bodies.tips[corner], corner, rho1, other.law)
+        least, law = force[:, FIRST], partial(_between, force, approach)
+    else:
+        force, approach = rounded_law(pair, bodies.tips[corner], corner, rho1, other.law, rounding)
+        least, law = np.nanmin(np.where(force > 0.0, force, np.nan), axis=1), partial(_along, force, approach)
+    comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * force[:, -1])
+    flank, own = bodies.hertz(rho1), (gear.own(rho) - gear.hub_windup) / width
+    fade = 1.0 - _rise(distance / pair.module, *FAR)[0]
+    below = 2 * np.log(np.geomspace(1 / (JOIN * FADE[1]), 1.0, BELOW + 1)[:-1]) + np.zeros((len(rho1), 1))
+    above = np.linspace(0.0, 1.0, ABOVE) * np.log(force[:, -1:] / comes[:, None])
+    start = np.log(comes)[:, None]
+    whole, steepness = law(comes[:, None] * np.exp(above))
+    away = whole - (flank.constant + own)[:, None] + flank.per_log * (start + above)
+    slope = steepness - whole + flank.per_log
+    quotient, slope = _completed(np.concatenate([below, above], axis=1), away, slope)
+    return CutOff(
+        at, start + np.concatenate([below, above], axis=1), fade[:, None] * quotient, fade[:, None] * slope
+    )
+
+
+def _reduced(bodies: Compliance) -> float:
+    return 2 / (1 / bodies.pinion.law.plane_modulus + 1 / bodies.wheel.law.plane_modulus)
+
+
+def _rise(x: Array, start: float, end: float) -> tuple[Array, Array]:
+    """From 0 to 1 between two places, with two continuous derivatives; and the first of these."""
+    t = np.clip((x - start) / (end - start), 0.0, 1.0)
+    return np.asarray(t**3 * (10 - 15 * t + 6 * t**2)), np.asarray(30 * (t * (1 - t)) ** 2 / (end - start))
+
+
+def _between(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]:
+    """Approach over force [m/N] and slope of the approach [m/N] at forces (n, m) between the points of laws by strips.
+
+    Both are smooth in the number of strips that bear, from points on whose strips pull at the corner.
+    """
+    from scipy.interpolate import CubicSpline
+
+    strips = np.arange(1, force.shape[1])
+    both = np.stack([force, approach])[..., 1:] * RATIO ** (-2.0 * strips)
+    parts = CubicSpline(strips, both, axis=-1).c
+    rows = np.arange(len(force))[:, None]
+    cell = np.clip((force[:, None, 1:] <= asked[..., None]).sum(axis=-1) - 1, 0, len(strips) - 2)
+    cubic = np.moveaxis(parts[:, cell, :, rows], (-2, -1), (0, 1))  # (4, 2, n, m)
+    t = np.full(asked.shape, 0.5)
+    for _ in range(NEWTON):
+        (value, _), (slope, _) = _scaled_cubic(cubic, strips[cell], t)
+        t = np.clip(t - (value - asked) / slope, 0.0, 1.0)
+    (_, value), slopes = _scaled_cubic(cubic, strips[cell], t)
+    return value / asked, slopes[1] / slopes[0]
+
+
+def _along(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]:
+    """As ``_between`` for laws that begin with different strips, nan before."""
+    from scipy.interpolate import CubicSpline
+
+    value, slope = np.empty_like(asked), np.empty_like(asked)
+    root = np.sqrt(asked)
+    for k, known in enumerate(np.isfinite(force)):
+        spline = CubicSpline(np.sqrt(force[k, known]), approach[k, known])
+        value[k], slope[k] = spline(root[k]), spline(root[k], 1)
+    return value / asked, 0.5 * slope / root
+
+
+def _scaled_cubic(cubic: Array, strips: Integers, t: Array) -> tuple[Array, Array]:
+    """Cubics (4, 2, n, m) times the square of the contact's length, and their derivatives."""
+    size = RATIO ** (2.0 * (strips + t))
+    value = ((cubic[0] * t + cubic[1]) * t + cubic[2]) * t + cubic[3]
+    slope = (3 * cubic[0] * t + 2 * cubic[1]) * t + cubic[2]
+    return value * size, (slope + 2 * np.log(RATIO) * value) * size
+
+
+def _completed(log_part: Array, quotient: Array, slope: Array) -> tuple[Array, Array]:
+    """Correction over force and its slope by ln F, with that of contacts that do not come to the corner."""
+    at, rises, part = quotient[:, :1], slope[:, :1], np.exp(log_part[:, :BELOW])
+    first, second = (2 * at - rises) * part, (rises - at) * part**2
+    whole = np.concatenate([first + second, quotient], axis=1)
+    slopes = np.concatenate([first + 2 * second, slope], axis=1)
+    apart = np.exp(-0.5 * log_part) / JOIN  # distance over half-width
+    gone, going = _rise(apart, *FADE)
+    return whole * (1 - gone), slopes * (1 - gone) + 0.5 * apart * going * whole

@@ -1,0 +1,202 @@
+"""Contacts whose pressure a tip corner cuts off: nothing steps at A and E, nor where the flank's own law takes over."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import fem
+from fem.cut_off import FADE, FAR, cut_off
+from fem.elasticity import PlaneElasticity
+from fem.flamant import hertz_half_width, hertz_indentation
+from fem.setting import Setting
+from fem.sharing import solve
+from fem.strip_contact import flat_kernel, from_the_corner, smoothed
+from fem.tip_geometry import lever_ratio, opening, unloaded_gap
+from fem.tip_strips import sharp_layout
+from gears import Gear, GearPair, Material
+
+LAW = PlaneElasticity("strain", 206e9, 0.3)
+STEP = 5e-4
+
+
+def solved(pair, bodies, torque, position):
+    """Deflection, tangent and forces at positions [base pitches from A]."""
+    found = solve(
+        Setting(pair, 1).at(np.asarray(position)), bodies, np.array([torque / pair.base_radii[0]]), None
+    )
+    assert not found.refusal(0)
+    share = found.share
+    return share.transmission_error[0, 0], share.stiffness[0, 0], share.forces[0, 0]
+
+
+def ends(pair):
+    """Positions of A and E [base pitches from A]."""
+    return 0.0, (pair.points.E - pair.points.A) / pair.base_pitch
+
+
+def near(bodies, corner, distance):
+    """Place of the contact at a distance from a corner along its flank [m], and the radius of relative curvature."""
+    gear, line = (bodies.pinion, bodies.wheel)[corner], bodies.pair.line_of_action
+    rho = np.sqrt(gear.rho_end**2 - 2 * gear.base_radius * distance)
+    return (rho if corner == 0 else line - rho), rho * (line - rho) / line
+
+
+@pytest.fixture(scope="module")
+def plastic():
+    steel, pom = Material(206e9, 0.3, 7850.0), Material(2.8e9, 0.38, 1400.0)
+    pair = GearPair(Gear(teeth=17), Gear(teeth=51), 2e-3, 0.02, material=(steel, pom))
+    return pair, fem.compliance(pair, tip_edges=True)
+
+
+@pytest.mark.parametrize("torque", [1.0, 60.0, 600.0, 1500.0])
+def test_nothing_steps_at_A_and_E(article_pair, article_bodies, torque):
+    for end in ends(article_pair):
+        (before, after), tangent, forces = solved(
+            article_pair, article_bodies, torque, [end - 1e-6, end + 1e-6]
+        )
+        assert after == pytest.approx(before, rel=0.1 * STEP)
+        assert tangent[1] == pytest.approx(tangent[0], rel=STEP)
+        loaded = [np.sort(row[row > 0]) for row in forces]
+        np.testing.assert_allclose(loaded[1], loaded[0], atol=0.2 * STEP * forces.sum(axis=1).max())
+
+
+@pytest.mark.parametrize("radius", [1e-6, 20e-6, 100e-6])
+def test_nothing_steps_at_a_rounding(article_pair, article_bodies, radius):
+    given = Setting(article_pair, 1, tip_rounding=radius)
+    for place in given.ends:
+        at = (place - article_pair.points.A) / article_pair.base_pitch + np.array([-1e-6, 1e-6])
+        force = np.array([600.0 / article_pair.base_radii[0]])
+        before, after = solve(given.at(at), article_bodies, force, None).share.transmission_error[0, 0]
+        assert after == pytest.approx(before, rel=STEP)
+
+
+def test_nothing_steps_with_a_plastic_wheel(plastic):
+    pair, bodies = plastic
+    for end in ends(pair):
+        for torque in (0.5, 4.0):
+            approach, tangent, _ = solved(pair, bodies, torque, [end - 1e-6, end + 1e-6])
+            assert approach[1] == pytest.approx(approach[0], rel=STEP)
+            assert tangent[1] == pytest.approx(tangent[0], rel=STEP)
+
+
+def test_without_the_strips_inside_it_would_step(article_pair, article_bodies, monkeypatch):
+    monkeypatch.setattr(sys.modules["fem.sharing"], "cut_offs", lambda *_: ())
+    approach, _, _ = solved(article_pair, article_bodies, 600.0, [-1e-6, 1e-6])
+    assert abs(approach[1] / approach[0] - 1) > 4 * STEP
+
+
+@pytest.mark.parametrize("torque", [60.0, 600.0, 1500.0])
+def test_curves_are_smooth_where_the_flanks_law_takes_over(article_pair, article_bodies, torque):
+    """Second differences fall with the square of the intervals; at a corner they fall in proportion, at a step not."""
+    position = np.linspace(0.02, 0.21, 153)
+    approach, tangent, forces = solved(article_pair, article_bodies, torque, position)
+    assert np.all((forces > 0).sum(axis=1) == 2)
+    for curve, ratio in ((approach, 0.12), (tangent, 0.3)):
+        fine, coarse = (np.abs(np.diff(curve[::every], n=2)).max() for every in (1, 4))
+        assert fine < ratio * coarse
+        assert fine < 0.2 * STEP * curve.mean()
+
+
+def test_the_cycle_moves_little(article_pair, article_bodies, monkeypatch):
+    with_strips = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    monkeypatch.setattr(sys.modules["fem.sharing"], "cut_offs", lambda *_: ())
+    without = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    for name in ("stiffness", "secant_stiffness"):
+        mean, before = getattr(with_strips, name).mean(), getattr(without, name).mean()
+        assert mean == pytest.approx(before, rel=1e-3)
+        assert mean > before  # the flank's own law is too soft
+
+
+@pytest.mark.parametrize("corner", [0, 1])
+@pytest.mark.parametrize("part", [0.0, 0.3, 0.9])
+def test_the_correction_is_that_of_narrow_strips(article_pair, article_bodies, corner, part):
+    """Against the contact solved by an active set on even strips, 1/40 of a half-width each."""
+    bodies, pair, load = article_bodies, article_pair, 260e3
+    width, gear = pair.face_width, (bodies.pinion, bodies.wheel)[corner]
+    a = float(hertz_half_width(load, near(bodies, corner, 0.0)[1], 2 * LAW.plane_modulus / 2))
+    place, _ = near(bodies, corner, part * a)
+    edges = np.arange(max(0.0, part - 1.7) * a, (part + 2) * a, a / 40)
+    middle, strip = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    rho = np.sqrt(gear.rho_end**2 - 2 * gear.base_radius * middle)
+    radii, first = pair.base_radii[:: 1 if corner == 1 else -1], np.array([place])
+    first = first if corner == 1 else pair.line_of_action - first
+    gaps, where = unloaded_gap(radii, pair.line_of_action, first, rho)
+    tip = bodies.tips[corner].on(middle, strip)
+    angle = opening(radii, pair.line_of_action, first, where, rho)
+    lever = tip.lever(angle[0])
+    kernel = tip.leaning(angle)[0] - tip.hub_windup * np.outer(lever, lever)
+    kernel += flat_kernel(middle, strip, LAW, pair.module)
+    levers = np.ones_like(where) if corner == 1 else lever_ratio(pair, where, np.array([place])[:, None])
+    wanted = bearing(kernel, gaps[0], levers[0], load)
+    table = cut_off(bodies, corner, np.array([place]), np.ones((1, 1), dtype=bool))
+    flank = float(bodies.hertz(np.array([place])).approach(np.array([load * width]))[0])
+    rho_here = np.array([place if corner == 0 else pair.line_of_action - place])
+    flank += load * float(gear.own(rho_here)[0] - gear.hub_windup)
+    got = flank + float(table.value_and_slope(np.array([load * width]))[0][0])
+    assert abs(got - flank) > 10 * abs(got - wanted) > 0
+    assert got == pytest.approx(wanted, rel=STEP)
+
+
+def bearing(kernel, gaps, levers, load):
+    """Approach of strips that bear a line load, counted by their levers, by an active set."""
+    active = np.ones(len(gaps), dtype=bool)
+    for _ in range(100):
+        on = np.flatnonzero(active)
+        matrix = np.block([[kernel[np.ix_(on, on)], -levers[on, None]], [levers[None, on], 0.0]])
+        *pressure, approach = np.linalg.solve(matrix, np.append(-gaps[on], load))
+        whole = np.zeros(len(gaps))
+        whole[on] = pressure
+        after = (whole > 0) | (~active & (kernel @ whole + gaps < levers * approach))
+        if np.array_equal(after, active):
+            return approach
+        active = after
+    raise AssertionError("no solution")
+
+
+def test_small_contacts_and_far_ones_have_the_flanks_own_law(article_bodies):
+    at = np.ones((1, 1), dtype=bool)
+    for corner in (0, 1):
+        for distance in (0.01 * 2e-3, 0.05 * 2e-3):
+            place, radius = near(article_bodies, corner, distance)
+            table = cut_off(article_bodies, corner, np.array([place]), at)
+            load = np.pi * LAW.plane_modulus * (distance / FADE[1]) ** 2 / (8 * radius)
+            force = np.array([0.99 * load * article_bodies.pair.face_width])
+            assert table.value_and_slope(force) == (0.0, 0.0)
+        place, _ = near(article_bodies, corner, FAR[1] * 2e-3)
+        table = cut_off(article_bodies, corner, np.array([place]), at)
+        np.testing.assert_allclose(table.quotient, 0.0, atol=1e-25)
+
+
+def test_the_correction_is_smooth_and_its_slope_is_its_derivative(article_bodies):
+    place, _ = near(article_bodies, 1, np.array([0.0, 0.02, 0.05, 0.1]) * 2e-3)
+    table = cut_off(article_bodies, 1, place, np.ones((4, 1), dtype=bool))
+    force = np.geomspace(3.0, 5e4, 400)[:, None] * np.ones(4)
+    ahead, behind = (table.value_and_slope(force * (1 + h))[0] for h in (1e-5, -1e-5))
+    slope = table.value_and_slope(force)[1]
+    own = 5e-10  # what a pair yields per force [m/N]
+    np.testing.assert_allclose(slope, (ahead - behind) / (2e-5 * force), atol=1e-5 * own)
+    assert np.abs(np.diff(slope, axis=0)).max() < 0.01 * own
+
+
+def test_a_smoothed_law_by_strips_is_hertz():
+    """A contact that spreads from its middle, with its mirror image: coarse strips give the elliptic pressure's law."""
+    module, radius = 2e-3, 5e-3
+    distance, width = sharp_layout(module)
+    mirror = np.concatenate([-distance[::-1], distance])
+    both = flat_kernel(mirror, np.concatenate([width[::-1], width]), LAW, module)[len(distance) :]
+    kernel = 2 * (both[:, : len(distance)][:, ::-1] + both[:, len(distance) :])
+    gaps = (distance**2 / (2 * radius))[None]
+    force, raw = from_the_corner(kernel, gaps, np.zeros(1), np.ones_like(gaps))
+    load = np.geomspace(100.0, 5e5, 50)
+    a = hertz_half_width(2 * load, np.array(radius), LAW.plane_modulus)
+    wanted = 2 * 2 * load * hertz_indentation(a, LAW, module)
+    error = [
+        np.abs(CubicSpline(np.sqrt(force[0]), law[0])(np.sqrt(load)) / wanted - 1).max()
+        for law in (raw, smoothed(force, raw))
+    ]
+    assert error[1] < STEP
+    assert error[0] > 3 * error[1]
