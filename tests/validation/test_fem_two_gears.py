@@ -79,7 +79,7 @@ def test_flank_that_the_corner_cuts_off(free, place):
     """Within a half-width of A, inside the path; a flank's law without the corner is 0.2 to 0.5 % softer there."""
     k, force = INSIDE_A[place]
     assert stiffness(free, place) == pytest.approx(k, rel=5e-4)
-    assert edge_force(free, place, 0) == pytest.approx(443.4 - force, rel=1e-3)
+    assert edge_force(free, place, 0) == pytest.approx(443.4 - force, rel=3e-3)
 
 
 @pytest.mark.parametrize("place", list(HELD))
