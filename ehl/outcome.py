@@ -14,6 +14,7 @@ from ehl.levels import Level, State, figures, spike_of
 from ehl.plan import Plan
 from ehl.response import slopes
 from ehl.run import DRY, Run
+from ehl.supply import OilLayer
 
 _GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
@@ -122,10 +123,15 @@ def _frame(run: Run, fine: Level) -> dict[str, Any]:
 
 def _remedy(run: Run, plan: Plan) -> str:
     """Say what to do about a contact that was not solved."""
-    if plan.fixed and plan.domain[0] > -1.05:
+    layer = isinstance(run.supply, OilLayer)
+    if plan.fixed and not layer and plan.domain[0] > -1.05:
         return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
     if plan.H_c < DRY:
-        return "the film is too thin beside the flattening to be resolved; take the contact as dry (separation 0)"
+        held = "the layer holds the inlet at the edge of the dry contact, and " if layer else ""
+        return (
+            f"{held}the film is too thin beside the flattening to be resolved (h R/b^2 = {plan.H_c:.2g}, below "
+            f"{DRY:g}); take the contact as dry (separation 0)"
+        )
     if run.whole_spike:
         return (
             "with this oil and load the spike is narrower than grids resolve; leave out spike, the film stays"

@@ -9,6 +9,7 @@ from base import Cost, Stopwatch, unclocked
 from ehl.contact import LineContact
 from ehl.grid import clusters
 from ehl.levels import Level, cold, spike_of, warm
+from ehl.meniscus import MeniscusSearch
 from ehl.plan import Plan
 from ehl.supply import OilLayer, Supply
 
@@ -16,8 +17,7 @@ DRY = 1e-5
 """h R/b^2 below which a contact that is not solved is as good as dry."""
 
 _STARTS = (2.0, 8.0)  # films to start from, over the expected one
-_LAYER_DONE = 1e-10  # relative difference of flow and layer
-_LAYER_TRIES = 30
+_LAYER_TRIES = 40
 _MOST_COLD_NODES = 1025
 _MOST_COLD_NODES_DRY = 257  # a film that such a grid does not resolve is as good as none
 _SPIKE_ROUNDS = 5
@@ -111,39 +111,26 @@ class Run:
         return self.cold(n) if n <= self.most_cold else level
 
     def fed(self, level: Level) -> Level:
-        """Move the meniscus until the film carries away what the layer brings.
-
-        The root is sought in ln(distance) by the secant of ln(flow), kept inside what is known to hold it; the
-        plan is left at the meniscus found.
-        """
+        """Move the meniscus until the film carries away what the layer brings; the plan is left at the one found."""
         if not (isinstance(self.supply, OilLayer) and self.plan.fixed and level.found.converged):
             return level
         wanted = self.supply.thickness
-        where, miss = math.log(-1.0 - level.plan.domain[0]), math.log(level.flow / wanted)
-        low, high = -math.inf, math.inf
-        slope = 0.5
+        search = MeniscusSearch.at(-1.0 - level.plan.domain[0], math.log(level.flow / wanted))
         for _ in range(_LAYER_TRIES):
-            if abs(miss) < _LAYER_DONE:
+            if search.done:
                 return level
-            low, high = (max(low, where), high) if miss < 0.0 else (low, min(high, where))
-            step = max(-1.5, min(1.5, -miss / max(slope, 1e-3)))
-            target = where + step
-            if not low < target < high:
-                target = 0.5 * (low + high)
-            plan = level.plan.with_inlet(-1.0 - math.exp(target))
+            if search.stuck:
+                break
+            plan = level.plan.with_inlet(-1.0 - search.distance)
             trial = self.count(warm(level, self.contact, plan, plan.grid(level.grid.nodes.size)))
             if not trial.found.converged:
                 self.restarts += 1
-                high = target if target > where else high
-                low = target if target < where else low
-                slope = 2.0 * slope
+                search.failed()
                 continue
-            miss_new = math.log(trial.flow / wanted)
-            if target != where:
-                slope = max((miss_new - miss) / (target - where), 1e-4)
-            where, miss, level = target, miss_new, trial
+            search.solved(math.log(trial.flow / wanted))
+            level = trial
             self.plan = replace(plan, spike=self.plan.spike)
-        message = "the meniscus that matches the oil layer was not found"
+        message = f"the meniscus that lets a layer of {wanted:.3g} m pass was not found"
         return replace(level, found=replace(level.found, converged=False, message=message))
 
     def sharpened(self, level: Level, n: int) -> Level:

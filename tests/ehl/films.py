@@ -18,9 +18,9 @@ def quiet(contact: LineContact, **options: Any) -> Film:
 
 def sound(film: Film) -> Film:
     """Hold a film to what every solution has to fulfil, whatever the contact."""
-    assert film.converged, film.message
-    assert film.load_error < 1e-12
-    assert film.flux_error < 1e-8
+    assert film.converged, f"{film.contact} with {film.supply}: {film.message}"
+    assert film.load_error < 1e-12, film.contact
+    assert film.flux_error < 1e-8, film.contact
     assert (film.pressure >= 0).all()
     assert (film.thickness > 0).all()
     assert film.minimum_thickness > 0

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from base import RangeWarning
-from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve, solve_path
+from ehl import LineContact, Lubricant, solve, solve_path
 from tests.ehl.films import sound
+from tests.hard.random_contacts import random_contact, refused
 from tests.validation.article import PITCH, SECTION_2
 
 
@@ -18,14 +19,6 @@ def _known_warnings():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
         yield
-
-
-def refused(film):
-    assert not film.converged
-    assert math.isnan(film.central_thickness)
-    assert math.isnan(film.minimum_thickness)
-    assert math.isnan(film.stiffness("tangent"))
-    return film.message
 
 
 def test_uniform_grids_of_the_source_article():
@@ -153,18 +146,6 @@ def test_map_of_moes_numbers():
             sound(solve(LineContact.from_moes(M, L)))
 
 
-def random_contact(rng):
-    """Return a contact of p_H 0.2 to 3 GPa, u 0.05 to 30 m/s, R 2 to 50 mm, eta0 0.005 to 0.5, alpha 10 to 30 /GPa."""
-    while True:
-        viscosity, alpha = np.exp(rng.uniform(np.log(0.005), np.log(0.5))), rng.uniform(10e-9, 30e-9)
-        oil = Lubricant(viscosity, alpha)
-        radius = np.exp(rng.uniform(np.log(2e-3), np.log(50e-3)))
-        load = 2 * np.pi * radius * rng.uniform(0.2e9, 3e9) ** 2 / 2.2e11
-        contact = LineContact(load, np.exp(rng.uniform(np.log(0.05), np.log(30))), radius, 2.2e11, oil)
-        if 0.2 <= oil.z <= 1 and contact.moes_L <= 25:
-            return contact
-
-
 def check_random_contacts(number, sample, reference):
     """Solve random contacts; compare some with a fine grid."""
     rng = np.random.default_rng()
@@ -204,61 +185,6 @@ def test_random_contacts():
     assert sum(f.cost.counts["restarts"] == 0 for f in films) >= 1994
     assert beyond <= 2
     assert above_half <= 2
-
-
-def test_starved_contacts_down_to_the_edge():
-    for X in (-1.3, -1.03, -1.01, -1.002, -1.0005):
-        for load in (PITCH.load, 1e-2 * PITCH.load):
-            contact = replace(PITCH, load=load)
-            film = sound(solve(contact, supply=Meniscus(X * contact.half_width), tolerance=0.01))
-            assert film.stiffness() > 0
-    film = solve(PITCH, supply=Meniscus(-(1 + 1e-7) * PITCH.half_width))
-    if film.converged:
-        assert sound(film).central_thickness < 1e-12
-    else:
-        assert "inlet" in refused(film)
-
-
-def test_supply_towards_zero():
-    last = math.inf
-    for layer in (1e-7, 1e-8, 1e-9):
-        film = sound(solve(PITCH, supply=OilLayer(layer)))
-        assert film.flow == pytest.approx(layer, rel=1e-8)
-        assert film.central_thickness < last
-        last = film.central_thickness
-    assert "inlet" in refused(solve(PITCH, supply=OilLayer(1e-14)))
-
-
-def test_starved_and_light():
-    # a pair about to leave contact: a layer thinner than what the light contact would take
-    for load in (1e4, 1e2, 1.0):
-        contact = replace(PITCH, load=load)
-        flooded = sound(solve(contact))
-        film = sound(solve(contact, supply=OilLayer(0.3 * flooded.flow)))
-        assert film.flow == pytest.approx(0.3 * flooded.flow, rel=1e-8)
-        assert film.stiffness() > flooded.stiffness()
-
-
-def check_random_supplies(number):
-    """Starve random contacts: a meniscus 0.003 to 3 b ahead, a layer of 2 to 95 % of the flooded flow."""
-    rng = np.random.default_rng()
-    for _ in range(number):
-        contact = random_contact(rng)
-        meniscus = Meniscus(-(1 + 10 ** rng.uniform(-2.5, 0.5)) * contact.half_width)
-        sound(solve(contact, supply=meniscus))
-        layer = 10 ** rng.uniform(-1.7, -0.02) * sound(solve(contact)).flow
-        film = sound(solve(contact, supply=OilLayer(layer)))
-        if film.starved:
-            assert film.flow == pytest.approx(layer, rel=1e-8)
-
-
-def test_a_few_random_supplies():
-    check_random_supplies(8)
-
-
-@pytest.mark.slow
-def test_random_supplies():
-    check_random_supplies(300)
 
 
 def test_grids_of_a_neighbour_give_way_to_own_ones():

@@ -1,0 +1,74 @@
+"""Search for the meniscus that lets pass what an oil layer brings: a root in the logarithm of its distance."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+
+_FARTHEST = 1.5  # most that ln(distance) changes at once
+_NEAREST = 1e-6  # a change too small to help a start that fails
+_FLATTEST = 1e-3  # slope of ln(flow) over ln(distance) below which it says nothing
+_DONE = 1e-10  # relative difference of flow and layer
+_ROUNDED = 4.0 * sys.float_info.epsilon  # of the place of the meniscus, which is about one half-width
+
+
+@dataclass
+class MeniscusSearch:
+    """Secant of ln(flow over layer) by ln(distance), kept between places whose flow is known to miss on either side.
+
+    A place that could not be solved says nothing about the root: the next one is tried half as far from the last
+    solution, and steps grow again once one succeeds.
+    """
+
+    where: float  # ln of the distance of the last solution from the dry contact [half-widths]
+    miss: float  # ln(flow/layer) there
+    low: float = -math.inf  # nearer than the root
+    high: float = math.inf  # farther
+    slope: float = 0.5
+    reach: float = _FARTHEST
+    target: float = math.nan  # place to be tried
+
+    @classmethod
+    def at(cls, distance: float, miss: float) -> MeniscusSearch:
+        """Begin at a solution, a distance [half-widths] ahead of the dry contact."""
+        search = cls(math.log(distance), miss)
+        search._aim()
+        return search
+
+    @property
+    def distance(self) -> float:
+        """Distance to be tried [half-widths]."""
+        return math.exp(self.target)
+
+    @property
+    def done(self) -> bool:
+        """Whether the flow is that of the layer, to within what the rounding of the place makes of it."""
+        return abs(self.miss) < max(_DONE, abs(self.slope) * _ROUNDED * math.exp(-self.where))
+
+    @property
+    def stuck(self) -> bool:
+        """Whether no place is left to be tried."""
+        return self.reach < _NEAREST or self.target == self.where
+
+    def failed(self) -> None:
+        """Go half as far."""
+        self.reach = 0.5 * abs(self.target - self.where)
+        self._aim()
+
+    def solved(self, miss: float) -> None:
+        """Take the solution at the target."""
+        self.slope = (miss - self.miss) / (self.target - self.where)
+        self.where, self.miss = self.target, miss
+        self.reach = min(2.0 * self.reach, _FARTHEST)
+        self._aim()
+
+    def _aim(self) -> None:
+        if self.miss < 0.0:
+            self.low = self.where
+        else:
+            self.high = self.where
+        step = -self.miss / max(self.slope, _FLATTEST)
+        if not self.low < self.where + step < self.high:
+            step = 0.5 * ((self.high if self.miss < 0.0 else self.low) - self.where)
+        self.target = self.where + max(-self.reach, min(self.reach, step))
