@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 from base import InputError, SolverError
+from flankfilm.children import Ended, answering_signals
 from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 USER_FAULT = 2
 SOLVER_FAULT = 3
+ROWS_FAILED = 4
 INTERRUPTED = 130
 
 app = App(
@@ -27,6 +29,7 @@ app = App(
     help="Stiffness, oil film and motion of spur-gear pairs; each number with its error and its cost.",
     version=lambda: metadata.version("flankfilm"),
     version_flags=["--version"],
+    suppress_keyboard_interrupt=False,  # it says what is kept
 )
 
 
@@ -149,7 +152,9 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
     with console_rows() as progress:
         found = run_study(plan, out, how, progress)
     _conclude(summary(found), out, write_study(found, out))
-    return SOLVER_FAULT if len(found.failures) == len(found.rows) else 0
+    if found.failures:
+        return SOLVER_FAULT if len(found.failures) == len(found.rows) else ROWS_FAILED
+    return 0
 
 
 @app.command
@@ -277,7 +282,8 @@ for _name, _where, _help in (
 def guarded(command: Callable[[], int]) -> int:
     """Run a command; turn what it raises for the user's sake into messages and exit statuses."""
     try:
-        return command()
+        with answering_signals():
+            return command()
     except InputError as error:
         count = len(error.faults)
         print(f"flankfilm: {count} fault{'s' if count > 1 else ''}", file=sys.stderr)
@@ -294,12 +300,13 @@ def guarded(command: Callable[[], int]) -> int:
         where = f"{error.filename}: " if error.filename else ""
         print(f"flankfilm: {where}{error.strerror or error}", file=sys.stderr)
         return USER_FAULT
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Ended) as stop:
+        how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
         print(
-            "flankfilm: interrupted; files written so far are whole, and the next run resumes from the cache",
+            f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache",
             file=sys.stderr,
         )
-        return INTERRUPTED
+        return 128 + stop.signal if isinstance(stop, Ended) else INTERRUPTED
 
 
 def main() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import subprocess
-import sys
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ import numpy as np
 
 from base import Faults, InputError, SolverError, shorten
 from base.files import replacing
+from flankfilm.children import python
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
 from flankfilm.figures.rendering import View, draw, plotter_of, steps
@@ -222,7 +222,7 @@ def _round(value: float) -> float:
 
 def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:
     """Draw in a process of its own, which a missing OpenGL may kill."""
-    command = [sys.executable, "-m", "flankfilm.figures.rendering"]
+    command = python("-m", "flankfilm.figures.rendering")
     try:
         done = subprocess.run(
             command,

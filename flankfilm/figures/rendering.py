@@ -16,6 +16,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from flankfilm.children import end_with_parent
+
 INK, PAPER = "#1c2126", "#ffffff"
 
 SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
@@ -216,5 +218,6 @@ def _palette() -> Any:
 
 
 if __name__ == "__main__":
+    end_with_parent()
     asked = View(**json.load(sys.stdin))
     show(asked) if asked.window else write(asked)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -12,11 +11,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 from base import InputError
+from flankfilm.children import environment, work_until_told
 
 Kind = Literal["processes", "dask", "mpi"]
 
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 """Variables that limit the threads of libraries."""
+
+ONE_THREAD = dict.fromkeys(THREADS, "1")
+"""Cores are shared by rows, not within."""
 
 
 @dataclass(frozen=True)
@@ -57,16 +60,25 @@ def executor(kind: Kind, workers: int) -> Iterator[Pool]:
         Where the library for it is not installed.
     """
     if kind == "processes":
-        with _single_threaded():
-            pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _leave_interrupts)
-            try:
-                yield Pool(pool, lambda: workers)
-            finally:
-                pool.shutdown(wait=True, cancel_futures=True)
+        yield from _processes(workers)
     elif kind == "dask":
         yield from _dask(workers)
     else:
         yield from _mpi()
+
+
+def _processes(workers: int) -> Iterator[Pool]:
+    context = multiprocessing.get_context("spawn")
+    told, tell = context.Pipe(duplex=False)
+    with environment(**ONE_THREAD), told, tell:
+        pool = ProcessPoolExecutor(workers, context, work_until_told, (told,))
+        try:
+            yield Pool(pool, lambda: workers)
+        except BaseException:
+            tell.close()  # whatever ended us, rows at work are not waited for
+            raise
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _dask(workers: int) -> Iterator[Pool]:
@@ -75,7 +87,7 @@ def _dask(workers: int) -> Iterator[Pool]:
     except ImportError as fault:
         raise _missing("dask", "distributed") from fault
     address = os.environ.get("DASK_SCHEDULER_ADDRESS")
-    with _single_threaded():
+    with environment(**ONE_THREAD):
         client = Client(address) if address else Client(n_workers=workers, threads_per_worker=1)
         with client:
             yield Pool(client.get_executor(), lambda: len(client.nthreads()))
@@ -87,7 +99,7 @@ def _mpi() -> Iterator[Pool]:
     except (ImportError, RuntimeError) as fault:
         raise _missing("mpi", "mpi4py") from fault
     # ranks have started already: they take the settings before they load the libraries that heed them
-    with MPIPoolExecutor(env=dict.fromkeys(THREADS, "1")) as pool:
+    with MPIPoolExecutor(env=ONE_THREAD) as pool:
         try:
             yield Pool(pool, lambda: pool.num_workers)
         finally:
@@ -97,23 +109,3 @@ def _mpi() -> Iterator[Pool]:
 def _missing(kind: str, library: str) -> InputError:
     remedy = f"Install it: python -m pip install 'flankfilm[{kind}]'; or leave --executor out"
     return InputError.at("--executor", kind, f"needs the library {library}", remedy)
-
-
-def _leave_interrupts() -> None:
-    """Let the parent alone answer Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def _single_threaded() -> Iterator[None]:
-    """Have processes that are started meanwhile use one thread each: cores are shared by rows, not within."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -14,7 +14,7 @@ from flankfilm.cache import PACKAGES, code_digest
 from flankfilm.folder import claim
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
-from flankfilm.studies.table import ROWS, Columns, Line, append, locked, read_lines
+from flankfilm.studies.table import ROWS, Columns, Line, append, forget, locked, read_lines
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,8 @@ class KeptRows:
 def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
     """Take up the rows that a folder holds of some work, and note the work in a folder that holds none.
 
+    Rows that failed for want of memory, disk or a process are forgotten, to be computed again.
+
     Parameters
     ----------
     folder : Path
@@ -98,7 +100,12 @@ def _rows_there(folder: Path, work: Work, resume: bool, digest: str) -> list[Lin
         if (folder / ROWS).exists():
             raise InputError.at(folder, "", f"holds {ROWS} without its {note.name}", another)
         return []
-    held = json.loads(note.read_text(encoding="utf-8"))
+    try:
+        held = json.loads(note.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as fault:
+        raise InputError.at(note, "", f"was changed since it was written: {fault}", another) from fault
+    if not isinstance(held, dict):
+        raise InputError.at(note, "", "was changed since it was written: no table of keys", another)
     if held.get(work.kind) != json.loads(json.dumps(work.identity)):
         allowed = f"holds another {work.kind}, or this one with other keys, rows or outputs"
         raise InputError.at(folder, "", allowed, another)
@@ -109,4 +116,7 @@ def _rows_there(folder: Path, work: Work, resume: bool, digest: str) -> list[Lin
     if rows and held.get("code_sha256") != digest:
         allowed = "holds rows that other code or libraries computed"
         raise InputError.at(folder, "", allowed, f"{another} to start anew")
-    return rows
+    once = [line for line in rows if not line.result.worth_another_try]
+    if len(once) < len(rows):
+        forget(folder / ROWS, work.columns, once)
+    return once

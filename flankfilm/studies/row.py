@@ -50,6 +50,15 @@ class RowResult:
     seconds: float
     fault: str = ""
 
+    @property
+    def worth_another_try(self) -> bool:
+        """Whether it failed by what another time, or another machine, may have."""
+        return self.fault.startswith(NOT_COMPUTED)
+
+
+NOT_COMPUTED = "not computed: "
+"""Begins the fault of a row that failed for want of memory, disk or its process, not of a result."""
+
 
 def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
     """Give the result of a row that failed."""
@@ -74,6 +83,9 @@ def compute_row(row: Row) -> RowResult:
             values = tuple(OUTPUTS[name].value(engine) for name in row.outputs)
     except (InputError, SolverError) as fault:
         return failed(row, str(fault), time.perf_counter() - start)
+    except (MemoryError, OSError) as fault:
+        what = f"{NOT_COMPUTED}{type(fault).__name__}: {fault}"
+        return failed(row, what, time.perf_counter() - start)
     except Exception as fault:  # noqa: BLE001 - one row must not end a study of thousands; its fault is kept
         place = traceback.extract_tb(fault.__traceback__)[-1]
         where = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import show_with, view
+from base import Faults, show_with, view
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import Row, RowResult
-from flankfilm.studies.table import Columns
+from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns
+
+
+def refuse_unknown(folder: Path, done: Iterable[int], rows: int) -> None:
+    """Refuse numbers of rows that the plan does not have."""
+    with Faults() as faults:
+        for index in done:
+            if not 0 <= index < rows:
+                faults.add(f"{folder / ROWS}, row {index}", "", f"must be one of 0 to {rows - 1}", WITHOUT_IT)
 
 
 @dataclass(frozen=True)
@@ -77,6 +86,7 @@ def run_study(
     work = Work("study", plan.title, plan.identity(), Columns(plan.keys, plan.outputs))
     with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
         done = {line.result.index: line.result for line in kept.lines}
+        refuse_unknown(folder, done, len(plan.rows))
         missing = [
             Row(index, plan.raw_scene(index), plan.outputs, how.cache)
             for index in range(len(plan.rows))

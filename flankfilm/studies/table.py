@@ -1,7 +1,8 @@
 """Rows on the disk: one CSV file that only grows, so that a study killed at any moment goes on from it.
 
-A row is appended by a single write and forced to the disk. What a power cut may leave is a last line
-without its end, which is cut off when the study is taken up again.
+A row is appended by a single write and forced to the disk, and ends with its checksum. What a power cut may leave is a
+last line without its end, which is cut off when the study is taken up again; any other line that does not fit its
+checksum was changed by somebody, and is refused.
 """
 
 from __future__ import annotations
@@ -10,20 +11,25 @@ import csv
 import io
 import os
 import sys
+import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import InputError
+from base import Faults, InputError
+from base.files import replacing
 from flankfilm.studies.row import RowResult
 
 ROWS = "rows.csv"
 
+ANOTHER_FOLDER = "Name another folder with --out"
+WITHOUT_IT = "Delete the line, and its row is computed again"
+
 
 @dataclass(frozen=True)
 class Columns:
-    """Columns of a table of rows: row, the varied keys, the outputs, cost and fault.
+    """Columns of a table of rows: row, the varied keys, the outputs, cost, fault, and the checksum of these.
 
     Attributes
     ----------
@@ -36,7 +42,7 @@ class Columns:
     @property
     def header(self) -> list[str]:
         """Names of all columns."""
-        return ["row", *self.keys, *self.outputs, "seconds", "fault"]
+        return ["row", *self.keys, *self.outputs, "seconds", "fault", "crc32"]
 
 
 @dataclass(frozen=True)
@@ -62,9 +68,16 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
     if len(whole) < len(data):
         with path.open("rb+") as file:
             file.truncate(len(whole))
-    lines = list(csv.reader(io.StringIO(whole.decode("utf-8"))))
+    try:
+        lines = list(csv.reader(io.StringIO(whole.decode("utf-8"))))
+    except (UnicodeDecodeError, csv.Error) as fault:
+        raise InputError.at(path, "", f"must be a table of rows: {fault}", ANOTHER_FOLDER) from fault
     if lines and lines[0] != columns.header:
-        raise InputError.at(path, "", "must hold the columns of this study", "Name another folder with --out")
+        raise InputError.at(path, "", "must hold the columns of this study", ANOTHER_FOLDER)
+    with Faults() as faults:
+        for number, line in enumerate(lines[1:], start=2):
+            if len(line) != len(columns.header) or _checksum(line[:-1]) != line[-1]:
+                faults.add(f"{path}, line {number}", "", "was changed since it was written", WITHOUT_IT)
     first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
     found = []
     for line in lines[1:]:
@@ -74,15 +87,38 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
     return found
 
 
+def _written(rows: Sequence[Sequence[object]]) -> str:
+    """Rows as they stand in the file."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
+def _checksum(line: Sequence[object]) -> str:
+    return f"{zlib.crc32(_written([line]).encode('utf-8')):08x}"
+
+
+def forget(path: Path, columns: Columns, lines: Sequence[Line]) -> None:
+    """Keep these lines alone: the file is replaced as a whole."""
+    rows: list[Sequence[object]] = [columns.header]
+    rows += [_row(line.values, line.result) for line in lines]
+    with replacing(path) as beside:
+        beside.write_text(_written(rows), encoding="utf-8")
+
+
+def _row(values: Sequence[object], result: RowResult) -> list[object]:
+    """Cells of a row, its checksum last."""
+    line = [result.index, *values, *result.values, result.seconds, result.fault]
+    return [*line, _checksum(line)]
+
+
 def append(path: Path, columns: Columns, values: Sequence[object], result: RowResult) -> None:
     """Add a row with the values of its keys; floats are written so that they read back to the last digit."""
     rows: list[Sequence[object]] = [] if path.exists() and path.stat().st_size else [columns.header]
-    rows.append([result.index, *values, *result.values, result.seconds, result.fault])
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    rows.append(_row(values, result))
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
     try:
-        data = text.getvalue().encode("utf-8")
+        data = _written(rows).encode("utf-8")
         written = os.write(handle, data)
         if written < len(data):  # a full disk: leave no torn line behind
             os.ftruncate(handle, os.fstat(handle).st_size - written)

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from types import TracebackType
 
 from flankfilm.studies.executors import Kind, Pool, executor
-from flankfilm.studies.row import Row, RowResult, compute_row, failed
+from flankfilm.studies.row import NOT_COMPUTED, Row, RowResult, compute_row, failed
 
 AHEAD = 3
 """Rows for each worker that wait in the executor at most: enough to keep it busy, few to lose."""
@@ -37,8 +37,8 @@ class Workers:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Cancel rows that wait, and end the processes."""
-        self._open.close()
+        """Cancel rows that wait, and end the processes; after an error or a signal those at work too."""
+        self._open.__exit__(kind, error, trace)
 
     def computed(self, rows: Iterable[Row]) -> Iterator[RowResult]:
         """Compute rows, in the order in which they are done.
@@ -95,4 +95,4 @@ def _alone(row: Row) -> RowResult:
         try:
             return pool.executor.submit(compute_row, row).result()
         except BrokenExecutor:
-            return failed(row, "the process that computed it died, perhaps for want of memory")
+            return failed(row, f"{NOT_COMPUTED}its process died twice, perhaps for want of memory")

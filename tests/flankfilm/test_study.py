@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -236,8 +237,60 @@ class TestFolder:
             assert found["pair.pinion.profile_shift"].values.tolist() == [row[0] for row in whole.plan.rows]
             assert found.contact_ratio.attrs["units"] == "1"
 
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            (lambda text: text.replace("\n1,", "\n9,", 1), "line [0-9]+: was changed"),
+            (lambda text: text.replace("0.4", "0.5", 1), "was changed since it was written"),
+            (lambda text: text + "garbage\n", "was changed since it was written"),
+            (lambda text: text.encode().replace(b"row", b"\xff\xfe", 1), "must be a table of rows"),
+        ],
+    )
+    def test_rows_that_somebody_changed_are_refused_with_their_line(self, tmp_path, change, message):
+        plan, rows = read_plan(study_file(tmp_path, SHIFTS)), tmp_path / "out" / "rows.csv"
+        run_study(plan, tmp_path / "out", Execution(workers=1))
+        changed = change(rows.read_text(encoding="utf-8"))
+        rows.write_bytes(changed if isinstance(changed, bytes) else changed.encode())
+        with pytest.raises(InputError, match=message):
+            run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
+
+    def test_a_row_that_the_plan_does_not_have_is_refused(self, tmp_path):
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        found = run_study(plan, tmp_path / "out", Execution(workers=1))
+        columns = Columns(plan.keys, plan.outputs)
+        append(tmp_path / "out" / "rows.csv", columns, (0.4,), replace(found.rows[0], index=77))
+        with pytest.raises(InputError, match=r"row 77.*0 to 3"):
+            run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
+
+    @pytest.mark.parametrize("note", ["", "{", "[1]", "null", '{"study": 1}', "[" * 100_000])
+    def test_a_note_that_somebody_changed_is_refused(self, tmp_path, note):
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        run_study(plan, tmp_path / "out", Execution(workers=1))
+        (tmp_path / "out" / "study.json").write_text(note)
+        with pytest.raises(InputError, match=r"study\.json|another study"):
+            run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
+
+    def test_rows_that_only_wanted_memory_are_computed_again(self, tmp_path):
+        from flankfilm.studies.row import NOT_COMPUTED, RowResult
+
+        plan = read_plan(study_file(tmp_path, SHIFTS))
+        found = run_study(plan, tmp_path / "out", Execution(workers=1))
+        rows = tmp_path / "out" / "rows.csv"
+        lines = rows.read_text(encoding="utf-8").splitlines(keepends=True)
+        rows.write_text("".join(line for line in lines if not line.startswith("2,")), encoding="utf-8")
+        dead = RowResult(2, (math.nan,) * len(plan.outputs), 0.1, f"{NOT_COMPUTED}its process died twice")
+        append(rows, Columns(plan.keys, plan.outputs), plan.rows[2], dead)
+        again = run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
+        assert again.computed == 1
+        assert [row.values for row in again.rows] == [row.values for row in found.rows]
+        assert "not computed" not in rows.read_text(encoding="utf-8")
+
 
 class TestCommand:
+    def test_some_rows_failed_is_a_status_of_its_own(self, tmp_path):
+        path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9]')
+        assert "row 1 failed" in run(path, "--out", tmp_path / "out", status=4).stdout
+
     def test_the_study_of_sliding_is_written_and_drawn(self, tmp_path):
         done = run(study_file(tmp_path, SHIFTS), "--out", tmp_path / "out", "--workers", "1")
         assert "4 rows, 4 of them computed" in done.stdout
