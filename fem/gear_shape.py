@@ -121,7 +121,7 @@ def shapes(
                 thickness_allowance=modules(gear.thickness_allowance),
                 tip_chamfer=modules(gear.tip_chamfer),
                 tip_relief=None,
-                blank=None if gear.blank is None else scaled(gear.blank),
+                blank=scaled(gear.blank) if gear.blank is not None and profile.steps else None,
             ),
             pair.rack,
             PlaneElasticity.of(material, plane).plane_poisson,

@@ -16,7 +16,16 @@ def plain_flanks(scene: Scene) -> Scene:
 
 def held_on_hubs(scene: Scene) -> Scene:
     """Give the scene with bores as large as the rigid hubs: what a hub fills carries no stress."""
-    return _changed(scene, lambda gear: {"bore_mm": gear.hub.hub_mm} if gear.hub and gear.hub.hub_mm else {})
+
+    def held(gear: GearSection) -> dict[str, Any]:
+        if gear.hub is None or gear.hub.hub_mm is None:
+            return {}
+        bore, blank = gear.hub.hub_mm, gear.blank
+        if blank is not None and blank.hub_mm is not None and blank.hub_mm < bore:
+            blank = blank.model_copy(update={"hub_mm": None})
+        return {"bore_mm": bore, "blank": blank}
+
+    return _changed(scene, held)
 
 
 def _changed(scene: Scene, change: Callable[[GearSection], dict[str, Any]]) -> Scene:

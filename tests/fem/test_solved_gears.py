@@ -19,7 +19,7 @@ from fem.ring import mesh_and_factor, ring_of
 from fem.solved_gear import MOST_RECORDS, Gears
 from fem.support import FIXED, Support, held_profiles
 from fem.tip_strips import tip_strips
-from gears import BasicRack, Gear, GearPair, Material, TipRelief
+from gears import BasicRack, Blank, Gear, GearPair, Material, TipRelief
 from meshes import Sizes, mesh_sector
 
 COARSE = Sizes().scaled(1.5)
@@ -127,6 +127,7 @@ OTHER = {
     "tip_alteration": -0.01,
     "thickness_allowance": 3e-5,
     "tip_chamfer": 1.1e-4,
+    "blank": Blank(4e-3, 5e-3),
 }
 LIKE = {"tip_relief": TipRelief(2e-5, 1e-3)}
 """What no flexibility depends on."""
@@ -142,6 +143,10 @@ def test_the_key_holds_every_field_of_a_gear():
         changed = replace(PAIR, pinion=replace(PINION, **{name: value}))
         assert key(changed) != key(PAIR), name
         assert key(changed).profile != key(PAIR).profile, name
+    for name, value in {"rim_thickness": 4.1e-3, "web_thickness": 5.1e-3, "hub_radius": 0.009}.items():
+        blank = replace(OTHER["blank"], **{name: value})
+        pairs = (replace(PAIR, pinion=replace(PINION, blank=one)) for one in (blank, OTHER["blank"]))
+        assert len({key(one) for one in pairs}) == 2, name
     for name, value in LIKE.items():
         assert key(replace(PAIR, pinion=replace(PINION, **{name: value}))) == key(PAIR)
 
