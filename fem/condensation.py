@@ -207,7 +207,9 @@ def _rank(order: Integers) -> Integers:
 
 
 def _inverse_of_factor(matrix: Array) -> Array:
-    """L^-1 of a symmetric definite matrix L L^T."""
+    """L^-1 of a symmetric definite matrix L L^T; of none, where a group has no nodes of its own."""
+    if not len(matrix):
+        return matrix
     with unclocked():
         from scipy.linalg.lapack import dtrtri
 

@@ -89,14 +89,14 @@ def held_profiles(pair: GearPair, supports: tuple[Support, Support]) -> tuple[To
     Raises
     ------
     base.InputError
-        A hub inside the bore, one that leaves less than 0.05 modules of rim, or one that reaches into a rim on a web.
+        A hub inside the bore, one that leaves less than 0.05 modules of rim, or less than 0.25 modules of web.
     """
     found, held = Faults(), []
     for name, profile, support in zip(("pinion", "wheel"), pair.teeth_profiles, supports, strict=True):
         radius = profile.bore_radius if support.hub_radius is None else support.hub_radius
         most, left = profile.root_radius - 0.05 * profile.module, "0.05 modules under the root circle"
         if profile.steps:
-            most, left = profile.zones[0].inner, "inside of the rim"
+            most, left = profile.zones[0].inner - 0.25 * profile.module, "0.25 modules of web inside the rim"
         if support.hub_radius is not None and not profile.bore_radius <= radius <= most:
             allowed = f"must be {profile.bore_radius:g} m (bore) to {most:g} m ({left})"
             remedy = "the hub fills the bore and leaves a rim"

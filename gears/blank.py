@@ -17,6 +17,9 @@ LIMITS = {
 THINNEST_RIM = 0.5
 """Rim thickness below which a rim on a web is refused [modules]."""
 
+LOWEST_WEB = 0.25
+"""Height of the web between rim and hub or bore below which it is refused [modules]."""
+
 THINNEST_WEB = 0.05
 """Web thickness over the face width below which it is refused."""
 
@@ -87,13 +90,14 @@ class Blank:
         """
         inside = bore if self.hub_radius is None else self.hub_radius
         below = "bore" if self.hub_radius is None else "hub"
-        if self.hub_radius is not None and not bore <= self.hub_radius <= root - THINNEST_RIM * module:
-            allowed = f"must be {bore:.6g} m to {root - THINNEST_RIM * module:.6g} m"
-            remedy = "the hub lies between the bore and the inside of the rim"
+        least, most = THINNEST_RIM * module, root - LOWEST_WEB * module
+        if self.hub_radius is not None and not bore <= self.hub_radius <= most - least:
+            allowed = f"must be {bore:.6g} m to {most - least:.6g} m"
+            remedy = "the hub lies outside the bore, and leaves half a module of rim and a quarter of web"
             found.add(f"{where}.hub_radius", f"{self.hub_radius:g}", allowed, remedy)
-        elif not THINNEST_RIM * module <= self.rim_thickness <= root - inside:
-            allowed = f"must be {THINNEST_RIM * module:.6g} m to {root - inside:.6g} m"
-            remedy = f"half a module carries the teeth, and the {below} lies inside the rim"
+        elif not least <= self.rim_thickness <= most - inside:
+            allowed = f"must be {least:.6g} m to {most - inside:.6g} m"
+            remedy = f"half a module carries the teeth, and a quarter is left for the web above the {below}"
             found.add(f"{where}.rim_thickness", f"{self.rim_thickness:g}", allowed, remedy)
         if self.web_offset != 0.0:
             remedy = (

@@ -15,6 +15,9 @@ from gears.plane import polar
 from gears.rack import BasicRack
 from gears.trochoid import Trochoid, form_point
 
+THINNEST_HUB = 0.05
+"""Thickness of a hub round its bore below which it is none [modules]."""
+
 
 @dataclass(frozen=True)
 class ToothProfile:
@@ -79,10 +82,13 @@ class ToothProfile:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Rings of the body between root circle and bore, the outermost first: rim, web, hub; one ring in a disc."""
+        """Rings of the body between root circle and bore, the outermost first: rim, web, hub; one ring in a disc.
+
+        A hub of less than 0.05 modules is none.
+        """
         found, outer, thickness = [], self.root_radius, 1.0
         for radius, below in self.steps:
-            if radius > self.bore_radius:
+            if radius > self.bore_radius + THINNEST_HUB * self.module:
                 found.append(Zone(radius, outer, thickness))
                 outer, thickness = radius, below
         return (*found, Zone(self.bore_radius, outer, thickness))

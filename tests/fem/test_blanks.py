@@ -203,5 +203,21 @@ def test_a_rigid_hub_ends_inside_the_rim():
         LAW.shear_modulus,
     )
     assert held.hub_windup[1] * WIDTH == pytest.approx(expected, rel=1e-9)
-    with pytest.raises(InputError, match="inside of the rim"):
+    with pytest.raises(InputError, match=r"0\.25 modules of web"):
         fem.compliance(some, supports=(Support(), Support(hub_radius=inside * 1.001)))
+
+
+@pytest.mark.parametrize(
+    ("teeth", "rim", "web", "hub"),
+    [(12, 0.5, 0.05, None), (17, 2.6, 0.9, 2.2), (120, 0.5, 0.05, 20.0), (400, 2.75, 0.2, 40.06)],
+)
+def test_extreme_blanks_are_solved_to_their_tolerance(capfd, teeth, rim, web, hub):
+    """Rims at their least, rims that end where the gmsh part does, hubs of hardly any thickness; nothing is printed."""
+    blank = Blank(rim * M, web * WIDTH, None if hub is None else hub * M)
+    gear = Gear(teeth, 0.5 if teeth < 17 else 0.0, bore_radius=2 * M if teeth < 100 else 20 * M, blank=blank)
+    some = GearPair(gear, Gear(40), M, WIDTH)
+    bodies, fine = fem.compliance(some, 0.002), fem.compliance(some, 1e-4)
+    assert bodies.converged
+    rho1 = np.linspace(some.points.A, some.points.E, 7)
+    assert np.max(np.abs(bodies.own(rho1) / fine.own(rho1) - 1)) < 0.002
+    assert capfd.readouterr().out == ""

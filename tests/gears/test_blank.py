@@ -48,7 +48,7 @@ def test_all_faults_come_at_once_with_what_is_allowed():
     assert list(found) == [f"wheel.blank.{name}" for name in ("rim_thickness", "web_offset", "web_thickness")]
     assert "three-dimensional" in found["wheel.blank.web_offset"].remedy
     root = pair(None).root_radii[1]
-    assert found["wheel.blank.rim_thickness"].allowed == f"must be 0.0015 m to {root - 0.03:.6g} m"
+    assert found["wheel.blank.rim_thickness"].allowed == f"must be 0.0015 m to {root - 0.03 - 0.25 * M:.6g} m"
     assert found["wheel.blank.web_thickness"].allowed == "must be 0.0015 m to 0.03 m"
     found = refused(Blank(1e-3, 1e-3, hub_radius=0.015))
     assert list(found) == ["wheel.blank.hub_radius", "wheel.blank.web_thickness"]
@@ -63,12 +63,11 @@ def test_all_faults_come_at_once_with_what_is_allowed():
 
 def test_a_blank_that_just_fits_is_accepted():
     root = pair(None).root_radii[1]
-    assert pair(Blank(0.5 * M, 0.05 * WIDTH, hub_radius=0.02)).teeth_profiles[
-        1
-    ].rim_thickness == pytest.approx(0.5 * M)
-    assert pair(Blank(root - 0.03, 9e-3, hub_radius=0.03)).teeth_profiles[1].rim_thickness == pytest.approx(
-        root - 0.03
-    )
+    thin = pair(Blank(0.5 * M, 0.05 * WIDTH, hub_radius=0.02)).teeth_profiles[1]
+    assert thin.rim_thickness == pytest.approx(0.5 * M)
+    assert len(thin.zones) == 2  # the hub is the bore
+    thick = root - 0.03 - 0.2501 * M
+    assert pair(Blank(thick, 9e-3, hub_radius=0.03)).teeth_profiles[1].rim_thickness == pytest.approx(thick)
 
 
 def test_inertia_is_that_of_the_zones():
