@@ -107,10 +107,10 @@ def mesh_cycle(
     tolerance, plane
         As for `compliance`.
     deviations : (gears.GearDeviations or None, gears.GearDeviations or None), optional
-        Profile and pitch deviations of pinion and wheel, on top of tip relief.
+        Profile and pitch deviations of pinion and wheel, and their wear, on top of tip relief.
     pitches : int
         Base pitches, one after another: the pinion's teeth for its revolution, the least common multiple of
-        both numbers of teeth until all repeats. Without pitch deviations every pitch is the same.
+        both numbers of teeth until all repeats. Without deviations of single teeth every pitch is the same.
     first_teeth : (int, int)
         Numbers of the teeth of pinion and wheel that meet at A first.
     tip_rounding : float or (float, float)

@@ -114,8 +114,8 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     number = np.arange(given.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
     steps = np.broadcast_to(number - offset, (given.pitches, positions, len(offset)))
     teeth = np.stack([first + steps for first in given.first_teeth])
-    by_pitch = given.pitch_gap(teeth)
-    gaps = gap + by_pitch
+    by_tooth = given.pitch_gap(teeth) + given.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
+    gaps = gap + by_tooth
     back = np.where(touchable, -given.pitch_gap(teeth, wheel_ahead=1), np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, given.pitches, 1)
@@ -133,7 +133,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
         chamfered=chamfered,
-        reach_gap=_reach_gap(given, reach) + float(np.min(by_pitch)) if given.beyond_path else np.inf,
+        reach_gap=_reach_gap(given, reach) + float(np.min(by_tooth)) if given.beyond_path else np.inf,
     )
 
 

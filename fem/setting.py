@@ -26,7 +26,7 @@ LARGEST_ROUND = 0.2
 """Largest part of the flank [modules] that a rounding of the tip may take."""
 
 MOST_POINTS = 20
-"""Points of a profile deviation up to which each ends an arc of the mesh cycle."""
+"""Points of profile deviations or wear up to which each ends an arc of the mesh cycle."""
 
 COUNT = Limit(1, whole=True)
 FRICTION = Limit(0.0, 0.5, remedy="dry steel has about 0.2, oiled 0.05")
@@ -142,7 +142,7 @@ class Setting:
     @property
     def even(self) -> bool:
         """Whether the flanks are true involutes at equal pitches."""
-        plain = all(some is None or some.pitch is None for some in self._by_gear)
+        plain = all(some is None or some.every_tooth_alike for some in self._by_gear)
         return plain and self.removed is None
 
     @property
@@ -158,8 +158,8 @@ class Setting:
             some, rho = self._by_gear[gear], []
             if profile.tip_relief is not None:
                 rho.append(profile.flank_rho[1] - profile.tip_relief.length)
-            if some is not None and some.profile is not None and len(some.profile.rho) <= MOST_POINTS:
-                rho += some.profile.rho
+            if some is not None:
+                rho += some.corners(MOST_POINTS).tolist()
             places += rho if gear == 0 else [line - one for one in rho]
         if self.friction:
             places.append(pair.points.C)
@@ -168,9 +168,9 @@ class Setting:
 
     @property
     def removed(self) -> tuple[Removed, Removed] | None:
-        """Material missing from pinion's and wheel's flank at curvature radii; None if there is none."""
+        """Material missing from pinion's and wheel's flank at curvature radii, mean of their teeth; None if none is."""
         profiles = self.pair.teeth_profiles
-        curves = [some is not None and some.profile is not None for some in self._by_gear]
+        curves = [some is not None and some.curved for some in self._by_gear]
         if not any(curves) and all(profile.tip_relief is None for profile in profiles):
             return None
 
@@ -194,3 +194,15 @@ class Setting:
         if second is not None:
             gap -= second.late(teeth[1] + wheel_ahead)
         return np.asarray(gap * cos(self.pair.rack.alpha))
+
+    def tooth_gap(self, teeth: Integers, rho: Array) -> Array:
+        """Gap by what teeth (2, ...) lack of the mean of their gear at curvature radii (2, ...) [m].
+
+        `removed` is that mean, by which tip edges have their laws: over a contact of their size what a tooth differs
+        by is taken as even.
+        """
+        gap = np.zeros(teeth.shape[1:])
+        for some, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
+            if some is not None:
+                gap -= some.of_tooth(tooth, place)
+        return gap

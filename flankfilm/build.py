@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import fem
 import gears
-from flankfilm.scene.gears import DeviationsSection, GearSection, PairSection, RackSection
+from flankfilm.scene.gears import GearSection, PairSection, RackSection
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import Section, required
@@ -92,32 +92,3 @@ def supports(scene: Scene) -> tuple[fem.Support, fem.Support] | None:
 def tip_roundings(scene: Scene) -> tuple[float, float]:
     """Radii of the tip edges of pinion and wheel [m]."""
     return _both(required(scene.pair, "[pair]").each, lambda gear: float(gear.value("tip_rounding_um")))
-
-
-def deviations(
-    scene: Scene, pair: gears.GearPair, *, pitch: bool
-) -> tuple[gears.GearDeviations | None, gears.GearDeviations | None] | None:
-    """Deviations of both gears; those of the pitches only where every tooth counts.
-
-    A mesh cycle of one base pitch stands for all teeth: it knows the profiles alone.
-    """
-    first, second = (
-        _deviations(section.deviations, radius, pitch)
-        for section, radius in zip(required(scene.pair, "[pair]").each, pair.base_radii, strict=True)
-    )
-    return (first, second) if first or second else None
-
-
-def _deviations(
-    section: DeviationsSection | None, base_radius: float, pitch: bool
-) -> gears.GearDeviations | None:
-    if section is None:
-        return None
-    curve, given = section.profile, section.si()
-    profile = None if curve is None else gears.ProfileDeviation.over_roll_angle(base_radius, **curve.si())
-    pitches = None
-    if pitch and "single" in given:
-        pitches = gears.PitchDeviations.from_single(given["single"])
-    elif pitch and "cumulative" in given:
-        pitches = gears.PitchDeviations(given["cumulative"])
-    return gears.GearDeviations(profile, pitches) if profile or pitches else None

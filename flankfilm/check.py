@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from flankfilm.build import gear_pair
 from flankfilm.build_film import lubricant
+from flankfilm.build_flanks import deviations
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
 from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN
@@ -33,6 +34,7 @@ def check_scene(scene: Scene) -> list[str]:
     lines = [f"{scene.title or 'The scene'} is valid."]
     if scene.pair is not None:
         pair, warned = _built(gear_pair, scene)
+        deviations(scene, pair, every_tooth=True)
         lines.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."

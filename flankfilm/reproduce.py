@@ -10,9 +10,12 @@ from typing import Any
 from base import InputError, shorten
 from flankfilm.folder import refuse_missing
 from flankfilm.scene import Scene, read_scene
-from flankfilm.scene.reader import LARGEST_FILE, bounded, validated
+from flankfilm.scene.reader import bounded, validated
 
 SUFFIX = ".nc"
+
+LARGEST_SCENE = 100_000_000
+"""Characters of a scene in a results file: it holds the curves of the files that it named."""
 
 
 def scene_in(path: Path) -> tuple[Scene, tuple[str, ...]]:
@@ -51,7 +54,7 @@ def _attributes(path: Path) -> dict[str, str]:
     try:
         with h5py.File(path, "r") as file:
             names = ("scene_json", "versions_json", "code_sha256", "design")
-            return {name: str(file.attrs[name])[: LARGEST_FILE + 1] for name in names if name in file.attrs}
+            return {name: str(file.attrs[name])[: LARGEST_SCENE + 1] for name in names if name in file.attrs}
     except (OSError, UnicodeDecodeError) as fault:
         allowed = f"cannot be read as netCDF: {shorten(str(fault))}"
         raise InputError.at(path, "", allowed, "Name a scene or a results.nc") from fault

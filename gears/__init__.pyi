@@ -2,10 +2,11 @@ from . import closed_form as closed_form
 from .blank import Blank as Blank
 from .deviations import GearDeviations as GearDeviations
 from .deviations import PitchDeviations as PitchDeviations
-from .deviations import ProfileDeviation as ProfileDeviation
 from .errors import GeometryError as GeometryError
 from .errors import GeometryWarning as GeometryWarning
 from .errors import LoadSharingError as LoadSharingError
+from .flank_curves import ProfileDeviation as ProfileDeviation
+from .flank_curves import WearDepth as WearDepth
 from .gear import Gear as Gear
 from .gear import TipRelief as TipRelief
 from .hertz import half_width as half_width

@@ -1,91 +1,19 @@
-"""Deviations of real flanks from the involute: profile curves and pitches, as gaps along the line of action."""
+"""Deviations of real flanks from the involute: profile curves, pitches and wear, as gaps along the line of action."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Fault, Faults
+from base import Array, Fault, Faults, Integers
+from gears.flank_curves import FlankCurve, ProfileDeviation, WearDepth, check_finite, mean_curve, numbers
 
-
-def _numbers(values: ArrayLike) -> tuple[float, ...]:
-    return tuple(float(value) for value in np.atleast_1d(np.asarray(values, dtype=float)).ravel())
-
-
-def _check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
-    if not all(math.isfinite(value) for value in values):
-        found.add(where, "not finite", "must be finite numbers (m)", "leave out points without a value")
-
-
-@dataclass(frozen=True)
-class ProfileDeviation:
-    """Deviation of all flanks of a gear from the involute, a curve over the flank.
-
-    Between its points the curve is the monotone piecewise cubic of Fritsch and Carlson (SIAM J. Numer.
-    Anal. 17, 1980, doi:10.1137/0717021), with one continuous derivative and without overshoot; outside them
-    it keeps the value of the nearest end.
-
-    Parameters
-    ----------
-    rho : (n,) sequence
-        Curvature radii of the flank, growing [m].
-    material : (n,) sequence
-        Material in excess of the involute, normal to the flank [m]: negative where some is missing.
-    """
-
-    rho: tuple[float, ...]  # m
-    material: tuple[float, ...]  # m
-
-    def __post_init__(self) -> None:
-        """Keep the points as plain numbers, so that equal curves compare equal."""
-        object.__setattr__(self, "rho", _numbers(self.rho))
-        object.__setattr__(self, "material", _numbers(self.material))
-
-    @classmethod
-    def over_roll_angle(
-        cls, base_radius: float, roll_angle: ArrayLike, material: ArrayLike
-    ) -> ProfileDeviation:
-        """Curve given over the roll angle xi [rad], rho = r_b xi."""
-        return cls(_numbers(base_radius * np.asarray(roll_angle, dtype=float)), _numbers(material))
-
-    def __repr__(self) -> str:
-        """One line: how many points, and where."""
-        if not self.rho:
-            return "ProfileDeviation(no points)"
-        ends = f"rho {1e3 * self.rho[0]:.6g} to {1e3 * self.rho[-1]:.6g} mm"
-        return f"ProfileDeviation({len(self.rho)} points, {ends})"
-
-    def faults(self, where: str = "profile") -> tuple[Fault, ...]:
-        """All faults of the points, empty when there are none."""
-        found = Faults()
-        _check_finite(found, f"{where}.rho", self.rho)
-        _check_finite(found, f"{where}.material", self.material)
-        if len(self.rho) != len(self.material) or len(self.rho) < 2:
-            points = f"{len(self.rho)} and {len(self.material)} points"
-            found.add(where, points, "must be as many radii as values, at least 2", "give pairs")
-        if not found.found and not np.all(np.diff(self.rho) > 0):
-            remedy = "sort the points and leave out doubles"
-            found.add(f"{where}.rho", "not growing", "must be growing curvature radii", remedy)
-        return tuple(found.found)
-
-    def at(self, rho: float | Array) -> Array:
-        """Excess of material at curvature radii `rho` [m], an array like it [m]."""
-        x, y = np.array(self.rho), np.array(self.material)
-        width, rise = np.diff(x), np.diff(y) / np.diff(x)
-        slope = np.concatenate([rise[:1], np.zeros(len(x) - 2), rise[-1:]])
-        same = np.flatnonzero(rise[:-1] * rise[1:] > 0)
-        left = 2 * width[same + 1] + width[same]
-        right = width[same + 1] + 2 * width[same]
-        slope[same + 1] = (left + right) / (left / rise[same] + right / rise[same + 1])
-        place = np.clip(np.asarray(rho, dtype=float), x[0], x[-1])
-        cell = np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2)
-        t = (place - x[cell]) / width[cell]
-        ends = y[cell] * (1 + 2 * t) * (1 - t) ** 2 + y[cell + 1] * t**2 * (3 - 2 * t)
-        bend = slope[cell] * t * (1 - t) ** 2 - slope[cell + 1] * t**2 * (1 - t)
-        return np.asarray(ends + width[cell] * bend)
+__all__ = ["GearDeviations", "PitchDeviations"]
 
 
 @dataclass(frozen=True)
@@ -113,7 +41,7 @@ class PitchDeviations:
 
     def __post_init__(self) -> None:
         """Keep plain numbers, so that equal deviations compare equal."""
-        object.__setattr__(self, "cumulative", _numbers(self.cumulative))
+        object.__setattr__(self, "cumulative", numbers(self.cumulative))
 
     @classmethod
     def from_single(cls, single: ArrayLike) -> PitchDeviations:
@@ -124,7 +52,7 @@ class PitchDeviations:
         """
         pitches = np.asarray(single, dtype=float).ravel()
         summed = np.cumsum(pitches - pitches.mean()) if pitches.size else pitches
-        return cls(_numbers(summed - summed[0]) if pitches.size else ())
+        return cls(numbers(summed - summed[0]) if pitches.size else ())
 
     def __repr__(self) -> str:
         """One line: how many teeth, and how far their flanks lie apart."""
@@ -140,11 +68,14 @@ class PitchDeviations:
     def faults(self, where: str, teeth: int) -> tuple[Fault, ...]:
         """All faults of the values for a gear of so many teeth, empty when there are none."""
         found = Faults()
-        _check_finite(found, where, self.cumulative)
+        check_finite(found, where, self.cumulative)
         if len(self.cumulative) != teeth:
             count = f"{len(self.cumulative)} values"
             found.add(where, count, f"must be {teeth}, one for each tooth", "give every tooth's")
         return tuple(found.found)
+
+
+C = TypeVar("C", ProfileDeviation, WearDepth)
 
 
 @dataclass(frozen=True)
@@ -153,24 +84,104 @@ class GearDeviations:
 
     Parameters
     ----------
-    profile : ProfileDeviation or None
-        Of all flanks alike.
+    profile : ProfileDeviation, sequence of ProfileDeviation, or None
+        Of all flanks alike, or a trace of each tooth's loaded flank, in the order in which teeth come into mesh.
     pitch : PitchDeviations or None
         Of each tooth.
+    wear : WearDepth, sequence of WearDepth, or None
+        Of all flanks alike, or of each tooth's.
+
+    Notes
+    -----
+    Curves of each tooth are taken apart into the mean of the gear, at the points of the trace that has most, and
+    what each tooth has beyond it. A mesh cycle of one base pitch knows the mean alone (`mean`).
     """
 
-    profile: ProfileDeviation | None = None
+    profile: ProfileDeviation | Sequence[ProfileDeviation] | None = None
     pitch: PitchDeviations | None = None
+    wear: WearDepth | Sequence[WearDepth] | None = None
+
+    def __post_init__(self) -> None:
+        """Keep traces as a tuple, so that equal deviations compare equal."""
+        for name in ("profile", "wear"):
+            given = getattr(self, name)
+            if isinstance(given, Sequence):
+                object.__setattr__(self, name, tuple(given))
 
     def faults(self, where: str, teeth: int) -> tuple[Fault, ...]:
         """All faults for a gear of so many teeth, empty when there are none."""
-        profile = () if self.profile is None else self.profile.faults(f"{where}.profile")
-        pitch = () if self.pitch is None else self.pitch.faults(f"{where}.pitch", teeth)
-        return (*profile, *pitch)
+        found = Faults()
+        for name in ("profile", "wear"):
+            given = getattr(self, name)
+            if isinstance(given, tuple) and len(given) != teeth:
+                count, remedy = f"{len(given)} curves", "give every tooth's, or one for all"
+                found.add(f"{where}.{name}", count, f"must be {teeth}, one for each tooth", remedy)
+            for number, curve in enumerate(_listed(given)):
+                at = f"[{number}]" if isinstance(given, tuple) else ""
+                found.extend(curve.faults(f"{where}.{name}{at}"))
+        found.extend(() if self.pitch is None else self.pitch.faults(f"{where}.pitch", teeth))
+        return tuple(found.found)
+
+    @property
+    def curved(self) -> bool:
+        """Whether there is any curve over the flanks."""
+        return self.profile is not None or self.wear is not None
+
+    @property
+    def every_tooth_alike(self) -> bool:
+        """Whether all teeth have the same flanks at equal pitches."""
+        return self.pitch is None and not isinstance(self.profile, tuple) and not isinstance(self.wear, tuple)
+
+    @cached_property
+    def mean(self) -> GearDeviations:
+        """Curves that stand for all teeth, without pitch deviations."""
+        return replace(self, profile=_mean(self.profile), pitch=None, wear=_mean(self.wear))
+
+    def corners(self, most: int) -> Array:
+        """Curvature radii of the points of profiles, and of those of wear, each where they are at most so many."""
+        found = []
+        for given in (self.profile, self.wear):
+            points = np.unique([rho for curve in _listed(given) for rho in curve.rho])
+            found.append(points if len(points) <= most else points[:0])
+        return np.concatenate(found)
 
     def excess(self, rho: Array) -> Array:
-        """Excess of material at curvature radii [m], an array like `rho` [m]."""
-        return np.zeros_like(rho) if self.profile is None else self.profile.at(rho)
+        """Excess of material at curvature radii, the mean of all teeth, an array like `rho` [m]."""
+        mean, found = self.mean, np.zeros_like(rho)
+        if isinstance(mean.profile, ProfileDeviation):
+            found = found + mean.profile.at(rho)
+        if isinstance(mean.wear, WearDepth):
+            found = found - mean.wear.at(rho)
+        return np.asarray(found)
+
+    def of_tooth(self, tooth: Integers, rho: Array) -> Array:
+        """Excess of material of single teeth beyond the mean of all.
+
+        Parameters
+        ----------
+        tooth : array of int
+            Numbers of any size.
+        rho : array
+            Curvature radii [m]; of a shape that broadcasts with `tooth`.
+
+        Returns
+        -------
+        array
+            Of the shape of both together [m].
+        """
+        tooth, rho = np.broadcast_arrays(np.asarray(tooth), rho)
+        found = np.zeros(tooth.shape)
+        mean = self.mean
+        for sign, each, common in ((1.0, self.profile, mean.profile), (-1.0, self.wear, mean.wear)):
+            if not isinstance(each, tuple):
+                continue
+            assert isinstance(common, ProfileDeviation | WearDepth)
+            found -= sign * common.at(rho)
+            number = tooth % len(each)
+            for k in np.unique(number).tolist():
+                here = number == k
+                found[here] += sign * each[k].at(rho[here])
+        return found
 
     def late(self, tooth: Array) -> Array:
         """Cumulative pitch deviations of teeth, numbers of any size, an array like `tooth` [m]."""
@@ -178,3 +189,14 @@ class GearDeviations:
             return np.zeros(np.shape(tooth))
         values = np.array(self.pitch.cumulative)
         return np.asarray(values[np.asarray(tooth) % len(values)])
+
+
+def _listed(given: FlankCurve | Sequence[FlankCurve] | None) -> tuple[FlankCurve, ...]:
+    """One curve or several as a tuple."""
+    if given is None:
+        return ()
+    return tuple(given) if isinstance(given, Sequence) else (given,)
+
+
+def _mean(given: C | Sequence[C] | None) -> C | None:
+    return mean_curve(given) if isinstance(given, Sequence) else given

@@ -93,12 +93,12 @@ def _error(cycle: fem.MeshCycle, *names: str) -> float:
 def revolution(
     teeth: LoadedTeeth, pitches: int | None = None, first_teeth: tuple[int, int] = (0, 0)
 ) -> fem.MeshCycle:
-    """Mesh cycle tooth by tooth, with pitch deviations, by finite elements: curves alone, without events and arcs.
+    """Mesh cycle tooth by tooth, with deviations of each, by finite elements: curves alone, without events and arcs.
 
     Parameters
     ----------
     teeth : LoadedTeeth
-        With the deviations of the pitches in its flanks.
+        With the deviations of single teeth in its flanks.
     pitches : int, optional
         Base pitches; a revolution of the pinion unless given.
     first_teeth : (int, int)

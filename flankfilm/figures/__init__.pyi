@@ -9,6 +9,7 @@ from .film import film_families as film_families
 from .film import film_profiles as film_profiles
 from .film import film_shares as film_shares
 from .film import film_stiffness as film_stiffness
+from .flanks import flanks as flanks
 from .gear import gears_in_mesh as gears_in_mesh
 from .gear import kinematics as kinematics
 from .gear import root_stress as root_stress

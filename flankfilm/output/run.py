@@ -13,9 +13,11 @@ import numpy as np
 from base import Quantity
 from base.results import figures
 from flankfilm.build import pinion_speed
+from flankfilm.build_flanks import deviations
 from flankfilm.figures import drawn
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.files import provenance, write_csv, write_netcdf
+from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
 from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
@@ -71,6 +73,14 @@ TABLES: Mapping[str, Table] = {
         "position",
         ("position", "transmission_error", "unloaded_transmission_error", "secant_stiffness"),
     ),
+    **{
+        f"flank_{gear}": Table(
+            f"flank_{gear}",
+            "diameter",
+            ("tooth", "diameter", "material", "mean_material", "wear", "mean_wear"),
+        )
+        for gear in GEARS
+    },
     **{f"root_stress_{gear}": Table(f"root_{gear}", "travel", axis="instant") for gear in GEARS},
     **{f"fillet_stress_{gear}": Table(f"fillet_{gear}", "arc", axis="arc") for gear in GEARS},
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
@@ -97,7 +107,10 @@ def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
     """
     decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
     attributes = {"title": scene.title, **decided, **provenance(scene.model_dump_json())}
-    return merged(_records(values, _speed(scene)), attributes)
+    parts = list(_records(values, _speed(scene)))
+    if (pair := values.get("pair")) is not None:
+        parts += measured_flanks(pair, deviations(scene, pair, every_tooth=True))
+    return merged(parts, attributes)
 
 
 def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:

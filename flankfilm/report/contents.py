@@ -100,6 +100,8 @@ def _result_parts(results: Results) -> list[Part]:
     parts = []
     if pair is not None:
         parts.append(mesh_parts.geometry(pair, data))
+        if any(f"flank_{gear}_diameter" in data for gear in ("pinion", "wheel")):
+            parts.append(mesh_parts.flanks(data))
         if cycle is not None:
             cycles = list(dict.fromkeys((cycle, values["dry cycle"], *values.get("other cycles", ()))))
             notes, width = _film_notes(results, film), pair.face_width

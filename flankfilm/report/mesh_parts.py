@@ -81,6 +81,11 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     return Part("geometry", "Geometry", figures=drawn, tables=tables)
 
 
+def flanks(results: xr.Dataset) -> Part:
+    """Deviations and wear of the flanks."""
+    return Part("flanks", "Flanks", figures=pictures(results, "flanks"))
+
+
 def stiffness(
     single: SinglePairs | None,
     cycles: Sequence[MeshCycle],

@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import UnionType
-from typing import Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -127,8 +127,8 @@ def _field_at(location: Sequence[Any], model: type[BaseModel]) -> FieldInfo | No
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Model of a table that may stand at a key."""
-    if get_origin(annotation) in (Union, UnionType):
+    """Model of a table, or of a list of tables, that may stand at a key."""
+    if get_origin(annotation) in (Union, UnionType, Annotated, tuple):
         return next((m for m in map(model_in, get_args(annotation)) if m is not None), None)
     return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
 

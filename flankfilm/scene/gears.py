@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
-from typing import Annotated, ClassVar, Literal
+from typing import ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from base import Limit
+from base import InputError, Limit
+from flankfilm.scene.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 from gears.blank import LIMITS as BLANK
@@ -17,8 +17,6 @@ from gears.material import LIMITS as MATERIAL
 from gears.pair import BACKLASH
 from gears.pair import LIMITS as PAIR
 from gears.rack import LIMITS as RACK
-
-Numbers = Annotated[tuple[float, ...], Field(strict=False)]
 
 
 class RackSection(Section):
@@ -40,57 +38,6 @@ class ReliefSection(Section):
     amount_um: float = key("material removed at the tip", example=20)
     length_mm: float = key("length along the path of contact, from the tip", example=2.0)
     form: Literal["linear", "parabolic"] = key("how the relief grows towards the tip", "linear")
-
-
-class ProfileSection(Section):
-    """Deviation of all flanks of a gear from the involute, a smooth curve through points."""
-
-    roll_deg: Numbers = key(
-        "roll angles of the points, rising",
-        of="roll_angle",
-        example=(10.0, 20.0, 28.0),
-        min_length=2,
-        max_length=10_000,
-    )
-    material_um: Numbers = key(
-        "deviation at each point, normal to the flank; positive: too much material",
-        example=(0.0, 0.0, -10.0),
-        min_length=2,
-        max_length=10_000,
-    )
-
-    @model_validator(mode="after")
-    def _pairs_that_rise(self) -> ProfileSection:
-        angles, values = len(self.roll_deg), len(self.material_um)
-        if angles != values:
-            raise refused(f"must have as many roll_deg as material_um, not {angles} and {values}")
-        if any(b <= a for a, b in itertools.pairwise(self.roll_deg)):
-            raise refused("must rise from point to point", where="roll_deg")
-        return self
-
-
-class DeviationsSection(Section):
-    """Deviations of one gear's flanks: a profile for all, and the pitches of its teeth (ISO 1328)."""
-
-    profile: ProfileSection | None = key("deviation of every flank; none if left out", None)
-    single_pitch_um: Numbers | None = key(
-        "single pitch deviations, one for each tooth in the order of meshing",
-        None,
-        of="single",
-        such_as=(2.0, -3.0, 1.0),
-    )
-    cumulative_pitch_um: Numbers | None = key(
-        "cumulative pitch deviations instead of the single ones",
-        None,
-        of="cumulative",
-        such_as=(2.0, -1.0, 0.0),
-    )
-
-    @model_validator(mode="after")
-    def _one_kind_of_pitch(self) -> DeviationsSection:
-        if len(self.given("single_pitch_um", "cumulative_pitch_um")) > 1:
-            raise refused("must have single_pitch_um or cumulative_pitch_um, not both", "Leave one out")
-        return self
 
 
 class BlankSection(Section):
@@ -162,6 +109,11 @@ class GearSection(Section):
         None,
         such_as={"profile": {"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)}},
     )
+    wear: WearSection | None = key(
+        "material worn off the loaded flanks; none if left out",
+        None,
+        such_as={"roll_deg": (10.0, 20.0, 28.0), "depth_um": (12.0, 0.0, 5.0)},
+    )
     hub: HubSection | None = key(
         "rigid hub on a shaft and bearings that yield; a rigid shaft in the bore if left out",
         None,
@@ -170,12 +122,9 @@ class GearSection(Section):
     )
 
     @model_validator(mode="after")
-    def _a_pitch_for_each_tooth(self) -> GearSection:
-        for name in ("single_pitch_um", "cumulative_pitch_um"):
-            values = getattr(self.deviations, name, None)
-            if values is not None and len(values) != self.teeth:
-                allowed = f"must have one value for each of {self.teeth} teeth"
-                raise refused(allowed, where=f"deviations.{name}", value=f"{len(values)} values")
+    def _an_entry_for_each_tooth(self) -> GearSection:
+        if faults := tuple(wrong_counts(self.teeth, self.deviations, self.wear)):
+            raise InputError(faults)
         return self
 
 

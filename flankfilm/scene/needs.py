@@ -41,7 +41,8 @@ def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     asked += ["dynamics.stiffness_reference"] if _table(raw, "dynamics").get("stiffness_reference") else []
     for gear in ("pinion", "wheel"):
         keys = _table(_table(raw, "pair"), gear)
-        asked += [f"pair.{gear}.{key}" for key in ("tip_rounding_um", "deviations", "hub") if keys.get(key)]
+        known = ("tip_rounding_um", "deviations", "wear", "hub")
+        asked += [f"pair.{gear}.{key}" for key in known if keys.get(key)]
     return asked
 
 

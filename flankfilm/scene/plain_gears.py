@@ -10,8 +10,9 @@ from flankfilm.scene.schema import Scene
 
 
 def plain_flanks(scene: Scene) -> Scene:
-    """Give the scene with gears that have no relief, deviations or rounded edges: no mesh shows them."""
-    return _changed(scene, lambda gear: {"tip_relief": None, "deviations": None, "tip_rounding_um": 0.0})
+    """Give the scene with gears that have no relief, deviations, wear or rounded edges: no mesh shows them."""
+    plain = {"tip_relief": None, "deviations": None, "wear": None, "tip_rounding_um": 0.0}
+    return _changed(scene, lambda gear: plain)
 
 
 def held_on_hubs(scene: Scene) -> Scene:

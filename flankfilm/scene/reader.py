@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from base import InputError
+from base import Fault, InputError
 from flankfilm.folder import content_of
 from flankfilm.scene.explain import explain_all
+from flankfilm.scene.flank_files import read_flank_files
 from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.schema import Scene
 
@@ -52,11 +54,11 @@ def read_scene(path: Path) -> Scene:
     >>> read_scene(Path("pair.toml")).tolerance
     0.005
     """
-    return parse_scene(read_text(path), name=str(path))
+    return parse_scene(read_text(path), name=str(path), folder=path.parent)
 
 
-def parse_scene(text: str, name: str = "scene") -> Scene:
-    """Check the text of a scene file; see `read_scene`.
+def parse_scene(text: str, name: str = "scene", folder: Path = Path()) -> Scene:
+    """Check the text of a scene file, which names other files from a folder; see `read_scene`.
 
     Examples
     --------
@@ -64,7 +66,9 @@ def parse_scene(text: str, name: str = "scene") -> Scene:
     >>> parse_scene(template()).operating.pinion_torque_Nm
     600.0
     """
-    return validated(parse_toml(text, name))
+    raw = parse_toml(text, name)
+    refuse_long_lists(raw)
+    return validated(raw, read_flank_files(raw, folder))
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:
@@ -111,10 +115,10 @@ def read_text(path: Path) -> str:
         raise InputError.at(path, "", "is not a text file (TOML in UTF-8)") from fault
 
 
-def validated(raw: dict[str, Any]) -> Scene:
-    """Check the keys of a scene; see `read_scene`."""
+def validated(raw: dict[str, Any], faults: Sequence[Fault] = ()) -> Scene:
+    """Check the keys of a scene in which other files have been found faulty; see `read_scene`."""
     refuse_long_lists(raw)
-    between = faults_between_sections(raw)
+    between = [*faults, *faults_between_sections(raw)]
     try:
         scene = Scene.model_validate(raw)
     except ValidationError as error:

@@ -16,8 +16,9 @@ import dynamics
 import fem
 import gears
 from flankfilm import coupling
-from flankfilm.build import deviations, gear_pair, pinion_speed, pinion_torque, supports, tip_roundings
+from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings
 from flankfilm.build_film import film_model, lubricant
+from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
@@ -45,8 +46,10 @@ _TEETH_DECIDED = _decided(
 
 @stage("pair", "geometry", "pair material")
 def PAIR(run: Engine) -> gears.GearPair:
-    """Geometry of the scene's pair."""
-    return gear_pair(run.scene)
+    """Geometry of the scene's pair; curves that do not fit its flanks are refused before anything is computed."""
+    pair = gear_pair(run.scene)
+    deviations(run.scene, pair, every_tooth=True)
+    return pair
 
 
 @stage(
@@ -107,13 +110,15 @@ def COMPLIANCE(run: Engine) -> fem.Compliance:
     return replace(run[BODIES], pair=run[PAIR])
 
 
-def loaded_teeth(run: Engine, *, by_elements: bool = False, pitch: bool = False) -> coupling.LoadedTeeth:
-    """Pair under the scene's torque with its model; with deviations of the pitches where every tooth counts."""
+def loaded_teeth(
+    run: Engine, *, by_elements: bool = False, every_tooth: bool = False
+) -> coupling.LoadedTeeth:
+    """Pair under the scene's torque with its model; with the deviations of each where every tooth counts."""
     scene, pair = run.scene, run[PAIR]
     model = "fem" if by_elements else run[PLAN].stiffness.choice
     flanks = coupling.Flanks(
         scene.stiffness.contact_beyond_path,
-        deviations(scene, pair, pitch=pitch),
+        deviations(scene, pair, every_tooth=every_tooth),
         tip_roundings(scene),
         scene.operating.friction if scene.operating else 0.0,
         scene.stiffness.moving_contact,
@@ -162,10 +167,10 @@ def TORQUES(run: Engine) -> coupling.TorqueCurves:
 
 @stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE)
 def REVOLUTION(run: Engine) -> fem.MeshCycle:
-    """Mesh cycle tooth by tooth, with pitch deviations."""
+    """Mesh cycle tooth by tooth, with the deviations of each."""
     operating = run.scene.operating
     assert operating is not None
-    teeth = loaded_teeth(run, by_elements=True, pitch=True)
+    teeth = loaded_teeth(run, by_elements=True, every_tooth=True)
     return coupling.revolution(teeth, operating.pitches, operating.first_teeth)
 
 

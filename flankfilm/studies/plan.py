@@ -17,6 +17,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from base import Fault, Faults, InputError
 from flankfilm.scene.explain import explain_all
+from flankfilm.scene.flank_files import names_a_file, read_flank_files, without_curves
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists, validated
 from flankfilm.scene.section import Section
 from flankfilm.studies.outputs import OUTPUTS
@@ -161,6 +162,8 @@ class Plan:
     design : str
     varied : int
         How many of the keys are varied by themselves.
+    folder : Path
+        From where values that are files are named.
     """
 
     title: str
@@ -170,17 +173,25 @@ class Plan:
     rows: tuple[tuple[Value, ...], ...]
     design: str
     varied: int
+    folder: Path = Path()
 
     def raw_scene(self, row: int) -> dict[str, Any]:
-        """Keys of a row's scene."""
+        """Keys of a row's scene, with the curves of files that vary."""
         raw = deepcopy(dict(self.scene))
         for key, value in zip(self.keys, self.rows[row], strict=True):
             put(raw, key, value)
+            if names_a_file(key):
+                without_curves(raw, key)
+        if files := list(filter(names_a_file, self.keys)):
+            _refuse(read_flank_files(raw, self.folder, files))
         return raw
 
     def identity(self) -> dict[str, Any]:
         """What makes two plans the same study, as plain values."""
-        held = {"scene": self.scene, "outputs": self.outputs, "keys": self.keys, "rows": self.rows}
+        rows: Sequence[Any] = self.rows
+        if any(map(names_a_file, self.keys)):  # a file of the same name may hold something else
+            rows = [self.raw_scene(row) for row in range(len(self.rows))]
+        held = {"scene": self.scene, "outputs": self.outputs, "keys": self.keys, "rows": rows}
         plain: dict[str, Any] = json.loads(json.dumps(held))
         return plain
 
@@ -226,7 +237,14 @@ def plan_of(study: StudyFile, folder: Path) -> Plan:
         by_key = dict(zip(varied, values, strict=True))
         rows.append((*values, *(following(by_key, rule) for rule in study.follow.values())))
     plan = Plan(
-        study.title, scene, tuple(dict.fromkeys(study.outputs)), keys, tuple(rows), study.design, len(varied)
+        study.title,
+        scene,
+        tuple(dict.fromkeys(study.outputs)),
+        keys,
+        tuple(rows),
+        study.design,
+        len(varied),
+        folder,
     )
     _check_rows(plan)
     return plan
@@ -238,14 +256,21 @@ def base_scene(
     """Keys of a scene named from `folder`, or given, with what is set and what the outputs want."""
     if isinstance(scene, str):
         path = folder / scene
-        raw = parse_toml(read_text(path), str(path))
+        raw, beside = parse_toml(read_text(path), str(path)), path.parent
     else:
-        raw = deepcopy(scene)
+        raw, beside = deepcopy(scene), folder
     for key, value in fixed.items():
         put(raw, key, value)
+    _refuse(read_flank_files(raw, beside))
     # what a row computes follows from the outputs, not from the scene's own wants
     raw["wants"] = sorted({want for name in outputs for want in OUTPUTS[name].wants})
     return raw
+
+
+def _refuse(faults: Sequence[Fault]) -> None:
+    """Refuse files of flanks that have faults."""
+    if faults:
+        raise InputError(faults)
 
 
 def put(raw: dict[str, Any], key: str, value: Value) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 import fem
 from base import InputError
-from gears import Gear, GearDeviations, GearPair, PitchDeviations, ProfileDeviation, TipRelief
+from gears import Gear, GearDeviations, GearPair, PitchDeviations, ProfileDeviation, TipRelief, WearDepth
 
 COS = np.cos(np.radians(20.0))
 
@@ -178,6 +178,114 @@ def test_back_flanks_keep_the_backlash(article_pair, article_bodies):
     assert shut.back_gap.min() == pytest.approx(80e-6 - 30e-6 * COS, rel=1e-9)
 
 
+def curve_over(profile, seed):
+    """A smooth random profile of some micrometres."""
+    rho = np.linspace(*profile.flank_rho, 9)
+    return ProfileDeviation(rho, np.random.default_rng(seed).normal(0.0, 3e-6, 9))
+
+
+def test_equal_traces_of_all_teeth_are_one_profile(article_pair, article_bodies):
+    curves = [curve_over(profile, seed) for seed, profile in enumerate(article_pair.teeth_profiles)]
+    late = PitchDeviations(np.random.default_rng(5).normal(0.0, 4e-6, 36))
+    one = (GearDeviations(curves[0], late), GearDeviations(curves[1]))
+    each = (GearDeviations([curves[0]] * 36, late), GearDeviations([curves[1]] * 40))
+    given = {"positions": 10, "compliance": article_bodies, "pitches": 40, "tip_rounding": 20e-6}
+    single = fem.mesh_cycle(article_pair, 400.0, deviations=one, **given)
+    traced = fem.mesh_cycle(article_pair, 400.0, deviations=each, **given)
+    for name in ("transmission_error", "unloaded_transmission_error", "stiffness", "forces", "back_gap"):
+        np.testing.assert_allclose(
+            getattr(traced, name), getattr(single, name), rtol=1e-12, atol=1e-20, err_msg=name
+        )
+
+
+@pytest.mark.parametrize("gear", [0, 1])
+def test_one_tooth_moves_only_where_it_meshes(article_pair, article_bodies, gear):
+    count, flank = (36, 40)[gear], article_pair.teeth_profiles[gear].flank_rho
+    base = ProfileDeviation(flank, [0.0, -3e-6])
+    other = ProfileDeviation(np.linspace(*flank, 5), [0.0, -4e-6, -12e-6, -4e-6, -3e-6])
+    curves = [base] * count
+    curves[7] = other
+    both, same = [None, None], [None, None]
+    both[gear], same[gear] = GearDeviations(curves), GearDeviations([base] * count)
+    given = {"positions": 20, "compliance": article_bodies, "beyond_path": False, "pitches": 12}
+    moved = fem.mesh_cycle(article_pair, 600.0, deviations=both, **given)
+    plain = fem.mesh_cycle(article_pair, 600.0, deviations=same, **given)
+    meshes = (moved.position > 7) & (moved.position < 7 + article_pair.contact_ratio)
+    change = moved.transmission_error - plain.transmission_error
+    np.testing.assert_allclose(change[~meshes], 0.0, atol=1e-15)
+    assert np.all(change[meshes] > 1e-8)
+    # without load, where it meshes alone, by what it lacks at the point of contact
+    alone = meshes & (np.sum(moved.flank_rho[0] > 0, axis=1) == 1)
+    assert alone.any()
+    rho = moved.flank_rho[gear][alone]
+    rho = rho[np.isfinite(rho)]
+    gap = moved.unloaded_transmission_error[alone]
+    np.testing.assert_allclose(gap, -other.at(rho), rtol=1e-12)
+
+
+def test_relabelled_teeth_shift_the_revolution(article_pair, article_bodies):
+    shift, rng = 5, np.random.default_rng(8)
+    sets = []
+    for count, profile in zip((36, 40), article_pair.teeth_profiles, strict=True):
+        curves = [curve_over(profile, seed) for seed in rng.integers(0, 10**6, count)]
+        sets.append(
+            (curves, rng.normal(0.0, 4e-6, count), [worn(profile, d) for d in rng.uniform(0, 5e-6, count)])
+        )
+    first = [GearDeviations(c, PitchDeviations(late), w) for c, late, w in sets]
+    rolled = [
+        GearDeviations(c[shift:] + c[:shift], PitchDeviations(np.roll(late, -shift)), w[shift:] + w[:shift])
+        for c, late, w in sets
+    ]
+    given = {"positions": 6, "compliance": article_bodies, "tip_rounding": 20e-6}
+    long = fem.mesh_cycle(article_pair, 300.0, deviations=first, pitches=30 + shift, **given)
+    later = fem.mesh_cycle(article_pair, 300.0, deviations=rolled, pitches=30, **given)
+    rows = slice(6 * shift, None)
+    np.testing.assert_allclose(later.transmission_error, long.transmission_error[rows], rtol=1e-9)
+    np.testing.assert_allclose(later.forces, long.forces[rows], rtol=1e-7, atol=1e-6)
+    # and the whole repeats after the least common multiple of the teeth
+    error = fem.unloaded_transmission_error(article_pair, 2, deviations=first, pitches=2 * 360)
+    np.testing.assert_array_equal(error[: 2 * 360], error[2 * 360 :])
+
+
+def worn(profile, depth, form="linear"):
+    """Wear from nothing at the middle of the flank to a depth at both of its ends."""
+    low, high = profile.flank_rho
+    return WearDepth([low, 0.5 * (low + high), high], [depth, 0.0, depth], form)
+
+
+def test_wear_as_deep_as_linear_relief_is_that_relief():
+    relief = TipRelief(12e-6, 1.9e-3)
+    eased = GearPair(Gear(36, tip_relief=relief), Gear(40, tip_relief=relief), 2e-3, 0.04)
+    plain = GearPair(Gear(36), Gear(40), 2e-3, 0.04)
+    wear = []
+    for profile in eased.teeth_profiles:
+        low, high = profile.flank_rho
+        wear.append(GearDeviations(wear=WearDepth([low, high - 1.9e-3, high], [0.0, 0.0, 12e-6], "linear")))
+    bodies = fem.compliance(plain)
+    one = fem.mesh_cycle(plain, 400.0, 20, bodies, deviations=wear)
+    two = fem.mesh_cycle(eased, 400.0, 20, fem.compliance(eased))
+    for name in ("transmission_error", "stiffness", "load_share", "gaps"):
+        np.testing.assert_allclose(
+            getattr(one, name), getattr(two, name), rtol=1e-10, atol=1e-18, err_msg=name
+        )
+    assert one.transmission_error_range == pytest.approx(two.transmission_error_range, rel=1e-8)
+
+
+def test_wear_takes_material_off_what_is_there(article_pair):
+    """Flanks in excess by as much as they are worn are true involutes; of each tooth or of all alike."""
+    profile = article_pair.teeth_profiles[0]
+    wear = worn(profile, 8e-6, "smooth")
+    thick = ProfileDeviation(wear.rho, wear.depth)
+    for given in (wear, [wear] * 36):
+        error = fem.unloaded_transmission_error(
+            article_pair, 20, deviations=(GearDeviations(thick, wear=given), None)
+        )
+        np.testing.assert_allclose(error, 0.0, atol=1e-20)
+    even = WearDepth(profile.flank_rho, [5e-6, 5e-6])
+    error = fem.unloaded_transmission_error(article_pair, 20, False, (GearDeviations(wear=even), None))
+    np.testing.assert_allclose(error, 5e-6, rtol=1e-12)  # the wheel lags
+
+
 def test_all_faults_at_once(article_pair, article_bodies):
     with pytest.raises(InputError) as caught:
         fem.mesh_cycle(
@@ -185,7 +293,10 @@ def test_all_faults_at_once(article_pair, article_bodies):
             -1.0,
             2.5,
             article_bodies,
-            deviations=(pitch([0.0] * 3), GearDeviations(ProfileDeviation([1.0], [0.0]))),
+            deviations=(
+                GearDeviations([ProfileDeviation([1.0, 2.0], [0.0, 0.0])] * 35, PitchDeviations([0.0] * 3)),
+                GearDeviations(ProfileDeviation([1.0], [0.0]), wear=WearDepth([1.0, 2.0], [0.0, -1e-6])),
+            ),
             pitches=0,
             first_teeth=(1, 0.5),
             tip_rounding=-1e-6,
@@ -198,8 +309,10 @@ def test_all_faults_at_once(article_pair, article_bodies):
         "pitches",
         "first_teeth",
         "tip_rounding",
+        "deviations[0].profile",
         "deviations[0].pitch",
         "deviations[1].profile",
+        "deviations[1].wear.depth",
     }
     for bad in ((1e-6, 1e-6, 1e-6), float("nan"), "sharp", (None, 0.0), True):
         with pytest.raises(InputError, match="tip_rounding"):

@@ -44,7 +44,7 @@ tolerance = 0.05
 module_mm = 2.0
 face_width_mm = 40.0
 pinion = { teeth = 23, bore_mm = 20 }
-wheel = { teeth = 25, bore_mm = 20 }
+wheel = { teeth = 25, bore_mm = 20, wear = { roll_deg = [15, 25, 35], depth_um = [0, 1, 0] } }
 backlash_um = 50
 [material]
 youngs_modulus_GPa = 206
@@ -72,8 +72,9 @@ SIMPLE = f'wants = ["stiffness"]\n{PAIR}\n[stiffness]\nmodel = "ishikawa"\npairs
 
 OF_A_RUN = (
     figures.diagram, figures.film_along_path, figures.film_changes, figures.film_profiles, figures.film_shares,
-    figures.film_stiffness, figures.fourier, figures.gears_in_mesh, figures.kinematics, figures.load_share,
-    figures.mesh_stiffness, figures.over_torque, figures.portraits, figures.revolution, figures.root_stress,
+    figures.film_stiffness, figures.flanks, figures.fourier, figures.gears_in_mesh, figures.kinematics,
+    figures.load_share, figures.mesh_stiffness, figures.over_torque, figures.portraits, figures.revolution,
+    figures.root_stress,
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
 OF_OTHERS = {"optimum", "study", "verification"}

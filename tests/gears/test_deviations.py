@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 
-from gears import GearDeviations, PitchDeviations, ProfileDeviation
+from gears import GearDeviations, PitchDeviations, ProfileDeviation, WearDepth
 
 
 def test_the_curve_passes_through_its_points_and_does_not_overshoot():
@@ -78,3 +78,41 @@ def test_all_faults_at_once_and_travel():
     good = GearDeviations(ProfileDeviation([1.0, 2.0], [0.0, 1.0]), PitchDeviations([0.0] * 3))
     assert good.faults("x", 3) == ()
     assert pickle.loads(pickle.dumps(good)) == good
+
+
+def test_straight_lines_between_points():
+    at = np.linspace(0.5, 4.5, 41)
+    curve = ProfileDeviation([1.0, 2.0, 4.0], [0.0, 3.0, -1.0], "linear")
+    np.testing.assert_allclose(curve.at(at), np.interp(at, curve.rho, curve.material), rtol=1e-15)
+    assert ProfileDeviation([1.0, 2.0], [0.0, 1.0], "cubic").faults()[0].where == "profile.form"
+
+
+def test_traces_are_their_mean_and_what_each_tooth_has_beyond():
+    rng = np.random.default_rng(4)
+    traces = [ProfileDeviation(np.sort(rng.uniform(1, 2, n)), rng.normal(size=n)) for n in (5, 9, 7)]
+    gear = GearDeviations(traces, wear=[WearDepth([1.0, 2.0], [d, 0.0]) for d in (0.0, 1.0, 2.0)])
+    rho, tooth = np.linspace(1, 2, 11), np.array([[0], [1], [2], [-1], [4]])
+    own = gear.excess(rho) + gear.of_tooth(tooth, rho)
+    for row, k in enumerate((0, 1, 2, 2, 1)):
+        np.testing.assert_allclose(own[row], traces[k].at(rho) - k * (2.0 - rho), atol=1e-14)
+    # at the points of the trace that has most, the mean is that of all traces
+    points = np.array(traces[1].rho)
+    mean = np.mean([trace.at(points) for trace in traces], axis=0)
+    np.testing.assert_allclose(gear.mean.profile.at(points), mean, atol=1e-14)
+    assert gear.mean.mean == gear.mean
+    assert gear.mean.every_tooth_alike
+    assert not gear.every_tooth_alike
+    equal = GearDeviations([traces[0]] * 7)
+    assert equal.mean.profile == traces[0]
+    np.testing.assert_array_equal(equal.of_tooth(np.arange(9)[:, None], rho), 0.0)
+
+
+def test_faults_of_traces_and_wear():
+    good, bad = ProfileDeviation([1.0, 2.0], [0.0, 1.0]), ProfileDeviation([2.0, 1.0], [0.0, 1.0])
+    gear = GearDeviations([good, bad], wear=WearDepth([1.0, 2.0], [0.0, -1e-6]))
+    assert [(fault.where, fault.value) for fault in gear.faults("gear", 3)] == [
+        ("gear.profile", "2 curves"),
+        ("gear.profile[1].rho", "not growing"),
+        ("gear.wear.depth", "-1e-06 m"),
+    ]
+    assert pickle.loads(pickle.dumps(gear)) == gear

@@ -1,0 +1,172 @@
+"""Measured and worn flanks of a scene, from its curves to those of the ground, and whether they cover the teeth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import gears
+from base import Array, Faults
+from flankfilm.scene.flank_sections import CurveSection, DeviationsSection, WearSection
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.section import required
+
+__all__ = ["deviations"]
+
+SLACK = 0.05
+"""Part of the active profile that a curve may leave out at either end."""
+
+Both = tuple[gears.GearDeviations | None, gears.GearDeviations | None]
+
+
+def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both | None:
+    """Deviations and wear of both gears; those of single teeth only where every tooth counts.
+
+    A mesh cycle of one base pitch stands for all teeth: it knows mean profiles and no pitches.
+
+    Raises
+    ------
+    InputError
+        With all curves that leave out a part of the active profile.
+    """
+    line, ends = pair.line_of_action, np.array([pair.points.A, pair.points.E])
+    found = []
+    with Faults() as faults:
+        for name, section, radius, active in zip(
+            ("pinion", "wheel"),
+            required(scene.pair, "[pair]").each,
+            pair.base_radii,
+            (ends, line - ends[::-1]),
+            strict=True,
+        ):
+            curves = _Curves(f"pair.{name}", radius, active, faults)
+            found.append(_of_gear(curves, section.deviations, section.wear))
+    first, second = (one if one is None or every_tooth else _plain_as_none(one.mean) for one in found)
+    return (first, second) if first or second else None
+
+
+def _of_gear(
+    curves: _Curves, given: DeviationsSection | None, wear: WearSection | None
+) -> gears.GearDeviations | None:
+    """Deviations of a gear as its keys give them."""
+    made = gears.GearDeviations()
+    if given is not None:
+        made = gears.GearDeviations(curves.profile(given), _pitches(given))
+    if wear is not None:
+        made = gears.GearDeviations(made.profile, made.pitch, curves.wear(wear))
+    return _plain_as_none(made)
+
+
+def _plain_as_none(found: gears.GearDeviations) -> gears.GearDeviations | None:
+    return found if found.curved or found.pitch is not None else None
+
+
+def _pitches(given: DeviationsSection) -> gears.PitchDeviations | None:
+    values = given.si("single_pitch_um", "cumulative_pitch_um")
+    if "single" in values:
+        return gears.PitchDeviations.from_single(values["single"])
+    return gears.PitchDeviations(values["cumulative"]) if "cumulative" in values else None
+
+
+@dataclass(frozen=True)
+class _Curves:
+    """Turns a gear's curves into those of the ground.
+
+    Attributes
+    ----------
+    where : str
+        The gear's place in the scene.
+    base_radius : float
+        [m]
+    active : (2,) array
+        Curvature radii at the ends of the active profile [m].
+    faults : Faults
+        Notes curves that do not cover it.
+    """
+
+    where: str
+    base_radius: float
+    active: Array
+    faults: Faults
+
+    def profile(
+        self, given: DeviationsSection
+    ) -> gears.ProfileDeviation | tuple[gears.ProfileDeviation, ...] | None:
+        """Measured profile of all teeth, or of each."""
+
+        def built(section: CurveSection) -> gears.ProfileDeviation:
+            return gears.ProfileDeviation(self._rho(section), section.value("material_um"), section.form)
+
+        if (traces := given.traces) is not None and traces.teeth is not None:
+            at = "deviations.traces." + ("file" if traces.file else "teeth")
+            self._cover(at, traces.teeth, traces.beyond == "hold")
+            return tuple(map(built, traces.teeth))
+        if given.profile is None:
+            return None
+        self._cover("deviations.profile", [given.profile], hold=True)
+        return built(given.profile)
+
+    def wear(self, given: WearSection) -> gears.WearDepth | tuple[gears.WearDepth, ...]:
+        """Wear of all teeth, or of each."""
+
+        def built(section: CurveSection) -> gears.WearDepth:
+            depth = given.factor * np.array(section.value("depth_um"))
+            return gears.WearDepth(self._rho(section), tuple(depth.tolist()), section.form)
+
+        at = "wear.file" if given.file else "wear" if given.teeth is None else "wear.teeth"
+        self._cover(at, given.teeth or [given], given.beyond == "hold", ends_at_nothing=True)
+        return built(given) if given.teeth is None else tuple(map(built, given.teeth))
+
+    def _rho(self, section: CurveSection) -> tuple[float, ...]:
+        """Curvature radii of a curve's points [m]; nan below the base circle."""
+        by, base = section.measured_by, self.base_radius
+        places = np.array(section.value(by))
+        if by == "roll_deg":
+            places = base * places
+        elif by == "diameter_mm":
+            square = (0.5 * places) ** 2 - base**2
+            places = np.where(square >= 0.0, np.sqrt(np.maximum(square, 0.0)), np.nan)
+        return tuple(places.tolist())
+
+    def _cover(
+        self, at: str, curves: Sequence[CurveSection], hold: bool, ends_at_nothing: bool = False
+    ) -> None:
+        """Note curves that leave out too much of the active profile: the first with its range, others by number."""
+        low, high = self.active
+        slack, bad = SLACK * (high - low), []
+        for number, section in enumerate(curves):
+            rho, values = np.array(self._rho(section)), getattr(section, section.values[0])
+            missing = (rho[0] > low + slack, rho[-1] < high - slack)
+            if ends_at_nothing:
+                missing = (missing[0] and values[0] != 0.0, missing[1] and values[-1] != 0.0)
+            apart = not (rho[0] < high and rho[-1] > low)  # nan as well
+            if apart or (any(missing) and not hold):
+                bad.append((number, section, apart))
+        if not bad:
+            return
+        number, section, apart = bad[0]
+        by = section.measured_by
+        given = getattr(section, by)
+        unit, spoken = by.rpartition("_")[2], self._spoken(by)
+        more = f", and {len(bad) - 1} more teeth" if len(bad) > 1 else ""
+        tooth = f"tooth {number}: " if len(curves) > 1 else ""
+        value = f"{tooth}{given[0]:.6g} to {given[-1]:.6g} {unit}{more}"
+        span = f"the active profile, {spoken(low):.5g} to {spoken(high):.5g} {unit}"
+        if apart:
+            remedy = "Check the unit, and whether the points are on the involute"
+            self.faults.add(f"{self.where}.{at}", value, f"must lie on {span}", remedy)
+        else:
+            remedy = 'Measure farther, or give beyond = "hold": the ends then keep their value'
+            allowed = f"must cover {span}, but for a twentieth at either end"
+            self.faults.add(f"{self.where}.{at}", value, allowed, remedy)
+
+    def _spoken(self, by: str) -> Callable[[float], float]:
+        """From curvature radii to the positions that a key holds."""
+        if by == "roll_deg":
+            return lambda rho: math.degrees(rho / self.base_radius)
+        if by == "diameter_mm":
+            return lambda rho: 2e3 * math.hypot(rho, self.base_radius)
+        return lambda rho: 1e3 * rho

@@ -1,0 +1,54 @@
+"""Measured and worn flanks as variables: deviations over the active profile, of each tooth and in the mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Quantity
+from flankfilm.output.variables import figure_of, of_quantities
+from gears.flank_curves import FlankCurve
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from flankfilm.build_flanks import Both
+    from gears import GearDeviations, GearPair
+
+__all__ = ["measured_flanks"]
+
+PLACES = 121
+"""Places over the active profile, both ends included."""
+
+
+def measured_flanks(pair: GearPair, both: Both | None) -> Iterator[xr.Dataset]:
+    """Variables ``flank_pinion_...`` and ``flank_wheel_...`` of the gears that have curves over their flanks."""
+    ends = np.array([pair.points.A, pair.points.E])
+    active = (ends, pair.line_of_action - ends[::-1])
+    for name, radius, span, found in zip(
+        ("pinion", "wheel"), pair.base_radii, active, both or (None, None), strict=True
+    ):
+        if found is not None and found.curved:
+            yield of_quantities(
+                f"flank_{name}", _curves(found, radius, np.linspace(span[0], span[1], PLACES))
+            )
+
+
+def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Quantity]:
+    yield figure_of("diameter", "m", "diameter", "place", 2 * np.hypot(base_radius, rho), shown="mm")
+    mean = found.mean
+    for name, meaning, curve, each in (
+        ("material", "deviation from the involute", mean.profile, found.profile),
+        ("wear", "depth of wear", mean.wear, found.wear),
+    ):
+        if not isinstance(curve, FlankCurve):
+            continue
+        yield figure_of(
+            f"mean_{name}", "m", f"{meaning}, mean of all teeth", "place", curve.at(rho), shown="um"
+        )
+        if isinstance(each, tuple):
+            values = np.stack([one.at(rho) for one in each])
+            yield figure_of(name, "m", f"{meaning}, of each tooth", "tooth place", values, shown="um")
+            yield figure_of("tooth", "1", "tooth, in the order of meshing", "tooth", np.arange(len(each)))

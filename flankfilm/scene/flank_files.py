@@ -1,0 +1,79 @@
+"""Files that a scene names for measured flanks, read into the scene: it then holds all that it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from base import Fault, InputError
+
+__all__ = ["names_a_file", "read_flank_files", "without_curves"]
+
+FILES = {("deviations", "traces"): "material_um", ("wear",): "depth_um"}
+"""Tables of a gear that may name a file, and what its values are."""
+
+
+def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] = ()) -> list[Fault]:
+    """Put the curves of the files that a scene names beside their names; return what is wrong with the files.
+
+    Parameters
+    ----------
+    raw : mapping
+        Keys of the scene as read; changed. A table whose file cannot be read is taken out, so that it has no fault
+        twice.
+    folder : Path
+        From where the files are named.
+    keys : sequence of str
+        Dotted keys that alone are looked at, where others have been read; all unless given.
+    """
+    found: list[Fault] = []
+    for path, table, parent, kind in _tables(raw):
+        where = f"pair.{path}.file"
+        if keys and where not in keys:
+            continue
+        clash = sorted(table.keys() & {"teeth", kind, "roll_deg", "diameter_mm", "roll_length_mm"})
+        if clash:
+            found.append(
+                Fault(where, table["file"], f"excludes {' and '.join(clash)}", "Leave one of them out")
+            )
+            continue
+        from flankfilm.exchange.trace_files import read_curves
+
+        try:
+            curves = read_curves(folder / table["file"], kind, where)
+        except InputError as error:
+            found += error.faults
+            del parent[path.rpartition(".")[2]]
+            continue
+        if isinstance(curves, dict) and "deviations" not in path:
+            table.update(curves)
+        else:
+            table["teeth"] = [curves] if isinstance(curves, dict) else curves
+    return found
+
+
+def names_a_file(key: str) -> bool:
+    """Whether a dotted key of a scene names a file of flanks."""
+    return any(key == f"pair.{gear}.{'.'.join(path)}.file" for gear in ("pinion", "wheel") for path in FILES)
+
+
+def without_curves(raw: Mapping[str, Any], key: str) -> None:
+    """Take out what was read from the file that stood at a key, which now names another."""
+    for path, table, _, kind in _tables(raw):
+        if key == f"pair.{path}.file":
+            for name in ("teeth", kind, "roll_deg", "diameter_mm", "roll_length_mm"):
+                table.pop(name, None)
+
+
+def _tables(raw: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict[str, Any], str]]:
+    """Tables that name a file: path below the pair, table, the table it is in, name of the values."""
+    pair = raw.get("pair")
+    for gear in ("pinion", "wheel"):
+        for keys, kind in FILES.items():
+            above: Any = None
+            here: Any = pair
+            for key in (gear, *keys):
+                above, here = here, here.get(key) if isinstance(here, dict) else None
+            if isinstance(here, dict) and isinstance(here.get("file"), str):
+                yield ".".join((gear, *keys)), here, above, kind

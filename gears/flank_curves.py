@@ -1,0 +1,192 @@
+"""Curves over a flank, in points: measured profiles and the depth of wear."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Self, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from base import Array, Fault, Faults
+
+__all__ = ["ProfileDeviation", "WearDepth", "mean_curve", "numbers"]
+
+FORMS = ("smooth", "linear")
+
+
+def numbers(values: ArrayLike) -> tuple[float, ...]:
+    """Values as plain numbers, so that equal ones compare equal."""
+    return tuple(float(value) for value in np.atleast_1d(np.asarray(values, dtype=float)).ravel())
+
+
+def check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
+    """Note values that are not finite."""
+    if not all(math.isfinite(value) for value in values):
+        found.add(where, "not finite", "must be finite numbers (m)", "leave out points without a value")
+
+
+@dataclass(frozen=True)
+class FlankCurve:
+    """What curves over a flank have in common; a kind of curve names its values.
+
+    ``smooth``: the monotone piecewise cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980,
+    doi:10.1137/0717021), with one continuous derivative and without overshoot. ``linear``: straight lines from
+    point to point. Outside its points a curve keeps the value of the nearest end.
+    """
+
+    kept_in: ClassVar[str]
+    """Field of the values."""
+
+    rho: tuple[float, ...]  # m
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Values at the points [m]."""
+        raise NotImplementedError
+
+    @property
+    def form(self) -> str:
+        """What is between the points."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """One line: how many points, and where."""
+        if not self.rho:
+            return f"{type(self).__name__}(no points)"
+        ends = f"rho {1e3 * self.rho[0]:.6g} to {1e3 * self.rho[-1]:.6g} mm"
+        return f"{type(self).__name__}({len(self.rho)} points, {ends})"
+
+    def at(self, rho: float | Array) -> Array:
+        """Value at curvature radii `rho` [m], an array like it [m]."""
+        x, y = np.array(self.rho), np.array(self.values)
+        if self.form == "linear":
+            return np.asarray(np.interp(np.asarray(rho, dtype=float), x, y))
+        width, rise = np.diff(x), np.diff(y) / np.diff(x)
+        slope = np.concatenate([rise[:1], np.zeros(len(x) - 2), rise[-1:]])
+        same = np.flatnonzero(rise[:-1] * rise[1:] > 0)
+        left = 2 * width[same + 1] + width[same]
+        right = width[same + 1] + 2 * width[same]
+        slope[same + 1] = (left + right) / (left / rise[same] + right / rise[same + 1])
+        place = np.clip(np.asarray(rho, dtype=float), x[0], x[-1])
+        cell = np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2)
+        t = (place - x[cell]) / width[cell]
+        ends = y[cell] * (1 + 2 * t) * (1 - t) ** 2 + y[cell + 1] * t**2 * (3 - 2 * t)
+        bend = slope[cell] * t * (1 - t) ** 2 - slope[cell + 1] * t**2 * (1 - t)
+        return np.asarray(ends + width[cell] * bend)
+
+    def faults(self, where: str = "profile") -> tuple[Fault, ...]:
+        """All faults of the points, empty when there are none."""
+        found = Faults()
+        check_finite(found, f"{where}.rho", self.rho)
+        check_finite(found, f"{where}.{self.kept_in}", self.values)
+        found.choice(f"{where}.form", self.form, FORMS)
+        if len(self.rho) != len(self.values) or len(self.rho) < 2:
+            points = f"{len(self.rho)} and {len(self.values)} points"
+            found.add(where, points, "must be as many radii as values, at least 2", "give pairs")
+        if not found.found and not np.all(np.diff(self.rho) > 0):
+            remedy = "sort the points and leave out doubles"
+            found.add(f"{where}.rho", "not growing", "must be growing curvature radii", remedy)
+        return tuple(found.found)
+
+
+@dataclass(frozen=True, repr=False)
+class ProfileDeviation(FlankCurve):
+    """Deviation of a flank from the involute, a curve over the flank.
+
+    Between its points the curve is smooth, without overshoot (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980,
+    doi:10.1137/0717021), or straight; outside them it keeps the value of the nearest end.
+
+    Parameters
+    ----------
+    rho : (n,) sequence
+        Curvature radii of the flank, growing [m].
+    material : (n,) sequence
+        Material in excess of the involute, normal to the flank [m]: negative where some is missing.
+    form : {"smooth", "linear"}
+        Monotone cubic with one continuous derivative, or straight lines from point to point.
+    """
+
+    kept_in = "material"
+
+    material: tuple[float, ...] = ()  # m
+    form: str = "smooth"
+
+    def __post_init__(self) -> None:
+        """Keep the points as plain numbers, so that equal curves compare equal."""
+        object.__setattr__(self, "rho", numbers(self.rho))
+        object.__setattr__(self, "material", numbers(self.material))
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Material in excess [m]."""
+        return self.material
+
+    @classmethod
+    def over_roll_angle(
+        cls, base_radius: float, roll_angle: ArrayLike, material: ArrayLike, form: str = "smooth"
+    ) -> Self:
+        """Curve given over the roll angle xi [rad], rho = r_b xi."""
+        return cls(numbers(base_radius * np.asarray(roll_angle, dtype=float)), numbers(material), form)
+
+
+@dataclass(frozen=True, repr=False)
+class WearDepth(FlankCurve):
+    """Depth to which a flank is worn, a curve over the flank: material removed, on top of relief and deviations.
+
+    Parameters
+    ----------
+    rho : (n,) sequence
+        Curvature radii of the flank, growing [m].
+    depth : (n,) sequence
+        Material removed normal to the flank, at least 0 [m]. Outside the points the depth of the nearest end.
+    form : {"smooth", "linear"}
+        As of `ProfileDeviation`.
+
+    Examples
+    --------
+    >>> worn = WearDepth([8e-3, 11e-3, 17e-3], [20e-6, 0.0, 10e-6], form="linear")
+    >>> float(worn.at(9.5e-3))
+    1e-05
+    """
+
+    kept_in = "depth"
+
+    depth: tuple[float, ...] = ()  # m
+    form: str = "smooth"
+
+    def __post_init__(self) -> None:
+        """Keep the points as plain numbers, so that equal curves compare equal."""
+        object.__setattr__(self, "rho", numbers(self.rho))
+        object.__setattr__(self, "depth", numbers(self.depth))
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Depth [m]."""
+        return self.depth
+
+    def faults(self, where: str = "wear") -> tuple[Fault, ...]:
+        """All faults of the points, empty when there are none."""
+        found = super().faults(where)
+        if not (least := [depth for depth in self.depth if depth < 0.0]):
+            return found
+        remedy = "wear removes material; give what is in excess as a profile deviation"
+        return (*found, Fault(f"{where}.depth", f"{min(least):g} m", "must be at least 0 m", remedy))
+
+
+C = TypeVar("C", ProfileDeviation, WearDepth)
+
+
+def mean_curve(curves: Sequence[C]) -> C:
+    """Mean of curves at the points of the one that has most, the first of several.
+
+    The mean of equal curves is that curve, to the last digit.
+    """
+    model = max(curves, key=lambda curve: len(curve.rho))
+    points = np.array(model.rho)
+    start = model.at(points)
+    apart = np.mean([curve.at(points) - start for curve in curves], axis=0)
+    form = model.form if all(curve.form == model.form for curve in curves) else "smooth"
+    return type(model)(model.rho, numbers(start + apart), form)
