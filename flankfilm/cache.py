@@ -1,7 +1,9 @@
 """Results kept by content: the same inputs and the same code give the stored result back.
 
-An entry is one file named by the digest of what made it. Its first line holds the digest of its
-payload, so that flipped bits and cut files are noticed, removed and computed again.
+An entry is one file named by the digest of what made it. Its first line holds the digest of its name and payload, so
+that flipped bits, cut and exchanged files are noticed, removed and computed again. It holds data alone
+(``flankfilm.plain_data``): reading one runs no code. Compiled code is code, so both are kept only in folders that
+belong to the user and that nobody else may write.
 """
 
 from __future__ import annotations
@@ -10,12 +12,13 @@ import atexit
 import hashlib
 import json
 import os
-import pickle
 import platform
 import shutil
+import stat
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata, util
@@ -46,8 +49,39 @@ def user_cache() -> Path:
 
 
 def results_cache(use: bool = True) -> Cache:
-    """Cache of results in the user's folder; one that holds nothing where it is not to be used."""
-    return Cache(user_cache() / "results" if use else None)
+    """Cache of results in the user's folder; one that holds nothing where that is not wanted, or not the user's alone.
+
+    Warns
+    -----
+    CacheWarning
+        Where the folder is not to be trusted, with the remedy.
+    """
+    if not use:
+        return Cache(None)
+    folder = user_cache() / "results"
+    if fault := own_folder(folder):
+        _warn(f"{fault}; results are computed and not kept. Name another folder by FLANKFILM_CACHE")
+        return Cache(None)
+    return Cache(folder)
+
+
+def own_folder(folder: Path) -> str:
+    """Make a folder for the user alone (0700); say what is wrong with one of another user or that others may write."""
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        folder.mkdir(exist_ok=True, mode=0o700)
+        if not hasattr(os, "getuid"):
+            return ""
+        for one in (folder.parent, folder):
+            found = one.stat()
+            if found.st_uid != os.getuid():
+                return f"{one} belongs to another user"
+            if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+                return f"{one} may be written by others; chmod 700 {one}"
+        folder.chmod(0o700)
+    except OSError as fault:
+        return f"{folder} cannot be used: {fault.strerror}"
+    return ""
 
 
 @cache
@@ -80,10 +114,14 @@ def keep_compiled_code() -> None:
         return
     folder = user_cache() / "compiled" / code_digest(("base", "ehl", "dynamics"))[:16]
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        trusted = not own_folder(folder.parent)
+        if trusted:
+            folder.mkdir(exist_ok=True, mode=0o700)
+            with tempfile.TemporaryFile(dir=folder):
+                pass
     except OSError:
+        trusted = False
+    if not trusted:
         # numba gives up where it finds no folder that it can write: a private one for this run
         folder = Path(tempfile.mkdtemp(prefix="flankfilm-"))
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
@@ -105,6 +143,8 @@ class Cache:
         """Return the kept value, or None; an unreadable entry is removed with a warning."""
         if self.folder is None:
             return None
+        from flankfilm.plain_data import NotPlainDataError, read
+
         path = self.folder / key
         try:
             head, _, payload = path.read_bytes().partition(b"\n")
@@ -113,23 +153,33 @@ class Cache:
         except OSError as fault:
             _warn(f"{path}: {fault.strerror}; computed again")
             return None
-        if hashlib.sha256(payload).hexdigest().encode() != head:
-            path.unlink(missing_ok=True)
-            _warn(f"{path.name[:12]} was damaged; computed again")
-            return None
-        return pickle.loads(payload)
+        if _digest(key, payload) == head:
+            with suppress(NotPlainDataError):
+                return read(payload, PACKAGES)
+        path.unlink(missing_ok=True)
+        _warn(f"{path.name[:12]} was damaged; computed again")
+        return None
 
     def put(self, key: str, value: Any) -> None:
         """Keep a value; where that is not possible (full disk) warn and go on."""
         if self.folder is None:
             return
-        payload = pickle.dumps(value, protocol=pickle.HIGHEST_PROTOCOL)
+        from flankfilm.plain_data import NotPlainDataError, written
+
         try:
+            payload = written(value, PACKAGES)
             with replacing(self.folder / key) as beside:
-                beside.write_bytes(hashlib.sha256(payload).hexdigest().encode() + b"\n" + payload)
+                beside.write_bytes(_digest(key, payload) + b"\n" + payload)
             sweep_temporaries(self.folder)
         except OSError as fault:
             _warn(f"not kept ({fault.strerror})")
+        except NotPlainDataError as fault:
+            _warn(f"not kept ({fault})")
+
+
+def _digest(key: str, payload: bytes) -> bytes:
+    """Digest of an entry, its name included."""
+    return hashlib.sha256(key.encode() + b"\n" + payload).hexdigest().encode()
 
 
 def _warn(text: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import metadata
@@ -309,6 +310,15 @@ def guarded(command: Callable[[], int]) -> int:
         return 128 + stop.signal if isinstance(stop, Ended) else INTERRUPTED
 
 
+def _say(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    """Show our own warnings as sentences; those of libraries are not for users."""
+    from flankfilm.cache import PACKAGES
+
+    if category.__module__.partition(".")[0] in PACKAGES:
+        print(f"flankfilm: {message}", file=sys.stderr)
+
+
 def main() -> None:
     """Entry point of the ``flankfilm`` script."""
+    warnings.showwarning = _say
     sys.exit(guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0)))

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import json
 import os
+import pickle
+import stat
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
 
 from base.files import replacing
-from flankfilm.cache import Cache, CacheWarning, code_digest
+from flankfilm.cache import PACKAGES, Cache, CacheWarning, code_digest, results_cache
 from flankfilm.output.files import write_text
+from flankfilm.plain_data import NotPlainDataError, read, written
 
 
 def test_a_kept_value_comes_back(tmp_path):
@@ -56,6 +65,144 @@ def test_a_flipped_bit_is_noticed_and_removed(tmp_path, at):
     with pytest.warns(CacheWarning, match="damaged"):
         assert cache.get("entry") is None
     assert not (tmp_path / "entry").exists()
+
+
+def test_an_exchanged_entry_is_noticed(tmp_path):
+    cache = Cache(tmp_path)
+    cache.put("entry", {"k": 19.1})
+    (tmp_path / "entry").rename(tmp_path / "other")
+    with pytest.warns(CacheWarning, match="damaged"):
+        assert cache.get("other") is None
+
+
+class Runs:
+    """Runs something when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return open, (str(self.path), "w")
+
+
+def test_no_entry_runs_code(tmp_path):
+    """A pickle under the right digest."""
+    payload = pickle.dumps(Runs(tmp_path / "executed"))
+    head = hashlib.sha256(b"entry\n" + payload).hexdigest().encode()
+    (tmp_path / "entry").write_bytes(head + b"\n" + payload)
+    with pytest.warns(CacheWarning, match="damaged"):
+        assert Cache(tmp_path).get("entry") is None
+    assert not (tmp_path / "executed").exists()
+
+
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("os", "system"),
+        ("subprocess", "Popen"),
+        ("flankfilm.cache", "Path"),
+        ("base.units", "factor"),
+        ("gears", "x"),
+    ],
+)
+def test_only_records_of_ours_are_made(module, name):
+    head = json.dumps({"root": [0], "nodes": [["record", module, name, {"a": 1}]]}).encode()
+    with pytest.raises(NotPlainDataError):
+        read(len(head).to_bytes(8, "little") + head, PACKAGES)
+
+
+PLAIN = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False)
+    | st.text()
+    | arrays(
+        st.sampled_from([np.dtype("f8"), np.dtype("i4"), np.dtype("?"), np.dtype("c16")]), array_shapes()
+    ),
+    lambda inner: (
+        st.lists(inner, max_size=4)
+        | st.lists(inner, max_size=4).map(tuple)
+        | st.dictionaries(st.text() | st.integers(), inner, max_size=4)
+    ),
+    max_leaves=12,
+)
+
+
+@given(PLAIN)
+def test_plain_values_come_back(value):
+    assert same(read(written(value, ()), ()), value)
+
+
+def same(a, b):
+    """Whether two plain values are equal, their types too."""
+    if type(a) is not type(b):
+        return False
+    if isinstance(a, np.ndarray):
+        return (
+            a.dtype == b.dtype and a.shape == b.shape and np.array_equal(a, b, equal_nan=a.dtype.kind in "fc")
+        )
+    if isinstance(a, dict):
+        return list(a) == list(b) and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, list | tuple):
+        return len(a) == len(b) and all(map(same, a, b))
+    return a == b
+
+
+@given(st.binary(max_size=200), st.integers(0, 400), st.integers(0, 255))
+def test_garbage_is_refused_as_such(garbage, at, byte):
+    whole = bytearray(written({"a": np.arange(3.0), "b": (1, "x")}, ()))
+    whole[at % len(whole)] = byte
+    for content in (garbage, bytes(whole), bytes(whole[: at % len(whole)])):
+        with contextlib.suppress(NotPlainDataError):
+            read(content, PACKAGES)
+
+
+def test_records_arrays_and_shared_parts_come_back_as_they_were(article_pair):
+    fortran = np.asfortranarray(np.arange(6.0).reshape(2, 3))
+    frozen = np.arange(3)
+    frozen.flags.writeable = False
+    pair, again, order, still, number = read(
+        written((article_pair, article_pair, fortran, frozen, np.float64(0.1)), PACKAGES), PACKAGES
+    )
+    assert pair == article_pair
+    assert again is pair
+    assert order.flags.f_contiguous
+    assert not still.flags.writeable
+    assert type(number) is np.float64
+    assert number == 0.1
+    with pytest.raises(NotPlainDataError, match="no record"):
+        written(article_pair, ("ehl",))
+    with pytest.raises(NotPlainDataError, match="no data"):
+        written(np.array([object()]), PACKAGES)
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of folders")
+class TestFolder:
+    def test_it_is_made_for_the_user_alone(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("FLANKFILM_CACHE", str(tmp_path / "new"))
+        cache = results_cache()
+        assert cache.folder == tmp_path / "new" / "results"
+        assert stat.S_IMODE(cache.folder.stat().st_mode) == 0o700
+        cache.folder.chmod(0o755)
+        results_cache()
+        assert stat.S_IMODE(cache.folder.stat().st_mode) == 0o700
+
+    @pytest.mark.parametrize("mode", [0o777, 0o775, 0o1777])
+    @pytest.mark.parametrize("which", ["", "results"])
+    def test_one_that_others_may_write_is_not_used(self, tmp_path, monkeypatch, mode, which):
+        monkeypatch.setenv("FLANKFILM_CACHE", str(tmp_path))
+        folder = tmp_path / which
+        folder.mkdir(exist_ok=True)
+        folder.chmod(mode)
+        with pytest.warns(CacheWarning, match=f"chmod 700 {folder}"):
+            assert results_cache().folder is None
+
+    def test_one_of_somebody_else_is_not_used(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("FLANKFILM_CACHE", str(tmp_path))
+        monkeypatch.setattr("os.getuid", lambda: tmp_path.stat().st_uid + 1)
+        with pytest.warns(CacheWarning, match="belongs to another user"):
+            assert results_cache().folder is None
 
 
 def test_a_cut_entry_is_noticed(tmp_path):
