@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, dataclass_tra
 import numpy as np
 
 from base.cost import Cost
+from base.faults import SolverError
 from base.units import factor
 
 T = TypeVar("T")
@@ -264,7 +265,7 @@ def headline(result: object) -> str:
     parts = [
         f"{name} {_text(value)}{_unit(known.get(name))}"
         for name in names
-        if np.ndim(value := getattr(result, name)) == 0 and value is not None
+        if np.ndim(value := _shown(result, name)) == 0 and value is not None
     ]
     if isinstance(error := getattr(result, "error", None), float):
         parts.append(f"error {error:.1e}")
@@ -274,6 +275,14 @@ def headline(result: object) -> str:
         parts.append(f"{cost.seconds:.3g} s")
     line = f"{type(result).__name__}({', '.join(parts)})"
     return line if len(line) <= LONGEST_LINE else f"{line[: LONGEST_LINE - 4]}...)"
+
+
+def _shown(result: object, name: str) -> Any:
+    """Value of a figure; None where its solver, asked for it now, finds none: a line is no place to fail."""
+    try:
+        return getattr(result, name)
+    except SolverError:
+        return None
 
 
 def _text(value: Any) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from base import Array, Cost, Faults, described, part, quantity, record
 from fem.flamant import hertz_half_width, hertz_indentation
+from fem.flank_motion import FlankMotion
 from fem.gear_compliance import GearCompliance
 from fem.gear_shape import MeshedShape, shapes
 from fem.local_law import HertzApproach
@@ -52,6 +53,9 @@ class Compliance:
     tip_strips: tuple[TipStrips, TipStrips] | None = part(
         "tip edges of both gears; None before contact outside the path has asked for them", default=None
     )
+    flank_motions: tuple[FlankMotion, FlankMotion] | None = part(
+        "how the flanks of both gears move; None before contacts that move have asked for it", default=None
+    )
     fit_error: float = quantity("1", "part of the error by the fit along the flanks", default=0.0)
     gain: float = quantity("1", "by how much the last refinement reduced the mesh's error", default=1.0)
     before: tuple[GearCompliance, GearCompliance] | None = part(
@@ -84,6 +88,19 @@ class Compliance:
         )
         return first, second
 
+    @cached_property
+    def motions(self) -> tuple[FlankMotion, FlankMotion]:
+        """How the flanks of both gears move beyond yielding along their normals; solved where it was not."""
+        return self.flank_motions or self.motions_of(Gears())
+
+    def motions_of(self, gears: Gears) -> tuple[FlankMotion, FlankMotion]:
+        """How the flanks of both gears move, from where solved gears are."""
+        first, second = (
+            gears.motion(meshed).scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
     def rings(self) -> tuple[Ring, Ring]:
         """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
         return self._rings
@@ -99,11 +116,15 @@ class Compliance:
 
     @property
     def coarser(self) -> Compliance | None:
-        """The same gears on the mesh before the last refinement; tip edges keep their strips."""
+        """The same gears on the mesh before the last refinement; tip edges keep their strips, flanks their motion."""
         if self.before is None:
             return None
         pinion, wheel = self.before
-        return replace(self, pinion=pinion, wheel=wheel, before=None, tip_strips=self.tips)
+        tips, motions = (
+            self.__dict__.get(found, given)  # whatever has been solved until now
+            for found, given in (("tips", self.tip_strips), ("motions", self.flank_motions))
+        )
+        return replace(self, pinion=pinion, wheel=wheel, before=None, tip_strips=tips, flank_motions=motions)
 
     def without(self, *parts: str) -> Compliance:
         """Leave parts out, to compare with models that do not have them.

@@ -12,11 +12,12 @@ import numpy as np
 from base import Array, Booleans, Cost, Faults, Limit, RangeWarning, Stopwatch
 from fem.bodies import Compliance
 from fem.cycle import MeshCycle
+from fem.edge_tables import EdgeTables
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
-from fem.moving_contact import model_error, moved_places
+from fem.moving_contact import LoadedContacts, moved_places
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, held_turns
 from fem.setting import Deviations, Setting
@@ -172,7 +173,8 @@ def mesh_cycle(
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
     )
     ready = watch.seconds
-    contact = solve(given, bodies, torque / pair.base_radii[0], film)
+    tables = EdgeTables(given, bodies)
+    contact = solve(given, bodies, torque / pair.base_radii[0], film, tables)
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
         watch.seconds,
@@ -182,7 +184,8 @@ def mesh_cycle(
         counts=bodies.cost.counts,
     )
     cycles = tuple(
-        _result(given, bodies, film, tolerance, contact, k, float(t), cost) for k, t in enumerate(torque)
+        _result(given, bodies, film, tolerance, tables, contact, k, float(t), cost)
+        for k, t in enumerate(torque)
     )
     return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
 
@@ -205,6 +208,7 @@ def _result(
     bodies: Compliance,
     film: Film | None,
     tolerance: float,
+    tables: EdgeTables,
     contact: Solution,
     number: int,
     torque: float,
@@ -224,7 +228,7 @@ def _result(
     share = turned * contact.levers
     rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, given.pitches, 1))
     lost: Array | float = 0.0
-    if given.moving_contact:
+    if contact.moves is not None:
         lost = 0.5 * contact.moves.rolled(turned)
         share = share - turned * lost
         lost = lost.reshape(-1, pairs)
@@ -234,7 +238,7 @@ def _result(
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
-    error = model_error(contact.moves, turned, contact.share.transmission_error[number], given.moving_contact)
+    approach = contact.share.transmission_error[number]
     return MeshCycle(
         torque=torque,
         force=force,
@@ -253,7 +257,6 @@ def _result(
         plane=bodies.plane,
         beyond_path=given.beyond_path,
         error=bodies.error,
-        model_error=error + bad,
         moving_contact=given.moving_contact,
         lever_loss=lost,
         cost=cost,
@@ -265,7 +268,8 @@ def _result(
         friction=float(given.friction),
         supports=supports,
         reference=held,
-        problem=None if refusal else ContactProblem(given, bodies, force, film, tolerance),
+        loaded=None if refusal else LoadedContacts(bodies, where, turned, approach, given.moving_contact),
+        problem=None if refusal else ContactProblem(given, bodies, force, film, tolerance, tables=tables),
     )
 
 

@@ -8,10 +8,23 @@ from typing import Any
 
 import numpy as np
 
-from base import Array, Booleans, Cost, Faults, Integers, Limit, described, part, quantity, record
+from base import (
+    Array,
+    Booleans,
+    Cost,
+    Faults,
+    Integers,
+    Limit,
+    SolverError,
+    described,
+    part,
+    quantity,
+    record,
+)
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
+from fem.moving_contact import LoadedContacts
 from fem.references import check_reference, turns
 from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
@@ -24,7 +37,9 @@ __all__ = ["MeshCycle", "check_row", "require_row"]
 class MeshCycle(MeshFigures):
     """Some base pitches of a loaded pair; rows are positions, columns pairs in order of growing rho1.
 
-    Means, extremes and harmonics are those of the curves on smooth arcs between events, whatever the positions.
+    Means, extremes and harmonics are those of the curves on smooth arcs between events, whatever the positions. Where
+    the contact has no solution at some position, ``converged`` is False and they are nan; where it has none between
+    the positions, which is known when they are first asked for, they raise ``base.SolverError``.
 
     ``cost`` includes the compliance if it was computed here; of several torques it is that of all together.
     """
@@ -83,11 +98,6 @@ class MeshCycle(MeshFigures):
     plane: str = part('"strain" or "stress", as of the compliance')
     beyond_path: bool = part("whether tip edges were among the candidates")
     error: float = quantity("1", "estimated relative numerical error of stiffness and transmission error")
-    model_error: float = quantity(
-        "1",
-        "estimated relative error of transmission error and secant stiffness by the model of the contacts, apart "
-        "from `error`: large strain, second order, and their motion if they stay; of the tangent about twice that",
-    )
     cost: Cost
     converged: bool
     message: str
@@ -110,6 +120,9 @@ class MeshCycle(MeshFigures):
     )
     bore_inertia: tuple[float, float] = quantity(
         "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0)
+    )
+    loaded: LoadedContacts | None = part(
+        "what `model_error` is found from; None where the contact has no solution", default=None
     )
     problem: ContactProblem | None = part(
         "what the arcs are found from when they are first asked for; None where the contact has no solution, and in "
@@ -146,7 +159,7 @@ class MeshCycle(MeshFigures):
         lost = np.where(self.forces > 0, self.lever_loss, 0.0)
         shift = less @ np.sum((lever - lost) * self.forces, axis=-1)
         slope = 1.0 - less @ np.sum((lever - 2 * lost) * self.pair_stiffness, axis=-1)  # dD'/dD
-        found_arcs = self.__dict__.get("arcs")
+        known = self.__dict__.get("_found")
         measured = replace(
             self,
             reference=reference,
@@ -159,20 +172,48 @@ class MeshCycle(MeshFigures):
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
         )
-        if found_arcs is not None:
+        if known is not None:
             # copies that were pickled have nothing else, and all others need not solve the contact anew
-            measured.__dict__["arcs"] = measured_less(found_arcs, self.force, less)
+            measured.__dict__["_found"] = (
+                known if isinstance(known, str) else measured_less(known, self.force, less)
+            )
         return measured
 
-    @cached_property
+    @property
     def arcs(self) -> MeshArcs | None:
-        """Curves on smooth arcs between events, found when they are first asked for."""
-        return None if self.problem is None else self.problem.arcs()
+        """Curves on smooth arcs between events, found when they are first asked for; None without a solution.
+
+        Raises
+        ------
+        base.SolverError
+            The contact has a solution at the cycle's positions, but not between them.
+        """
+        if isinstance(self._found, str):
+            raise SolverError(self._found)
+        return self._found
+
+    @cached_property
+    def _found(self) -> MeshArcs | str | None:
+        """Arcs, or why there are none."""
+        if self.problem is None:
+            return None
+        try:
+            return self.problem.arcs()
+        except SolverError as error:
+            return str(error)
 
     def __getstate__(self) -> dict[str, Any]:
         """Take the arcs along instead of what they are found from."""
-        found = self.arcs
-        return {**self.__dict__, "arcs": found, "problem": None}
+        return {**self.__dict__, "_found": self._found, "problem": None}
+
+    @described("1", kept=True)
+    def model_error(self) -> float:
+        """Estimated relative error by the model of the contacts, apart from `error`.
+
+        Of transmission error and secant stiffness: large strain, second order, and the motion of contacts that stay.
+        Of the tangent about twice that. Found when it is first asked for.
+        """
+        return float("nan") if self.loaded is None else self.loaded.model_error()
 
     @described("m", "position", shown="um")
     def unloaded_transmission_error(self) -> Array:

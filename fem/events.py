@@ -8,10 +8,10 @@ import numpy as np
 
 from base import Array, SolverError
 from fem.bodies import Compliance
+from fem.edge_tables import EdgeTables
 from fem.local_law import Film, film_yielding
 from fem.setting import Setting
 from fem.sharing import Solution, solve
-from gears import LoadSharingError
 from gears.arcs import Arcs
 from gears.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
@@ -47,6 +47,8 @@ class ContactProblem:
         Whether the secant counts what the film yields (``fem.local_law.film_yielding``).
     turn : (2,) array, optional
         Turn of pinion and wheel per force that is left out of the deflection (``fem.references``) [m/N].
+    tables : EdgeTables, optional
+        Laws of the tip edges that are known already.
     """
 
     given: Setting
@@ -57,19 +59,22 @@ class ContactProblem:
     corners: Array | None = None
     film_yields: bool = False
     turn: Array | None = None
+    tables: EdgeTables | None = None
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
         return replace(self, turn=turn if self.turn is None else self.turn + turn)
 
-    def arcs(self) -> MeshArcs | None:
-        """Curves between events; None where a contact between the positions has no solution."""
-        before = self.bodies.coarser
-        try:
-            fine = self.divided()
-            coarse = None if before is None else self._alike(before, fine)
-        except (SolverError, LoadSharingError):
-            return None
+    def arcs(self) -> MeshArcs:
+        """Curves between events.
+
+        Raises
+        ------
+        base.SolverError
+            A contact somewhere on them has no solution.
+        """
+        before, fine = self.bodies.coarser, self.divided()
+        coarse = None if before is None else self._alike(before, fine)
         return MeshArcs(fine, coarse, self.bodies.gain, self.bodies.fit_error)
 
     def divided(self) -> Division:
@@ -77,10 +82,12 @@ class ContactProblem:
         return self._divided(self.bodies)
 
     def _sampler(self, bodies: Compliance) -> Sampler:
+        tables = self.tables or EdgeTables(self.given, bodies)
+
         def sample(position: Array) -> Sampled:
-            found = solve(self.given.at(position), bodies, np.array([self.force]), self.film)
-            if found.refusal(0):
-                raise SolverError(found.refusal(0))
+            found = solve(self.given.at(position), bodies, np.array([self.force]), self.film, tables)
+            if why := found.refusal(0):
+                raise SolverError(f"between the positions of the mesh cycle {why}")
             reserve = _reserve(found, self.force, self.given.even)
             return Sampled(self._curves(found), reserve)
 
@@ -112,8 +119,8 @@ class ContactProblem:
                 steps = first * GRADING ** np.arange(3)
                 places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
         if self.given.moving_contact:  # beyond these ends the flanks' motion stays the same
-            places += [*bodies.pinion.motion.rho_range]
-            places += [pair.line_of_action - rho for rho in bodies.wheel.motion.rho_range]
+            pinion, wheel = bodies.motions
+            places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]
         more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
         film = np.zeros(0) if self.corners is None else self.corners
         return np.concatenate([self.given.corners, more, film])
@@ -130,9 +137,7 @@ class ContactProblem:
             # the film's part counts in proportion to the whole transmission error
             secant = secant * moved / (moved + added)
         lever = np.where(turned > 0.0, where.lever, 0.0) / found.kappa
-        lost = (
-            0.5 * found.moves.rolled(turned) if self.given.moving_contact else 0.0
-        )  # as MeshCycle.lever_loss
+        lost = 0.5 * found.moves.rolled(turned) if found.moves is not None else 0.0  # as MeshCycle.lever_loss
         moments = np.sum((lever - lost) * turned, axis=-1) / self.force
         slopes = np.sum((lever - 2 * lost) * share.pair_stiffness[0, 0], axis=-1)
         curves = np.stack([moved, tangent, secant, *moments, *slopes])

@@ -21,7 +21,6 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.flank_motion import FlankMotion, flank_motion
 from fem.line_load import flank_points, joined, line_loads
 from fem.ring import Ring
 
@@ -70,8 +69,6 @@ class GearCompliance:
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
     fit_error : float
         What the series leave out, estimated from the decay of their coefficients [m per N/m].
-    motion : FlankMotion
-        How the flank moves beyond yielding along its normal, for contacts that move.
     """
 
     rho_range: tuple[float, float]
@@ -85,7 +82,6 @@ class GearCompliance:
     corner_series: Mapping[int, Array]
     hub_windup: float
     fit_error: float
-    motion: FlankMotion
 
     def scaled(self, module: float, law: PlaneElasticity) -> GearCompliance:
         """Give a gear in modules and E* its size [m] and modulus."""
@@ -103,7 +99,6 @@ class GearCompliance:
             {tooth: series / modulus for tooth, series in self.corner_series.items()},
             self.hub_windup / modulus,
             self.fit_error / modulus,
-            self.motion.scaled(module, law),
         )
 
     def _unit(self, rho: Array) -> Array:
@@ -118,9 +113,9 @@ class GearCompliance:
         return np.asarray(own + self.logarithm * np.log(away / self.module))
 
     def own_slope(self, rho: Array) -> Array:
-        """Differentiate ``own`` by rho [1 per N/m]; places beyond the range of ``motion`` are moved to its end."""
-        rho = np.clip(rho, *self.motion.rho_range)
+        """Differentiate ``own`` by rho [1 per N/m]; places beyond the range are moved to its end."""
         low, high = self.rho_range
+        rho = np.clip(rho, low, high)
         slope = chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series)) * 2 / (high - low)
         return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
 
@@ -275,7 +270,6 @@ def gear_compliance(
     profile: ToothProfile,
     samples: FlankSamples,
     flank: str = "left",
-    motion: FlankMotion | None = None,
 ) -> GearCompliance:
     """Interpolate samples at ``sample_places``.
 
@@ -285,8 +279,6 @@ def gear_compliance(
     profile : gears.ToothProfile
     samples : FlankSamples
     flank : {"left", "right"}
-    motion : FlankMotion, optional
-        Computed on the same ring unless given.
     """
     rho, rho_end = samples.rho, profile.flank_rho[1]
     low, high = float(rho[0]), float(rho[-1])
@@ -311,7 +303,6 @@ def gear_compliance(
         {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
         hub_windup(profile, ring.law),
         max(_tail(own), remainder),
-        motion or flank_motion(ring, flank),
     )
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gears import LoadShare
     from gears.load_sharing import DeflectionLaw
 
-__all__ = ["ContactMoves", "contact_moves", "model_error", "moved_places", "moved_share"]
+__all__ = ["ContactMoves", "LoadedContacts", "contact_moves", "model_error", "moved_places", "moved_share"]
 
 ITERATIONS = 100
 CLOSE = 1e-11
@@ -80,13 +80,14 @@ def contact_moves(bodies: Compliance, where: ContactCandidates) -> ContactMoves:
     on_path = where.touchable & ~where.edge
     gears, radii = (bodies.pinion, bodies.wheel), pair.base_radii
     rho = np.where(on_path, where.rho, 0.5 * pair.line_of_action)
-    rho = np.stack([np.clip(r, *gear.motion.rho_range) for gear, r in zip(gears, rho, strict=True)])
+    motions = bodies.motions
+    rho = np.stack([np.clip(r, *motion.rho_range) for motion, r in zip(motions, rho, strict=True)])
     radius = rho[0] * rho[1] / (rho[0] + rho[1])
     laws = [gear.law for gear in gears]
     tilt = [0.5 * gear.own_slope(r) * base / r for gear, r, base in zip(gears, rho, radii, strict=True)]
-    along = [gear.motion.tangential(r) for gear, r in zip(gears, rho, strict=True)]
+    along = [motion.tangential(r) for motion, r in zip(motions, rho, strict=True)]
     cubic = np.sum(
-        [_energies(gear.motion.energy(r), law) for gear, r, law in zip(gears, rho, laws, strict=True)], axis=0
+        [_energies(motion.energy(r), law) for motion, r, law in zip(motions, rho, laws, strict=True)], axis=0
     )
     cubic[0] += 0.5 * radius * (tilt[0] - tilt[1]) ** 2
     for t, tau, r in zip(along, tilt, rho, strict=True):
@@ -243,3 +244,30 @@ def model_error(moves: ContactMoves, force: Array, approach: Array, moving: bool
     change = np.abs(1.5 * turn - thrust)
     whole = np.abs(law) + change**2 + (0.0 if moving else change)
     return float(np.max(whole))
+
+
+@record
+class LoadedContacts:
+    """What the model error of a mesh cycle is found from when it is first asked for: it needs third-order energies.
+
+    Attributes
+    ----------
+    bodies : Compliance
+    where : ContactCandidates
+    force : (..., pairs) array
+        Forces times their levers over the base radius [N].
+    approach : (...) array
+        Deflection [m].
+    moving : bool
+        Whether the contacts move.
+    """
+
+    bodies: Compliance
+    where: ContactCandidates
+    force: Array
+    approach: Array
+    moving: bool
+
+    def model_error(self) -> float:
+        """Estimate what the model of the contacts leaves out, as `model_error`."""
+        return model_error(contact_moves(self.bodies, self.where), self.force, self.approach, self.moving)

@@ -56,6 +56,7 @@ def compliance(
     supports: Support | tuple[Support, Support] | None = None,
     *,
     tip_edges: bool = False,
+    motion: bool = False,
     kept: Kept | None = None,
 ) -> Compliance:
     """Compliance of both gears, on the coarsest mesh that meets a tolerance.
@@ -83,6 +84,8 @@ def compliance(
         Rigid hubs of both gears, or of pinion and wheel; held on the bores unless given.
     tip_edges : bool
         Solve the tip edges now. Contact outside the path needs them; they are solved when it first does.
+    motion : bool
+        Solve the flanks' motion now. Contacts that move need it; it is solved when they first do.
     kept : callable, optional
         Where solved gears are kept beyond the process: called with a name, with plain inputs, and with what computes
         the record where it has none.
@@ -156,10 +159,11 @@ def compliance(
         before=(first.before, second.before),
     )
     tips = bodies.tips_of(gears) if tip_edges else None
+    motions = bodies.motions_of(gears) if motion else None
     parts = sum(gears.costs, Cost(0.0)).parts
     counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}
     cost = Cost(watch.seconds, first.unknowns + second.unknowns, parts=parts, counts=counts)
-    return replace(bodies, tip_strips=tips, cost=cost)
+    return replace(bodies, tip_strips=tips, flank_motions=motions, cost=cost)
 
 
 def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Integers, record
+from base import Array, record
 from fem.bodies import Compliance
 from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
 from fem.cut_off import cut_offs
-from fem.local_law import Film, FilmLaw, PairLaws, Table
+from fem.edge_tables import EdgeTables
+from fem.local_law import Film, FilmLaw, PairLaws
 from fem.moving_contact import ContactMoves, contact_moves, moved_share
 from fem.setting import Setting
-from fem.tip_contact import edge_laws
 
 if TYPE_CHECKING:
     from gears import LoadShare
@@ -37,7 +37,7 @@ class Solution:
     largest: Array
     closing: Array
     open: Array
-    moves: ContactMoves
+    moves: ContactMoves | None
     settled: bool
 
     @property
@@ -66,14 +66,28 @@ class Solution:
         return ""
 
 
-def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -> Solution:
-    """Solve, with candidates farther out if the deflection reaches beyond the first ones."""
+def solve(
+    given: Setting, bodies: Compliance, force: Array, film: Film | None, tables: EdgeTables | None = None
+) -> Solution:
+    """Solve, with candidates farther out if the deflection reaches beyond the first ones.
+
+    Parameters
+    ----------
+    given : Setting
+    bodies : Compliance
+    force : (torques,) array
+        [N]
+    film : Film or None
+    tables : EdgeTables, optional
+        Laws of the tip edges of gears that are set up likewise, to be used again.
+    """
     from gears.load_sharing import share_load
 
+    tables = tables or EdgeTables(given, bodies)
     for reach in REACHES:
         where = contact_candidates(given, reach)
         kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
-        table, largest = _edge_table(given, bodies, where)
+        table, largest = tables.at(where)
         rho1, rho2 = where.rho
         matrix = bodies.bulk(rho1, rho2, where.leaning)
         _leave_out_corner(bodies, matrix, where)
@@ -97,8 +111,8 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
             oil,
             levers if given.friction else None,
         )
-        moves, settled = contact_moves(bodies, where), True
-        if given.moving_contact:
+        moves, settled = contact_moves(bodies, where) if given.moving_contact else None, True
+        if moves is not None:
             gaps = where.gap - touch[..., None]
             moved = moved_share(share, force[:, None, None], matrix, laws, gaps, oil, levers, moves)
             settled = moved is not None
@@ -109,7 +123,7 @@ def solve(given: Setting, bodies: Compliance, force: Array, film: Film | None) -
     propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
     bent = (matrix @ share.forces[..., None])[..., 0] + where.gap - touch[..., None]
     left = bent - propped - share.transmission_error[..., None]
-    if given.moving_contact:
+    if moves is not None:
         left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
     return Solution(where, share, kappa, levers, largest, closing, left, moves, settled)
 
@@ -121,42 +135,6 @@ def _levers(given: Setting, where: ContactCandidates) -> Array:
     arm = np.where(where.touchable, arm, 0.0)
     slip = np.sign(arm[0] / first - arm[1] / second)
     return np.asarray(lever[0] + given.friction * slip * arm[0] / first)
-
-
-def _edge_table(given: Setting, bodies: Compliance, where: ContactCandidates) -> tuple[Table | None, Array]:
-    """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N]."""
-    if not where.edge.any():
-        return None, np.zeros(0)
-    places: list[Integers] = []
-    laws: list[tuple[Array, Array]] = []
-    ends: list[Array] = []
-    for corner, chosen in where.corners():
-        touched = (bodies.pinion, bodies.wheel)[1 - corner].law
-        law = edge_laws(
-            given.pair,
-            bodies.tips[corner],
-            corner,
-            where.place[chosen],
-            touched,
-            given.rounds[corner],
-            given.removed,
-        )
-        places.append(np.flatnonzero(chosen).astype(np.int64))
-        laws.append((law.force, law.approach - law.approach[:, :1]))
-        ends.append(law.largest)
-    points = max(force.shape[1] for force, _ in laws)
-    order = np.argsort(np.concatenate(places))
-    force = np.concatenate([_extended(force, points) for force, _ in laws])[order]
-    approach = np.concatenate([_extended(approach, points) for _, approach in laws])[order]
-    largest = np.concatenate(ends)[order]
-    return Table.through(force, approach), largest
-
-
-def _extended(values: Array, points: int) -> Array:
-    """Rows continued in a straight line to a number of points."""
-    more = np.arange(1, points - values.shape[1] + 1)
-    beyond = values[:, -1:] + more * (values[:, -1:] - values[:, -2:-1])
-    return np.concatenate([values, beyond], axis=1)
 
 
 def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from base import Array, Cost, Stopwatch, record
 from fem.elasticity import PlaneElasticity
-from fem.flank_motion import flank_motion
+from fem.flank_motion import FlankMotion, flank_motion
 from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
 from fem.gear_shape import MeshedShape, plain
 from fem.memo import Memo, read_only
@@ -117,6 +117,10 @@ class Gears:
         """Answer of the tip edges."""
         return self.record("tips", (meshed,), lambda: self._tips(meshed))
 
+    def motion(self, meshed: MeshedShape) -> FlankMotion:
+        """Motion of the flank, on the coarser mesh: a correction."""
+        return self.record("motion", (meshed,), lambda: self._motion(meshed))
+
     def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         """Factorised gears, the coarser one first."""
         return _RINGS.obtain(meshed, lambda: self._rings(meshed))
@@ -147,10 +151,9 @@ class Gears:
         watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
         places = sample_places(profile, samples)
         there, before = sampled(fine, places, reach), sampled(coarse, places, reach)
-        motion = flank_motion(coarse)  # a correction: the coarser mesh will do
         found = SolvedFlanks(
-            gear_compliance(fine, profile, there, motion=motion),
-            gear_compliance(coarse, profile, before, motion=motion),
+            gear_compliance(fine, profile, there),
+            gear_compliance(coarse, profile, before),
             places,
             there.own - before.own,
             float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
@@ -165,4 +168,11 @@ class Gears:
         watch = Stopwatch()
         found = tip_strips(ring, meshed.shape.profile)
         self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
+        return found
+
+    def _motion(self, meshed: MeshedShape) -> FlankMotion:
+        ring = self.rings(meshed)[0]
+        watch = Stopwatch()
+        found = flank_motion(ring)
+        self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
         return found

@@ -126,12 +126,18 @@ class MeshArcs:
 
 
 class MeshFigures(ABC):
-    """Figures of a cycle that has arcs; nan where its contact has no solution."""
+    """Figures of a cycle that has arcs; nan where its contact has no solution at one of its positions."""
 
     @property
     @abstractmethod
     def arcs(self) -> MeshArcs | None:
-        """Curves on smooth arcs between events; None where the contact has no solution."""
+        """Curves on smooth arcs between events; None where the contact has no solution at one of its positions.
+
+        Raises
+        ------
+        base.SolverError
+            It has none between them.
+        """
 
     @cached_property
     def _estimates(self) -> dict[str, Estimate]:

@@ -73,13 +73,6 @@ class MeshCycle(MeshFigures):
         'what the deflection is measured against: "bore", "body" or "teeth", as which closed forms count',
         default="teeth",
     )
-    model_error: float | None = quantity(
-        "1",
-        "estimated relative error of transmission error and secant stiffness by the model of the contacts: large "
-        "strain and second order; not known of closed forms",
-        shown="%",
-        default=None,
-    )
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
         """Measure the deflection of coupled finite elements against something else; no force changes.
@@ -114,10 +107,24 @@ class MeshCycle(MeshFigures):
 
     @cached_property
     def arcs(self) -> MeshArcs | None:
-        """Curves on smooth arcs between events, found when they are first asked for."""
+        """Curves on smooth arcs between events, found when they are first asked for.
+
+        Raises
+        ------
+        SolverError
+            Where the contact has no solution between the positions.
+        """
         if self.contact is not None:
             return self.contact.arcs
         return None if self.by_pairs is None else self.by_pairs.arcs()
+
+    @described("1", shown="%")
+    def model_error(self) -> float | None:
+        """Estimated relative error of transmission error and secant stiffness by the model of the contacts.
+
+        Large strain and second order; None of closed forms, of which it is not known.
+        """
+        return None if self.contact is None else self.contact.model_error
 
     @described("1")
     def mean_error(self) -> float | None:

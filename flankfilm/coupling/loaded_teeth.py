@@ -9,7 +9,7 @@ import numpy as np
 
 import fem
 import gears
-from base import Array, Cost, Faults, SolverError, Stopwatch
+from base import Array, Cost, Faults, Stopwatch
 from fem.local_law import film_yielding
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
@@ -171,11 +171,11 @@ class LoadedTeeth:
         Raises
         ------
         SolverError
-            Where the loaded contact has no solution at some positions.
+            Where the loaded contact has no solution at some positions, or between them.
         """
         found = self.cycle(POSITIONS, tolerance=min(sampling, transmission_error))
-        if found.arcs is None:
-            raise SolverError("loaded tooth contact: no solution between some positions; reduce the torque")
+        arcs = found.arcs  # raises where there is no solution between the positions
+        assert arcs is not None
         return found
 
     def others(self, positions: int) -> tuple[MeshCycle, ...]:

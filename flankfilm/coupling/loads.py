@@ -66,10 +66,10 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
         positions=positions,
         **teeth.setting,
     )
-    good = [cycle for cycle in cycles if cycle.converged]
+    refused = {cycle.torque: why for cycle in cycles if (why := _refusal(cycle))}
+    good = [cycle for cycle in cycles if cycle.torque not in refused]
     if not good:
-        raise SolverError(f"mesh cycles over torque: {cycles[0].message}")
-    refused = [cycle for cycle in cycles if not cycle.converged]
+        raise SolverError(f"mesh cycles over torque: {refused[cycles[0].torque]}")
     return TorqueCurves(
         torque=np.array([cycle.torque for cycle in good]),
         secant_stiffness=np.array([cycle.mean_secant_stiffness for cycle in good]),
@@ -80,8 +80,18 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
         range_error=max(_error(cycle, "transmission_error_range") for cycle in good),
         cost=cycles[0].cost,
         converged=not refused,
-        message="; ".join(f"{cycle.torque:g} N m: {cycle.message}" for cycle in refused),
+        message="; ".join(f"{torque:g} N m: {why}" for torque, why in refused.items()),
     )
+
+
+def _refusal(cycle: fem.MeshCycle) -> str:
+    """Why a cycle has no figures; empty where it has them."""
+    if not cycle.converged:
+        return cycle.message
+    try:
+        return "" if cycle.arcs is not None else cycle.message
+    except SolverError as error:
+        return str(error)
 
 
 def _error(cycle: fem.MeshCycle, *names: str) -> float:

@@ -99,6 +99,7 @@ def BODIES(run: Engine) -> fem.Compliance:
             plane=scene.stiffness.plane,
             supports=supports(scene),
             tip_edges=scene.stiffness.contact_beyond_path,
+            motion=scene.stiffness.moving_contact,
             kept=run.parts,
         )
     return believed(found, "tooth compliance")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import fem
+from base import SolverError
 from gears import Gear, GearDeviations, GearPair, Material, PitchDeviations, TipRelief
 from gears.mesh_figures import CURVES
 
@@ -159,3 +160,50 @@ def test_more_than_the_mean_may_err_in_the_peak_to_peak(article_pair):
         assert found > 0.8 * true, name
         if not name.endswith("st_stiffness"):
             assert found < 5 * true, name
+
+
+def test_no_solution_between_the_positions_is_said(article_pair, article_bodies):
+    """At four positions no tip edge presses too hard, but between them one does."""
+    cycle = fem.mesh_cycle(article_pair, 24e3, 4, article_bodies)
+    assert cycle.converged
+    copy = pickle.loads(pickle.dumps(cycle))
+    for one in (cycle, copy, cycle.against("teeth")):
+        for name in ("mean_stiffness", "errors", "stiffness_harmonics", "event_position"):
+            with pytest.raises(SolverError, match=r"between the positions .* a tip edge presses"):
+                getattr(one, name)
+        assert "MeshCycle(torque 24000 N m, converged" in repr(one).replace(f", error {one.error:.1e}", "")
+
+
+def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
+    fem.forget_gears()
+    bodies = fem.compliance(article_pair, tolerance=0.005)
+    cycle = fem.mesh_cycle(article_pair, 600.0, 8, bodies)
+    assert cycle.mean_stiffness > 0
+    assert "motions" not in vars(bodies)
+    assert 0 < cycle.model_error < 0.01
+    assert pickle.loads(pickle.dumps(cycle)).model_error == cycle.model_error
+    moving = fem.mesh_cycle(article_pair, 600.0, 8, bodies, moving_contact=True)
+    assert moving.model_error < cycle.model_error
+
+
+def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monkeypatch):
+    """For each place within a base pitch, whatever the pitch, the torque and the mesh."""
+    from fem import edge_tables
+
+    asked, laws = [], edge_tables.edge_laws
+
+    def counted(pair, strips, corner, rho1, *others):
+        asked.extend((corner, round(one / article_pair.base_pitch, 12)) for one in rho1)
+        return laws(pair, strips, corner, rho1, *others)
+
+    monkeypatch.setattr(edge_tables, "edge_laws", counted)
+    cycles = fem.mesh_cycle(article_pair, (300.0, 600.0), 10, article_bodies, pitches=3)
+    assert len(asked) == len(set(asked))
+    once = len(asked)
+    for cycle in cycles:
+        assert cycle.transmission_error_range > 0
+    # but for places on the edge of rounding
+    assert len(asked) - len(set(asked)) < 0.005 * len(asked)
+    one = fem.mesh_cycle(article_pair, 600.0, 10, article_bodies)
+    assert one.transmission_error_range == pytest.approx(cycles[1].transmission_error_range, rel=1e-6)
+    assert once > 0

@@ -7,8 +7,12 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+import fem
 from base import InputError
+from flankfilm.coupling.loaded_teeth import LoadedTeeth
+from flankfilm.coupling.loads import torque_curves
 from flankfilm.scene import parse_scene
+from gears import Gear, GearPair
 from tests.flankfilm.program import EXAMPLES, flankfilm
 
 EXAMPLE = EXAMPLES / "real_flanks.toml"
@@ -103,3 +107,13 @@ def test_what_cannot_be_is_refused_under_its_key(old, new, where):
     assert old in text
     with pytest.raises(InputError, match=where):
         parse_scene(text.replace(old, new, 1))
+
+
+def test_a_torque_without_a_solution_between_the_positions_is_left_out_and_named():
+    pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04)
+    teeth = LoadedTeeth(pair, 600.0, compliance=fem.compliance(pair, tolerance=0.05))
+    assert fem.mesh_cycle(pair, 24e3, 4, teeth.compliance).converged
+    found = torque_curves(teeth, [24e3], positions=4)
+    assert found.torque.tolist() == [600.0]
+    assert not found.converged
+    assert found.message.startswith("24000 N m: between the positions of the mesh cycle a tip edge presses")
