@@ -17,6 +17,8 @@ from fem.near_field import Contact, near_field
 from fem.picture import Picture, picture_of
 from fem.recovery import NodalStress, nodal_stress
 from fem.ring import Ring
+from fem.tip_sector import carried
+from meshes import SectorMesh
 
 __all__ = ["DrawnSector", "GearDrawing", "gear_drawing"]
 
@@ -101,9 +103,11 @@ class GearDrawing:
         return drawn
 
     def _loaded(self, cuts: Array, contact: Contact, own_inner: Array) -> tuple[Array, Array]:
-        """Regular displacement (n, 2) and stress (n, 3) at the nodes of a loaded sector."""
+        """Displacement (n, 2) and stress (n, 3) at the nodes of a loaded sector: all of it, or the regular part."""
         ring = self.ring
         nodal = self.by_cut @ cuts
+        if contact.sector is not None:
+            return contact.sector.solved(ring.law, ring.mesh, nodal.reshape(-1, 2))
         nodal[ring.inner] += own_inner
         load = contact.at.points[0], contact.at.inward[0]
         for unknowns in (ring.cut, ring.hub):  # there the unknown was u, and u_r = u - u_s
@@ -122,7 +126,11 @@ class GearDrawing:
         sides = [_side_nodes(ring, side) for side in ("right", "left")]
         there = [(cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam]
         for k, (_, stress) in nodal.items():
-            for own, nodes in zip(there, sides, strict=True):
+            for own, nodes, side in zip(there, sides, ("right", "left"), strict=True):
+                sector = contacts[k].sector
+                if sector is not None:
+                    own[k] = carried(stress, sector.mesh, ring.mesh, side)
+                    continue
                 _, near = near_field(ring.mesh.points[nodes], contacts[k], ring.law, ring.mesh.module)
                 own[k] = stress[nodes] + near[:, [0, 1, 0], [0, 1, 1]]
         c, s = np.cos(2 * np.pi / z), np.sin(2 * np.pi / z)
@@ -134,17 +142,32 @@ class GearDrawing:
         pick = (slice(None), [0, 1, 0], [0, 1, 1])
         return [(back[k][pick], half[k][pick]) for k in range(z)]
 
-    def _spread(self, jumps: tuple[Array, Array], picture: Picture) -> Array:
-        """Correction (points, 3) of a picture by corrections at the cuts' nodes."""
-        values = np.zeros((len(self.ring.mesh.points), 3))
+    def _spread(self, jumps: tuple[Array, Array], picture: Picture, other: SectorMesh | None = None) -> Array:
+        """Correction (points, 3) of a picture by corrections at the cuts' nodes, on another mesh of the sector too."""
+        own, mesh = self.ring.mesh, other or self.ring.mesh
+        values = np.zeros((len(mesh.points), 3))
         for side, jump in zip(("right", "left"), jumps, strict=True):
-            values[_side_nodes(self.ring, side)] = jump
+            known = np.zeros((len(own.points), 3))
+            known[own.side_nodes(side)] = jump
+            values[mesh.side_nodes(side)] = jump if other is None else carried(known, own, mesh, side)
         return picture.interpolate(values)
 
     def _with_contact(
         self, tooth: int, contact: Contact, moved: Array, stress: Array, jumps: tuple[Array, Array]
     ) -> DrawnSector:
         mesh, law = self.ring.mesh, self.ring.law
+        if contact.sector is not None:
+            fine = contact.sector.mesh
+            picture = picture_of(fine, (contact.at.points[0], FOCUS * contact.half_width))
+            components = picture.interpolate(stress) + self._spread(jumps, picture, fine)
+            return DrawnSector(
+                tooth,
+                picture,
+                picture.interpolate(fine.points),
+                picture.interpolate(moved),
+                components[:, [[0, 2], [2, 1]]],
+                contact,
+            )
         picture = picture_of(mesh, (contact.at.points[0], FOCUS * contact.half_width))
         points = picture.interpolate(mesh.points)
         components = picture.interpolate(stress) + self._spread(jumps, picture)

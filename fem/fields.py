@@ -16,6 +16,7 @@ import numpy as np
 from base import Array, Integers, described, quantities, quantity, record
 from fem import flamant
 from fem.bodies import Compliance
+from fem.corner_contacts import corner_contact, near_corner
 from fem.cycle import MeshCycle, require_row
 from fem.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.elasticity import PlaneElasticity, reduced_modulus
@@ -36,7 +37,7 @@ REGIONS = ("rim", "fillet", "flank")
 """Names of the numbers in ``GearField.region``: inside the root circle, up to the form circle, beyond it."""
 
 INDICATIVE = 0.3
-"""Distance from a tip-edge contact within which stresses are only indicative, in modules."""
+"""Distance from a tip edge pressed over an assumed width within which stresses are only indicative, in modules."""
 
 
 @record
@@ -53,7 +54,7 @@ class GearField:
     region: Integers = quantity("1", "index into REGIONS", "cell")
     indicative: Integers = quantity(
         "1",
-        "1 near a contact of a tip edge, whose pressure is taken as Hertz's over an assumed width",
+        "1 beside a tip corner that presses, where stress is unbounded, or has an assumed width of pressure",
         "cell",
     )
     displacement_m: Array = quantity("m", "displacement against the held hub", "point axis")
@@ -65,8 +66,8 @@ class GearField:
 
     @described("Pa", shown="MPa")
     def greatest_von_mises_Pa(self) -> float:
-        """Greatest von Mises stress."""
-        return float(self.von_mises_Pa.max())
+        """Greatest von Mises stress, but for places where stresses are only indicative."""
+        return float(self.von_mises_Pa[self.cells[self.indicative == 0]].max())
 
     @property
     def point_data(self) -> Mapping[str, Array]:
@@ -166,21 +167,24 @@ def contact_half_width(pair: GearPair, cycle: MeshCycle, row: int, column: int) 
 def _contacts(
     pair: GearPair, cycle: MeshCycle, row: int, ring: Ring, gear: int, bodies: Compliance
 ) -> list[Contact]:
-    """List the loads on one gear; a tip edge presses at the least distance from the corner."""
+    """List the loads on one gear; at a tip corner those of the strips that bear."""
     contacts = []
     flexible = (bodies.pinion, bodies.wheel)[gear]
     for column in np.flatnonzero(cycle.forces[row] > 0):
         rho = float(cycle.flank_rho[gear][row, column])
         offset = int(cycle.pair_offset[column])
-        contacts.append(
-            Contact(
-                offset if gear == 0 else -offset,
-                flank_points(ring.mesh, np.array([min(rho, flexible.rho_range[1])])),
-                float(cycle.forces[row, column]) / pair.face_width,
-                contact_half_width(pair, cycle, row, int(column)),
-                bool(cycle.edge[row, column]),
-            )
+        tooth, line_load = (
+            offset if gear == 0 else -offset,
+            float(cycle.forces[row, column]) / pair.face_width,
         )
+        at = flank_points(ring.mesh, np.array([min(rho, flexible.rho_range[1])]))
+        half_width, edge = contact_half_width(pair, cycle, row, int(column)), bool(cycle.edge[row, column])
+        corner = near_corner(cycle, row, int(column), half_width, bodies)
+        if corner is None:
+            unresolved = INDICATIVE * pair.module if edge else 0.0
+            contacts.append(Contact(tooth, at, line_load, half_width, unresolved=unresolved))
+        else:
+            contacts.append(corner_contact(cycle, row, int(column), bodies, ring, gear, corner))
     return contacts
 
 
@@ -206,9 +210,9 @@ class _Part:
         middle = sector.points[cells[:, :3]].mean(axis=1)
         circles = np.array([profile.root_radius, profile.form_radius])
         near = np.zeros(len(cells), dtype=np.int64)
-        if sector.contact is not None and sector.contact.edge:
-            away = np.linalg.norm(middle - sector.contact.at.points[0], axis=1)
-            near[away < INDICATIVE * profile.module] = 1
+        if sector.contact is not None:
+            away = np.linalg.norm(middle - sector.contact.sharp, axis=1)
+            near[away < sector.contact.unresolved] = 1
         return cls(
             sector.points @ turn.T + centre,
             cells,
@@ -220,27 +224,38 @@ class _Part:
         )
 
 
+def _von_mises(plane: Array, law: PlaneElasticity) -> Array:
+    xx, yy, xy = plane[:, 0, 0], plane[:, 1, 1], plane[:, 0, 1]
+    zz = law.out_of_plane_stress(plane)
+    return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xy**2)
+
+
 def _joined(parts: list[_Part], law: PlaneElasticity) -> GearField:
     def all_of(name: str) -> Array:
         return np.concatenate([getattr(part, name) for part in parts])
 
     starts = np.cumsum([0, *(len(part.points) for part in parts[:-1])])
-    plane = all_of("stress")
+    cells = np.concatenate([part.cells + start for part, start in zip(parts, starts, strict=True)])
+    plane, indicative = all_of("stress"), all_of("indicative").astype(np.int64)
+    # stress that is only indicative is drawn no greater than the greatest elsewhere, which sets the range of colours
+    size = _von_mises(plane, law)
+    plane = (
+        plane * np.minimum(1.0, size[cells[indicative == 0]].max() / np.maximum(size, 1e-300))[:, None, None]
+    )
     xx, yy, xy = plane[:, 0, 0], plane[:, 1, 1], plane[:, 0, 1]
     zz = law.out_of_plane_stress(plane)
     middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
     lean = 0.5 * np.arctan2(2 * xy, xx - yy)
-    mises = np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xy**2)
     squares = xx**2 + yy**2 + zz**2 - 2 * law.nu * (xx * yy + yy * zz + zz * xx)
     return GearField(
         points=all_of("points"),
-        cells=np.concatenate([part.cells + start for part, start in zip(parts, starts, strict=True)]),
+        cells=cells,
         tooth=all_of("tooth").astype(np.int64),
         region=all_of("region").astype(np.int64),
-        indicative=all_of("indicative").astype(np.int64),
+        indicative=indicative,
         displacement_m=all_of("moved"),
         stress_Pa=np.column_stack([xx, yy, zz, xy]),
-        von_mises_Pa=mises,
+        von_mises_Pa=_von_mises(plane, law),
         principal_Pa=np.column_stack([middle + radius, middle - radius]),
         principal_direction=np.column_stack([np.cos(lean), np.sin(lean)]),
         energy_density_J_per_m3=(squares + 2 * (1 + law.nu) * xy**2) / (2 * law.E),

@@ -29,6 +29,7 @@ __all__ = [
     "hertz_stress",
     "leaning",
     "stress",
+    "strips_stress",
     "traction",
 ]
 
@@ -165,6 +166,41 @@ def hertz_stress(points: Array, centre: Array, inward: Array, half_width: float,
     sigma_x = -peak / a * (m * (1 + share) - 2 * z)
     sigma_z = -peak / a * m * (1 - share)
     tau = -peak / a * n * (m**2 - z**2) / total
+    side = np.array([-inward[1], inward[0]])
+    tensor: Array = (
+        np.multiply.outer(sigma_x, np.outer(side, side))
+        + np.multiply.outer(sigma_z, np.outer(inward, inward))
+        + np.multiply.outer(tau, np.outer(side, inward) + np.outer(inward, side))
+    )
+    return tensor
+
+
+def strips_stress(points: Array, centre: Array, inward: Array, strips: Array) -> Array:
+    """In-plane stresses (n, 2, 2) [Pa] under uniform pressures on strips of a half-plane's edge.
+
+    With theta_1 and theta_2 the angles from the edge to the point, seen from the strip's two ends, and p its pressure:
+    sigma_x = -(p/2 pi)[2 (theta_1 - theta_2) + sin 2 theta_1 - sin 2 theta_2], sigma_z with the sines' signs turned,
+    tau_xz = (p/2 pi)(cos 2 theta_1 - cos 2 theta_2) (K. L. Johnson, Contact Mechanics, 1985, equations 2.31).
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        [m]
+    centre, inward : (2,) arrays
+        Origin of the strips' middles, and the unit normal into the body.
+    strips : (3, k) array
+        Middles [m], towards the left seen along the normal, widths [m] and line loads [N/m].
+    """
+    z, x, _ = _frame(points, centre, inward)
+    z = np.maximum(z, 0.0)
+    sigma_x, sigma_z, tau = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
+    for middle, width, force in strips.T:
+        first, second = (np.arctan2(z, x - middle + end * width) for end in (-0.5, 0.5))
+        part = force / (2 * np.pi * width)
+        turn, sines = 2 * (first - second), np.sin(2 * first) - np.sin(2 * second)
+        sigma_x -= part * (turn + sines)
+        sigma_z -= part * (turn - sines)
+        tau += part * (np.cos(2 * first) - np.cos(2 * second))
     side = np.array([-inward[1], inward[0]])
     tensor: Array = (
         np.multiply.outer(sigma_x, np.outer(side, side))

@@ -8,6 +8,7 @@ from base import Array, record
 from fem import flamant
 from fem.elasticity import PlaneElasticity
 from fem.line_load import FlankPoints
+from fem.tip_sector import TipSector
 
 __all__ = ["Contact", "near_field"]
 
@@ -29,15 +30,30 @@ class Contact:
         [N/m]
     half_width : float
         Of the pressure [m].
-    edge : bool
-        Whether a tip edge touches: pressure and half-width are then only indicative.
+    unresolved : float
+        Distance from ``corner`` within which stresses are only indicative [m].
+    corner : (2,) array, optional
+        Where a tip corner presses; the place itself unless given.
+    strips : (3, k) array, optional
+        Pressure other than Hertz's: middles of strips along the flank, from the place towards the left seen along the
+        inward normal [m], their widths [m] and line loads [N/m]; the half-width is then half of what they cover.
+    sector : TipSector, optional
+        What the pressure stands on where the gear's own corner is near: that takes the place of the near field.
     """
 
     tooth: int
     at: FlankPoints
     line_load: float
     half_width: float
-    edge: bool = False
+    unresolved: float = 0.0
+    corner: Array | None = None
+    strips: Array | None = None
+    sector: TipSector | None = None
+
+    @property
+    def sharp(self) -> Array:
+        """Place about which stresses may be only indicative (2,) [m]."""
+        return self.at.points[0] if self.corner is None else self.corner
 
 
 def near_field(points: Array, contact: Contact, law: PlaneElasticity, length: float) -> tuple[Array, Array]:
@@ -52,9 +68,13 @@ def near_field(points: Array, contact: Contact, law: PlaneElasticity, length: fl
     stress[far] = w * flamant.stress(points[far], load, inward)
     close = inside > 0
     share = inside[close, None]
-    spread = _hertz_displacement(points[close], contact, law, length)
+    if contact.strips is None:
+        spread = _hertz_displacement(points[close], contact, law, length)
+        pressed = flamant.hertz_stress(points[close], load, inward, a, 2 * w / (np.pi * a))
+    else:
+        spread = _strips_displacement(points[close], contact, contact.strips, law, length)
+        pressed = flamant.strips_stress(points[close], load, inward, contact.strips)
     displacement[close] = (1 - share) * displacement[close] + share * spread
-    pressed = flamant.hertz_stress(points[close], load, inward, a, 2 * w / (np.pi * a))
     stress[close] = (1 - share[..., None]) * stress[close] + share[..., None] * pressed
     return displacement, stress
 
@@ -72,3 +92,16 @@ def _hertz_displacement(points: Array, contact: Contact, law: PlaneElasticity, l
         apart = points + 1e-3 * contact.half_width * inward
         total += weight * flamant.displacement(apart, source, inward, law, length)
     return contact.line_load * total
+
+
+def _strips_displacement(
+    points: Array, contact: Contact, strips: Array, law: PlaneElasticity, length: float
+) -> Array:
+    """Sum Flamant's displacement over strips, each taken from a little above its middle."""
+    load, inward = contact.at.points[0], contact.at.inward[0]
+    side = np.array([-inward[1], inward[0]])
+    total = np.zeros_like(points)
+    for middle, width, force in strips.T:
+        apart = points + 0.2 * width * inward
+        total += force * flamant.displacement(apart, load + middle * side, inward, law, length)
+    return total

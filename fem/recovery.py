@@ -8,6 +8,7 @@ Averages of the elements' stresses are least exact on the boundary, where they m
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,25 +41,34 @@ class NodalStress:
         Unit tangents there, material on the left.
     share : (k,) array
         One over the number of times that the node is listed.
+    curves : mapping of str to slice
+        Nodes of each curve in that list.
     """
 
     matrix: csr_array
     nodes: Integers
     tangents: Array
     share: Array
+    curves: Mapping[str, slice]
 
     def from_tractions(self, mesh: SectorMesh, load: Array, inward: Array, law: PlaneElasticity) -> Array:
         """Part (n, 3) of u_r's stress that its tractions -sigma_s n on the free edges make [1/m]."""
         t = self.tangents
         n = np.stack([t[:, 1], -t[:, 0]], axis=1)
         pull = -flamant.traction(mesh.points[self.nodes], n, load, inward)
+        return self.by_tractions(len(mesh.points), pull, law)
+
+    def by_tractions(self, count: int, pull: Array, law: PlaneElasticity) -> Array:
+        """Part (count, 3) of the stress that tractions (k, 2) on the listed nodes make."""
+        t = self.tangents
+        n = np.stack([t[:, 1], -t[:, 0]], axis=1)
         across, along = np.sum(pull * n, axis=1), np.sum(pull * t, axis=1)
         across, along = across * self.share, along * self.share
         tensor = (
             across[:, None, None]
             * (n[:, :, None] * n[:, None] + law.plane_poisson * t[:, :, None] * t[:, None])
         ) + along[:, None, None] * (n[:, :, None] * t[:, None] + t[:, :, None] * n[:, None])
-        total = np.zeros((len(mesh.points), 3))
+        total = np.zeros((count, 3))
         np.add.at(total, self.nodes, tensor[:, [0, 1, 0], [0, 1, 1]])
         return total
 
@@ -67,9 +77,10 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
     """Set up the recovery for a sector."""
     from scipy.sparse import coo_array, csr_array, diags_array, vstack
 
-    nodes, tangents, strains = [], [], []
-    for edges in mesh.free.values():
+    nodes, tangents, strains, curves, first = [], [], [], {}, 0
+    for name, edges in mesh.free.items():
         own, along, strain = _on_curve(mesh.points, edges)
+        curves[name], first = slice(first, first + len(own)), first + len(own)
         nodes.append(own)
         tangents.append(along)
         strains.append(strain)
@@ -86,7 +97,7 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
     averaged = nodal_stress_matrix(mesh.points, mesh.triangles, law, mesh.thickness)
     inside = diags_array(np.repeat(np.where(count == 0, 1.0, 0.0), 3))
     matrix = csr_array(inside @ averaged + to_tensor.tocsr() @ vstack(strains, format="csr"))
-    return NodalStress(matrix, listed, t, share)
+    return NodalStress(matrix, listed, t, share, curves)
 
 
 def _on_curve(points: Array, edges: Integers) -> tuple[Integers, Array, csr_array]:

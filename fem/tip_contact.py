@@ -30,7 +30,7 @@ from fem.tip_strips import RATIO, REACH, TipStrips, sharp_layout
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["EdgeLaw", "edge_laws", "nearest_gap", "rounded_law", "strip_law"]
+__all__ = ["EdgeLaw", "StripsOfContact", "edge_laws", "nearest_gap", "rounded_law", "strip_law", "strips_of"]
 
 ARC_STRIP, ARC_FINE, ARC_REACH = 0.02, 0.25, 0.7
 """On a rounding: width of the strips, the length that is covered by them, and the length covered at all (in
@@ -231,13 +231,68 @@ def _strips(
 ) -> tuple[Array, Array, Array]:
     """Kernel (n, k, k) of both bodies [m per N/m], gaps [m] and levers (n, k) of strips at a tip."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
-    place = rho1 if corner == 1 else pair.line_of_action - rho1
-    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
-    angle = opening(radii, pair.line_of_action, place, touched, tip.unrounded_rho)
+    angle = _lean(pair, corner, rho1, tip, touched)
     own = strips.lever(angle)
     turned = strips.hub_windup * own[:, :, None] * own[:, None, :]
     kernel = strips.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
     return kernel, gaps, _levers(pair, corner, touched, rho1)
+
+
+def _lean(pair: GearPair, corner: int, rho1: Array, tip: _Tip, touched: Array) -> Array:
+    """Angles (n, k) by which forces on the touched flank lean from the normals of the corner's flank [rad]."""
+    place = rho1 if corner == 1 else pair.line_of_action - rho1
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    return opening(radii, pair.line_of_action, place, touched, tip.unrounded_rho)
+
+
+@record
+class StripsOfContact:
+    """Strips of one contact at a tip (k,): those of ``edge_laws``.
+
+    Attributes
+    ----------
+    distance, width : (k,) arrays
+        From the sharp corner to the middles, and widths [m].
+    touched : (k,) array
+        Curvature radii of the other gear's flank [m].
+    lean : (k,) array
+        Angles of the forces from the inward normals of the corner's flank, away from the tip [rad].
+    gaps, levers : (k,) arrays
+        [m], -
+    kernel : (k, k) array
+        Of both bodies, without the turn on the hub [m per N/m].
+    """
+
+    distance: Array
+    width: Array
+    touched: Array
+    lean: Array
+    gaps: Array
+    levers: Array
+    kernel: Array
+
+
+def strips_of(
+    pair: GearPair,
+    strips: TipStrips,
+    corner: int,
+    rho1: float,
+    other: PlaneElasticity,
+    layout: tuple[Array, Array] | None = None,
+    rounding: TipRound | None = None,
+) -> StripsOfContact:
+    """Strips of one contact at ``rho1``; distances and widths of a ``layout``, or those that suit the rounding.
+
+    Other arguments as for ``edge_laws``; flanks without relief.
+    """
+    profile, at = pair.teeth_profiles[corner], np.array([rho1])
+    rounding = rounding or tip_round(profile, 0.0)
+    tip = _surface(profile, *(layout or round_layout(pair.module, rounding)), rounding)
+    answer, missing = strips.on(tip.distance, tip.width), (_nothing, _nothing)
+    kernel, gaps, levers = _strips(pair, answer, corner, at, other, tip, missing)
+    _, touched = _gaps(pair, corner, at, tip, missing)
+    lean = _lean(pair, corner, at, tip, touched)[0]
+    return StripsOfContact(tip.distance, tip.width, touched[0], lean, gaps[0], levers[0], kernel[0])
 
 
 def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:

@@ -42,7 +42,7 @@ def relieved():
 def test_numbers_of_the_article_pair(article_pair, article_bodies):
     cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
     assert cycle.transmission_error_range == pytest.approx(7.577e-6, abs=0.002e-6)
-    np.testing.assert_allclose(cycle.stiffness_harmonics[:2], [0.02687, 0.00580], atol=3e-5)  # 12800 samples
+    np.testing.assert_allclose(cycle.stiffness_harmonics[:2], [0.02636, 0.00653], atol=3e-5)  # 12800 samples
     assert cycle.errors["transmission_error_range"] < 1e-3
     assert np.all(cycle.stiffness_harmonics_error[:2] < 0.01 * cycle.stiffness_harmonics[:2])
     # the samples alone miss 7 % of it
