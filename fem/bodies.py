@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import cached_property
+from math import cos
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from base import Array, Cost, Faults, described, part, quantity, record
+from fem.back_compliance import BackCompliance
 from fem.flamant import hertz_half_width, hertz_indentation
 from fem.flank_motion import FlankMotion
 from fem.gear_compliance import GearCompliance
@@ -55,6 +57,10 @@ class Compliance:
     )
     flank_motions: tuple[FlankMotion, FlankMotion] | None = part(
         "how the flanks of both gears move; None before contacts that move have asked for it", default=None
+    )
+    back_series: tuple[BackCompliance, BackCompliance] | None = part(
+        "what loads on front flanks do to back flanks; None before flanks on both sides have asked for it",
+        default=None,
     )
     fit_error: float = quantity("1", "part of the error by the fit along the flanks", default=0.0)
     gain: float = quantity("1", "by how much the last refinement reduced the mesh's error", default=1.0)
@@ -101,6 +107,18 @@ class Compliance:
         )
         return first, second
 
+    @cached_property
+    def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
+        """What loads on the front flanks of both gears do to their back flanks; solved where it was not."""
+        if self.back_series is not None:
+            return self.back_series
+        gears = Gears()
+        first, second = (
+            gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
+            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
     def rings(self) -> tuple[Ring, Ring]:
         """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
         return self._rings
@@ -116,15 +134,27 @@ class Compliance:
 
     @property
     def coarser(self) -> Compliance | None:
-        """The same gears on the mesh before the last refinement; tip edges keep their strips, flanks their motion."""
+        """The same gears on the mesh before the last refinement; tips, motion and back flanks stay as they are."""
         if self.before is None:
             return None
         pinion, wheel = self.before
-        tips, motions = (
+        tips, motions, backs = (
             self.__dict__.get(found, given)  # whatever has been solved until now
-            for found, given in (("tips", self.tip_strips), ("motions", self.flank_motions))
+            for found, given in (
+                ("tips", self.tip_strips),
+                ("motions", self.flank_motions),
+                ("back_flanks", self.back_series),
+            )
         )
-        return replace(self, pinion=pinion, wheel=wheel, before=None, tip_strips=tips, flank_motions=motions)
+        return replace(
+            self,
+            pinion=pinion,
+            wheel=wheel,
+            before=None,
+            tip_strips=tips,
+            flank_motions=motions,
+            back_series=backs,
+        )
 
     def without(self, *parts: str) -> Compliance:
         """Leave parts out, to compare with models that do not have them.
@@ -174,6 +204,20 @@ class Compliance:
         """What all contacts yield alike beyond the compliances of the flanks [m/N]; less what is left out."""
         support = 0.0 if "support" in self.left_out else sum(self.support)
         return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
+
+    @property
+    def common_across(self) -> float:
+        """What all contacts of one side yield by those of the other, beyond the flanks' compliances [m/N].
+
+        Torques of the two sides are opposed; their normals are 2 alpha_w apart.
+        """
+        windup = sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0
+        if "support" in self.left_out:
+            return windup
+        apart = cos(2 * self.pair.working_pressure_angle)
+        for support, radius in zip(self.supports, self.pair.base_radii, strict=True):
+            windup -= support.turn(radius) + apart / support.radial_stiffness
+        return windup
 
     @described("m/N")
     def turning(self) -> float:

@@ -60,4 +60,6 @@ def deflection_parts(cycle: MeshCycle, bodies: Compliance) -> Mapping[str, Array
         "support": hubs * cycle.forces.sum(axis=-1),
     }
     whole_deflection = cycle.against("bore").transmission_error
+    if cycle.flank == "back":
+        whole_deflection = -(whole_deflection + pair.backlash)
     return MappingProxyType({**found, "rest": whole_deflection - sum(found.values())})

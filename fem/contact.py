@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import wraps
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from base import Array, Booleans, Cost, Faults, Limit, RangeWarning, Stopwatch
 from fem.bodies import Compliance
+from fem.contact_candidates import contact_candidates
 from fem.cycle import MeshCycle
 from fem.edge_tables import EdgeTables
 from fem.elasticity import reduced_modulus
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["MeshCycle", "mesh_cycle"]
 
-TORQUE = Limit(0.0, unit="N m", low_open=True, remedy="the pinion drives; give its torque")
+TORQUE = Limit(unit="N m", remedy="give the pinion's torque, more than 0 where it drives")
 
 LARGE_DEFLECTION = 0.03
 """Part of the module above which a deflection is told."""
@@ -86,16 +88,20 @@ def mesh_cycle(
     friction: float = 0.0,
     reference: str = "bore",
     moving_contact: bool = False,
+    base_pitch_difference: float = 0.0,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
-    For every loaded pair D = sum_j bulk_ij F_j + Hertz(F_i) - s_i(F_i) + gap_i, with sum F_i = torque/r_b1.
+    For every loaded pair D = sum_j bulk_ij F_j + Hertz(F_i) - s_i(F_i) + gap_i, with sum F_i = torque/r_b1. Where the
+    deflection is more than the gap of the flanks on the other side, these are looked at, and both sides bear where
+    they touch (``fem.opposite_flanks``).
 
     Parameters
     ----------
     pair : gears.GearPair
     torque : float or sequence of float
-        Of the pinion [N m], > 0. A sequence, in any order, gives a tuple of cycles; all that does not depend on
+        Of the pinion [N m], negative where the wheel drives and back flanks bear. 0 has an answer only where the teeth
+        are pressed together without it. A sequence, in any order, gives a tuple of cycles; all that does not depend on
         the torque is computed once.
     positions : int
         Intervals of a base pitch.
@@ -131,6 +137,9 @@ def mesh_cycle(
         Whether contacts on the path move under load (``fem.moving_contact``), to the first order in the
         deflection over the module; a position is then that of the wheel, and the pinion takes up D. Otherwise
         contacts stay where undeformed teeth touch. ``model_error`` holds what either leaves out.
+    base_pitch_difference : float
+        Base pitch of the pinion less that of the wheel, such as by unequal temperatures [m]; both have the pair's but
+        for that (``gears.warm_pair``).
 
     Returns
     -------
@@ -166,6 +175,7 @@ def mesh_cycle(
         tip_rounding,
         friction,
         moving_contact=moving_contact,
+        base_pitch_difference=base_pitch_difference,
     )
     _check(given, torque, compliance, reference)
     watch = Stopwatch()
@@ -174,18 +184,26 @@ def mesh_cycle(
     )
     ready = watch.seconds
     tables = EdgeTables(given, bodies)
-    contact = solve(given, bodies, torque / pair.base_radii[0], film, tables)
+    forces, found = torque / pair.base_radii[0], {}
+    for back, chosen in ((False, torque > 0.0), (True, torque < 0.0), (False, torque == 0.0)):
+        if chosen.any():
+            side = replace(given, back=back)
+            contact = solve(side, bodies, np.abs(forces[chosen]), film, tables)
+            if given.moving_contact and contact.opposite is not None and contact.opposite.bears:
+                side = replace(side, moving_contact=False)
+                contact = solve(side, bodies, np.abs(forces[chosen]), film, tables)
+            found.update({k: (side, contact, n) for n, k in enumerate(np.flatnonzero(chosen).tolist())})
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
         watch.seconds,
         bodies.cost.unknowns,
-        contact.share.iterations,
+        max(contact.share.iterations for _, contact, _ in found.values()),
         parts={**before.parts, "contact": watch.seconds - ready},
         counts=bodies.cost.counts,
     )
     cycles = tuple(
-        _result(given, bodies, film, tolerance, tables, contact, k, float(t), cost)
-        for k, t in enumerate(torque)
+        _result(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
+        for k, (side, contact, number) in sorted(found.items())
     )
     return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
 
@@ -200,6 +218,17 @@ def _check(given: Setting, torque: Array, compliance: Compliance | None, referen
     if compliance is not None and compliance.pair != given.pair:
         found.add("compliance", "of another pair", "must be of this pair", "compute it anew")
     given.check(found)
+    found.raise_if_any()
+    if np.any(torque == 0.0):
+        play = float(np.max(contact_candidates(given).back_gap))
+        if play >= 0.0:
+            allowed = (
+                f"must not be 0 where no flank bears: there is play of {1e6 * play:.4g} um at some positions"
+            )
+            remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
+            found.add("torque", "0", allowed, remedy)
+    if not np.isfinite(given.base_pitch_difference):
+        found.add("base_pitch_difference", given.base_pitch_difference, "must be finite", "give metres")
     found.raise_if_any()
 
 
@@ -216,10 +245,11 @@ def _result(
 ) -> MeshCycle:
     where, pairs = contact.where, len(contact.where.offset)
     force = torque / given.pair.base_radii[0]
+    opposite = contact.opposite
     turned = contact.share.forces[number]  # kappa F
-    deflection = contact.share.transmission_error[number].ravel()
-    touch = contact.touch.ravel()
-    closing = contact.closing[number].ravel()
+    deflection = contact.deflection(number).ravel()
+    moved = contact.share.transmission_error[number].ravel() + contact.touch.ravel()
+    stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
@@ -232,13 +262,14 @@ def _result(
         lost = 0.5 * contact.moves.rolled(turned)
         share = share - turned * lost
         lost = lost.reshape(-1, pairs)
-        moved = moved_places(contact.moves, turned, contact.share.transmission_error[number])
-        rho = _on_flanks(given.pair, rho + moved.reshape(rho.shape))
+        shift = moved_places(contact.moves, turned, contact.share.transmission_error[number])
+        rho = _on_flanks(given.pair, rho + shift.reshape(rho.shape))
     large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
+    both = opposite is not None and opposite.bears
     return MeshCycle(
         torque=torque,
         force=force,
@@ -248,11 +279,11 @@ def _result(
         edge=edge,
         flank_rho=rho,
         forces=forces,
-        load_share=share.reshape(-1, pairs) / force + bad,
+        load_share=(share.reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)) + bad,
         gaps=where.gap.reshape(-1, pairs),
-        transmission_error=deflection + touch + bad,
-        stiffness=contact.share.stiffness[number].ravel() + bad,
-        secant_stiffness=force / deflection + bad,
+        transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
+        stiffness=stiffness + bad,
+        secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
         pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=given.beyond_path,
@@ -262,14 +293,18 @@ def _result(
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
-        or "; ".join([bodies.message, *_remarks(given, contact, forces, edge, closing), *large]),
+        or "; ".join([bodies.message, *_remarks(given, contact, number, forces, edge), *large]),
         pair=given.pair,
         candidates=where,
         friction=float(given.friction),
         supports=supports,
         reference=held,
         loaded=None if refusal else LoadedContacts(bodies, where, turned, approach, given.moving_contact),
-        problem=None if refusal else ContactProblem(given, bodies, force, film, tolerance, tables=tables),
+        problem=None
+        if refusal
+        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
+        flank="back" if given.back else "front",
+        opposite=opposite.flanks(number) if opposite is not None and both else None,
     )
 
 
@@ -295,7 +330,7 @@ def _large(given: Setting, contact: Solution, number: int, forces: Array, plane:
     return found
 
 
-def _remarks(given: Setting, contact: Solution, forces: Array, edge: Booleans, closing: Array) -> list[str]:
+def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans) -> list[str]:
     """What a reader of the figures should know."""
     where, remarks = contact.where, []
     if np.any(forces[edge] > 0):
@@ -311,9 +346,18 @@ def _remarks(given: Setting, contact: Solution, forces: Array, edge: Booleans, c
     if given.friction:
         remarks.append("friction changes the lever arms only, not the compliance")
     if np.min(where.back_gap) < 0:
-        remarks.append("the teeth jam: their back flanks penetrate by the deviations; give more backlash")
-    elif np.min(where.back_gap - closing) < 0:
         remarks.append(
-            "the backlash is less than the deflection, so back flanks might touch, which is left out"
+            f"the teeth jam: without load their back flanks overlap by up to {-1e6 * np.min(where.back_gap):.3g} um"
+        )
+    opposite = contact.opposite
+    if opposite is not None and np.any(opposite.forces[number] > 0):
+        bearing = np.any(opposite.forces[number] > 0, axis=-1)
+        remarks.append(
+            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions, and contacts stay"
+        )
+    elif opposite is not None:
+        clear = 1e6 * np.min(opposite.open[number])
+        remarks.append(
+            f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
         )
     return remarks

@@ -85,7 +85,12 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     last = ceil(pair.contact_ratio)
     offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
     stations = given.stations
-    within = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
+    position = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
+    within, turned = position, 0
+    if given.back:
+        within = given.mirror - position
+        turned = np.floor(within).astype(np.int64)
+        within = within - turned
     place = pair.points.A + (within[:, None] + offset) * pitch
     outside = (place < start) | (place > end)
     edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & given.beyond_path
@@ -101,6 +106,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     if removed is not None:
         on_path = touchable & ~edge
         gap[on_path] = removed[0](rho[0][on_path]) + removed[1](rho[1][on_path])
+    other_place = pair.points.A + given.mirror * pitch - (place - pair.points.A)
     for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
         if chosen.any():
             at = _edges(given, corner, place[chosen])
@@ -112,15 +118,19 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     touchable, edge = touchable & ~missed, edge & ~missed
     # (pitches, positions, pairs): every position in every pitch, or each in its own
     number = np.arange(given.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
-    steps = np.broadcast_to(number - offset, (given.pitches, positions, len(offset)))
-    teeth = np.stack([first + steps for first in given.first_teeth])
+    ahead = offset - turned[:, None] if given.back else -offset
+    steps = np.broadcast_to(number + ahead, (given.pitches, positions, len(offset)))
+    teeth, other = given.teeth(steps), given.opposite
     by_tooth = given.pitch_gap(teeth) + given.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
-    gaps = gap + by_tooth
-    back = np.where(touchable, -given.pitch_gap(teeth, wheel_ahead=1), np.inf).min(axis=-1)
+    rolling = given.rolling_gap(place)
+    gaps = gap + rolling + by_tooth
+    least = float(np.min(by_tooth) + np.min(rolling))
+    behind = other.pitch_gap(other.teeth(steps)) + given.rolling_gap(np.clip(other_place, start, end))
+    back = np.where(touchable, behind, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, given.pitches, 1)
     return ContactCandidates(
-        position=(number[..., 0] + within).ravel(),
+        position=(number[..., 0] + position).ravel(),
         offset=offset,
         place=place,
         rho=rho,
@@ -133,7 +143,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
         chamfered=chamfered,
-        reach_gap=_reach_gap(given, reach) + float(np.min(by_tooth)) if given.beyond_path else np.inf,
+        reach_gap=_reach_gap(given, reach) + least if given.beyond_path else np.inf,
     )
 
 

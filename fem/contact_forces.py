@@ -80,7 +80,7 @@ def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
 
 def _touched(pair: GearPair, cycle: MeshCycle, row: int, column: int) -> tuple[Array, Array]:
     """Place of a contact, and the normal along the force on the wheel."""
-    start = float(pair.points.A + cycle.position[row] * pair.base_pitch)
+    start = float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch)
     placed = pair.placement(start)
     offset = int(cycle.pair_offset[column])
     # a tip edge touches the other gear's flank: the wheel's, when it comes after E

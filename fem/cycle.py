@@ -25,7 +25,9 @@ from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
 from fem.moving_contact import LoadedContacts
+from fem.opposite_flanks import OppositeFlanks
 from fem.references import check_reference, turns
+from fem.setting import Setting
 from fem.support import FIXED, Support
 from gears import GearPair, half_width, peak_pressure
 from gears.mesh_figures import MeshArcs, MeshFigures
@@ -47,7 +49,7 @@ class MeshCycle(MeshFigures):
     headline = ("torque", "mean_stiffness", "mean_secant_stiffness", "transmission_error_range")
 
     torque: float = quantity("N m", "torque of the pinion")
-    force: float = quantity("N", "torque over the pinion's base radius")
+    force: float = quantity("N", "torque over the pinion's base radius, negative where back flanks bear")
     position: Array = quantity(
         "1", "base pitches from A, of the pair that entered last at first: midpoints of intervals", "position"
     )
@@ -70,7 +72,12 @@ class MeshCycle(MeshFigures):
         shown="mm",
     )
     forces: Array = quantity("N", "normal force; zero where unloaded", "position pair")
-    load_share: Array = quantity("1", "share of the torque; rows sum to one", "position pair")
+    load_share: Array = quantity(
+        "1",
+        "share of the torque; rows sum to one, to more where flanks on the other side bear against them, nan without a "
+        "torque",
+        "position pair",
+    )
     gaps: Array = quantity(
         "m",
         "unloaded gap along the line of action, from the position without any deviation, so it may be negative; "
@@ -81,7 +88,8 @@ class MeshCycle(MeshFigures):
     transmission_error: Array = quantity(
         "m",
         "loaded static transmission error D, the pinion's turn times its base radius with the wheel held: all "
-        "deflection up to `reference`, relief and deviations; positive when the wheel lags",
+        "deflection up to `reference`, relief and deviations, and the backlash where back flanks bear; positive when "
+        "the wheel lags",
         "position",
         shown="um",
         error="error",
@@ -90,7 +98,10 @@ class MeshCycle(MeshFigures):
         "N/m", "tangent dF/dD: small vibration about the load", "position", error="error"
     )
     secant_stiffness: Array = quantity(
-        "N/m", "F/(D - D_0), D_0 the unloaded transmission error", "position", error="error"
+        "N/m",
+        "F/(D - D_0), D_0 the transmission error without torque; the tangent where there is none",
+        "position",
+        error="error",
     )
     pair_stiffness: Array = quantity(
         "N/m", "slope dF_i/dD of each pair's force; zero where unloaded", "position pair"
@@ -115,6 +126,12 @@ class MeshCycle(MeshFigures):
     supports: tuple[Support, Support] = part(
         "how the bores are held, of what the compliance counts", default=(FIXED, FIXED)
     )
+    flank: str = quantity(
+        "",
+        '"front": flanks of a driving pinion; "back": of a braking one, rho and levers of the mirror',
+        default="front",
+    )
+    opposite: OppositeFlanks | None = part("flanks on the other side, where they bear as well", default=None)
     reference: str = quantity(
         "", 'what the deflection is measured against: "bore", "body" or "teeth"', default="bore"
     )
@@ -155,10 +172,12 @@ class MeshCycle(MeshFigures):
         found.raise_if_any()
         less = turns(self.pair, self.supports, self.reference, self.bore_inertia)
         less = less - turns(self.pair, self.supports, reference, bore_inertia)
-        lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
-        lost = np.where(self.forces > 0, self.lever_loss, 0.0)
-        shift = less @ np.sum((lever - lost) * self.forces, axis=-1)
-        slope = 1.0 - less @ np.sum((lever - 2 * lost) * self.pair_stiffness, axis=-1)  # dD'/dD
+        moments, slopes = self._moments()
+        shift = np.sign(self.force) * (less @ moments)
+        slope = 1.0 - less @ slopes  # dD'/dD
+        secant = self.secant_stiffness / slope
+        if self.force:
+            secant = self.force / (self.force / self.secant_stiffness - shift)
         known = self.__dict__.get("_found")
         measured = replace(
             self,
@@ -166,8 +185,9 @@ class MeshCycle(MeshFigures):
             bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
             transmission_error=self.transmission_error - shift,
             stiffness=self.stiffness / slope,
-            secant_stiffness=self.force / (self.force / self.secant_stiffness - shift),
+            secant_stiffness=secant,
             pair_stiffness=self.pair_stiffness / slope[:, None],
+            opposite=None if self.opposite is None else self.opposite.per_deflection(slope),
             # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
@@ -178,6 +198,21 @@ class MeshCycle(MeshFigures):
                 known if isinstance(known, str) else measured_less(known, self.force, less)
             )
         return measured
+
+    def _moments(self) -> tuple[Array, Array]:
+        """Net normal force by its levers about both gears, and its slope by D (2, n)."""
+        lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
+        lost = np.where(self.forces > 0, self.lever_loss, 0.0)
+        sums = [
+            np.sum((lever - part * lost) * one, axis=-1)
+            for part, one in ((1, self.forces), (2, self.pair_stiffness))
+        ]
+        if self.opposite is not None:
+            other = self.opposite
+            lever = np.where(other.forces > 0, other.lever, 0.0)
+            for total, one in zip(sums, (other.forces, other.pair_stiffness), strict=True):
+                total -= np.sum(lever * one, axis=-1)
+        return sums[0], sums[1]
 
     @property
     def arcs(self) -> MeshArcs | None:
@@ -217,8 +252,37 @@ class MeshCycle(MeshFigures):
 
     @described("m", "position", shown="um")
     def unloaded_transmission_error(self) -> Array:
-        """D at which the gears touch without load: the smallest gap."""
-        return np.asarray(self.gaps.min(axis=1))
+        """D at which the loaded flanks touch without load: the smallest gap, beyond the backlash for back flanks."""
+        least = self.gaps.min(axis=1)
+        return np.asarray(least if self.flank == "front" else -(self.pair.backlash + least))
+
+    @described("1", "position")
+    def loaded_position(self) -> Array:
+        """Positions at which the loaded flanks stand on the path of contact: of back flanks in the mirror."""
+        if self.flank == "front":
+            return self.position
+        return np.asarray((Setting(self.pair).mirror - self.position) % 1.0)
+
+    @described("N", "position")
+    def opposite_force(self) -> Array:
+        """Normal force of all flanks on the other side together; zero where they do not bear."""
+        zero = np.zeros(len(self.position))
+        return zero if self.opposite is None else np.asarray(self.opposite.forces.sum(axis=-1))
+
+    @described("N", "position")
+    def separating_force(self) -> Array:
+        """Force of the flanks on both sides that pushes the gears apart, along the line of centres."""
+        both = self.forces.sum(axis=-1) + self.opposite_force
+        return np.asarray(both * np.sin(self.pair.working_pressure_angle))
+
+    @described("N", "position")
+    def bearing_force(self) -> Array:
+        """Force on the bearings of either gear by the normal forces: separating and tangential part together.
+
+        Tip edges are taken along the line of action.
+        """
+        across = self.forces.sum(axis=-1) - self.opposite_force
+        return np.asarray(np.hypot(self.separating_force, across * np.cos(self.pair.working_pressure_angle)))
 
     @property
     def teeth(self) -> Integers:
@@ -227,7 +291,7 @@ class MeshCycle(MeshFigures):
 
     @described("m", "position", shown="um")
     def back_gap(self) -> Array:
-        """Smallest gap between back flanks without load: below zero the teeth jam."""
+        """Smallest gap of the flanks on the other side without load: below zero the teeth jam."""
         return self.candidates.back_gap
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
@@ -253,7 +317,8 @@ class MeshCycle(MeshFigures):
     def surface_speeds(self, speed: float = 1.0) -> Array:
         """Speeds of pinion's and wheel's surface along the tangent of each contact (2, n, pairs) [m/s].
 
-        The gears turn evenly; tip edges included, along the tangent of the flank that they touch.
+        The gears turn evenly; tip edges included, along the tangent of the flank that they touch. Towards the tip of
+        the pinion; back flanks move the other way.
 
         Parameters
         ----------
@@ -261,6 +326,7 @@ class MeshCycle(MeshFigures):
             Of the pinion [rad/s].
         """
         first, second = self.pair.base_radii
+        speed = speed if self.flank == "front" else -speed
         return np.asarray(
             speed * self.candidates.tangent_arm * np.array([1.0, first / second])[:, None, None]
         )
@@ -282,7 +348,7 @@ class MeshCycle(MeshFigures):
 
     @described("N m", "position")
     def wheel_torque(self) -> Array:
-        """Torque on the wheel of the normal forces, tilted by friction if there is any.
+        """Torque on the wheel of the normal forces, tilted by friction if there is any; of the loaded flanks alone.
 
         Where a tip edge presses it differs from the torque of the pinion times the ratio even without
         friction, by what the yielding teeth store; over a cycle that evens out.
@@ -290,7 +356,8 @@ class MeshCycle(MeshFigures):
         slip = np.sign(self.sliding())
         arm = self.candidates.lever[1] * self.pair.base_radii[1]
         arm = arm + self.friction * slip * self.candidates.tangent_arm[1]
-        return np.asarray(np.sum(self.forces * arm, axis=1, where=np.isfinite(arm)))
+        total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
+        return np.asarray(total if self.flank == "front" else -total)
 
     def friction_loss(self, speed: float) -> Array:
         """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""
@@ -300,17 +367,20 @@ class MeshCycle(MeshFigures):
     @described("1")
     def efficiency(self) -> float:
         """Power put in less the mean power lost by sliding, over the power put in; 1 without friction."""
-        return float(1.0 - np.mean(self.friction_loss(1.0)) / self.torque)
+        return float(1.0 - np.mean(self.friction_loss(1.0)) / abs(self.torque))
 
 
 def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
-    """Note a row that the cycle does not have, or that has no finite forces."""
+    """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides."""
     last = len(cycle.position) - 1
     known = np.isfinite(
         found.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
     )
     if known and not np.all(np.isfinite(cycle.forces[row])):
         found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
+    elif known and cycle.opposite_force[row] > 0.0:
+        allowed = "must have flanks that bear on one side of the teeth, where fields and stresses are wanted"
+        found.add("cycle", f"row {row} with flanks that bear on both sides", allowed, "give more backlash")
 
 
 def require_row(cycle: MeshCycle, row: int) -> None:

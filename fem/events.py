@@ -37,7 +37,7 @@ class ContactProblem:
     given : Setting
     bodies : Compliance
     force : float
-        Torque over the pinion's base radius [N].
+        Torque over the pinion's base radius [N], negative where back flanks bear.
     film : Film or None
     tolerance : float
         Relative, of the figures.
@@ -85,10 +85,10 @@ class ContactProblem:
         tables = self.tables or EdgeTables(self.given, bodies)
 
         def sample(position: Array) -> Sampled:
-            found = solve(self.given.at(position), bodies, np.array([self.force]), self.film, tables)
+            found = solve(self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables)
             if why := found.refusal(0):
                 raise SolverError(f"between the positions of the mesh cycle {why}")
-            reserve = _reserve(found, self.force, self.given.even)
+            reserve = _reserve(found, abs(self.force), self.given)
             return Sampled(self._curves(found), reserve)
 
         return sample
@@ -123,23 +123,31 @@ class ContactProblem:
             places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]
         more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
         film = np.zeros(0) if self.corners is None else self.corners
-        return np.concatenate([self.given.corners, more, film])
+        return self.given.seen(np.concatenate([self.given.corners, more, film]))
 
     def _curves(self, found: Solution) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
         share, where, turned = found.share, found.where, found.share.forces[0, 0]
-        deflection = share.transmission_error[0, 0]
-        moved, tangent, secant = deflection + found.touch[0], share.stiffness[0, 0], self.force / deflection
+        size, deflection = abs(self.force), found.deflection(0)[0]
+        moved, tangent = share.transmission_error[0, 0] + found.touch[0], share.stiffness[0, 0]
+        secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
             rho1 = np.where(where.touchable & ~where.edge, where.rho[0], np.nan)
-            shares = turned * found.levers / self.force
+            shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
             added = film_yielding(self.film, rho1, turned / found.kappa, shares)
             # the film's part counts in proportion to the whole transmission error
             secant = secant * moved / (moved + added)
-        lever = np.where(turned > 0.0, where.lever, 0.0) / found.kappa
+        if self.given.back:
+            moved = -(self.given.pair.backlash + moved)
         lost = 0.5 * found.moves.rolled(turned) if found.moves is not None else 0.0  # as MeshCycle.lever_loss
-        moments = np.sum((lever - lost) * turned, axis=-1) / self.force
-        slopes = np.sum((lever - 2 * lost) * share.pair_stiffness[0, 0], axis=-1)
+        other = found.opposite
+        moments = found.moments(turned, None if other is None else other.forces[0, 0], lost)
+        moments = moments / size if size else np.zeros_like(moments)
+        slopes = found.moments(
+            share.pair_stiffness[0, 0],
+            None if other is None else other.pair_stiffness[0, 0],
+            2 * lost,
+        )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn)
 
@@ -170,19 +178,27 @@ def _less(curves: Array, force: float, turn: Array) -> Array:
     moved, tangent, secant = curves[:3]
     moments, slopes = curves[3:5], curves[5:]
     shift, slope = force * (turn @ moments), 1.0 - turn @ slopes
-    secant = force / (force / secant - shift)
+    secant = force / (force / secant - shift) if force else secant / slope
     return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
 
 
-def _reserve(found: Solution, force: float, even: bool) -> Array:
+def _reserve(found: Solution, force: float, given: Setting) -> Array:
     """Reserves of contacts by force or gap, and of the nearest pair by what the next one is behind it.
 
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.
     """
     size = np.mean(found.share.transmission_error)
-    loads = found.share.forces[0, 0]
-    bears = np.where(loads > 0.0, loads / force, -np.maximum(found.open[0, 0], 0.0) / size - 1e-300)
-    if even:
+    loads, left = found.share.forces[0, 0], found.open[0, 0]
+    if given.both and found.opposite is not None:
+        # both sides may be pressed together without a torque, or with next to none
+        loads = np.concatenate([loads, found.opposite.forces[0, 0]], axis=-1)
+        left = np.concatenate([left, found.opposite.open[0, 0]], axis=-1)
+        force, size = (
+            float(loads.sum(axis=-1).mean()),
+            float(loads.sum(axis=-1).mean() / np.mean(found.share.stiffness)),
+        )
+    bears = np.where(loads > 0.0, loads / force, -np.maximum(left, 0.0) / size - 1e-300)
+    if given.even:
         return np.asarray(bears)
     # flanks that both fit touch together: what is less than rounding is no difference
     return np.concatenate([bears, _nearest(found.where.gap[0]) / size + 1e-10], axis=1)

@@ -145,7 +145,7 @@ def loaded_fields(
     require_row(cycle, row)
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     drawn = drawings or draw_gears(pair, bodies)
-    turns = frames(pair, float(pair.points.A + cycle.position[row] * pair.base_pitch))
+    turns = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))
     fields = []
     for gear, (drawing, (angle, centre)) in enumerate(zip(drawn, turns, strict=True)):
         contacts = _contacts(pair, cycle, row, drawing.ring, gear, bodies)

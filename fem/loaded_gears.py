@@ -107,7 +107,7 @@ def flank_forces(
     """
     _check(cycle, row, spread)
     reduced = reduced_modulus(pair, cycle.plane)
-    start = pair.points.A + cycle.position[row] * pair.base_pitch
+    start = pair.points.A + cycle.loaded_position[row] * pair.base_pitch
     placed = pair.placement(float(start))
     on_gears: tuple[list[FlankForce], list[FlankForce]] = ([], [])
     for column in np.flatnonzero(cycle.forces[row] > 0):
@@ -224,7 +224,11 @@ def loaded_gears(
     base.InputError
         Row or spread that make no sense, sizes whose cuts do not fit.
     """
-    start = pair.points.A + cycle.position[row] * pair.base_pitch if 0 <= row < len(cycle.position) else 0.0
+    start = (
+        pair.points.A + cycle.loaded_position[row] * pair.base_pitch
+        if 0 <= row < len(cycle.position)
+        else 0.0
+    )
     both = flank_forces(pair, cycle, row, spread)
     gears = []
     for gear, loads in enumerate(both):

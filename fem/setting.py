@@ -52,7 +52,8 @@ class Stations:
 class Setting:
     """How a pair stands and what its flanks are like; `mesh_cycle` describes each of these.
 
-    Nothing is checked before `check` is called.
+    Nothing is checked before `check` is called. With `back` the loaded flanks are those in which a braking pinion
+    bears: the same gears in a mirror, at the same positions. `both`: their opposite flanks bear too.
     """
 
     pair: GearPair
@@ -65,12 +66,47 @@ class Setting:
     friction: float = 0.0
     stations: Stations | None = None
     moving_contact: bool = False
+    base_pitch_difference: float = 0.0
+    back: bool = False
+    both: bool = False
 
     def at(self, position: Array) -> Setting:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
         pitch = np.floor(position)
         stations = Stations(position - pitch, pitch.astype(np.int64))
         return replace(self, positions=len(position), pitches=1, stations=stations)
+
+    @property
+    def opposite(self) -> Setting:
+        """The same gears and positions with the other flanks loaded."""
+        return replace(self, back=not self.back)
+
+    @cached_property
+    def mirror(self) -> float:
+        """Sum c of a position and of that at which the mirrored gears stand alike, with the wheel where it is.
+
+        The flanks of a tooth of the wheel are 2 r_b2 psi_b2 apart on its base circle, the two lines of action leave
+        it 2 r_b2 alpha_w apart, and its back flank meets the tooth of the pinion that follows:
+        c = 2 [L - rho1_A - r_b2 (psi_b2 + alpha_w)]/p_b + 1. With the pinion where it is c is less by j/p_b.
+        """
+        pair, wheel = self.pair, self.pair.teeth_profiles[1]
+        turn = wheel.base_radius * (wheel.base_half_angle + pair.working_pressure_angle)
+        return 2 * (pair.line_of_action - pair.points.A - turn) / pair.base_pitch + 1
+
+    def seen(self, position: Array) -> Array:
+        """Positions at which a corner in the law of a flank is met by the flanks that bear (n,), 0 to 1."""
+        mirrored = (self.mirror - position) % 1.0
+        if self.both:
+            return np.concatenate([position, mirrored])
+        return mirrored if self.back else position
+
+    def teeth(self, step: Integers) -> Integers:
+        """Numbers of the teeth that meet (2, ...), from those that the pinion's has been gone on by.
+
+        Behind a tooth of the pinion stands the wheel's following one.
+        """
+        first, second = self.first_teeth
+        return np.stack([first + step, second + step + int(self.back)])
 
     def check(self, found: Faults) -> None:
         """Note everything that is wrong."""
@@ -143,11 +179,11 @@ class Setting:
     def even(self) -> bool:
         """Whether the flanks are true involutes at equal pitches."""
         plain = all(some is None or some.every_tooth_alike for some in self._by_gear)
-        return plain and self.removed is None
+        return plain and self.removed is None and not self.base_pitch_difference
 
     @property
     def corners(self) -> Array:
-        """Positions within a base pitch at which the laws of a contact change by the geometry (n,), 0 to 1.
+        """Positions within a base pitch at which a flank's laws change by the geometry (n,), 0 to 1; see `seen`.
 
         The ends of the path, where flanks give way to tip edges; starts of tip relief; C with friction, which turns
         there; points of measured profiles unless there are very many, whose curvature alone steps there.
@@ -182,18 +218,19 @@ class Setting:
 
         return missing(0), missing(1)
 
-    def pitch_gap(self, teeth: Integers, wheel_ahead: int = 0) -> Array:
+    def pitch_gap(self, teeth: Integers) -> Array:
         """Gap along the line of action by pitch deviations of teeth (2, ...) [m].
 
-        A tooth of the pinion that comes late opens the gap, one of the wheel closes it.
+        A tooth of the pinion that comes late opens the gap of its loaded flank, one of the wheel closes it; behind a
+        tooth it is the other way round.
         """
         first, second = self._by_gear
         gap = np.zeros(teeth.shape[1:])
         if first is not None:
             gap += first.late(teeth[0])
         if second is not None:
-            gap -= second.late(teeth[1] + wheel_ahead)
-        return np.asarray(gap * cos(self.pair.rack.alpha))
+            gap -= second.late(teeth[1])
+        return np.asarray(gap * cos(self.pair.rack.alpha) * (-1 if self.back else 1))
 
     def tooth_gap(self, teeth: Integers, rho: Array) -> Array:
         """Gap by what teeth (2, ...) lack of the mean of their gear at curvature radii (2, ...) [m].
@@ -206,3 +243,7 @@ class Setting:
             if some is not None:
                 gap -= some.of_tooth(tooth, place)
         return gap
+
+    def rolling_gap(self, place: Array) -> Array:
+        """Gap by unequal base pitches at places of the line of action [m]: none at C, p_b2 - p_b1 a base pitch on."""
+        return np.asarray(self.base_pitch_difference / self.pair.base_pitch * (self.pair.points.C - place))

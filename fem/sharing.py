@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, record
 from fem.bodies import Compliance
-from fem.contact_candidates import REACHES, ContactCandidates, contact_candidates
-from fem.cut_off import cut_offs
+from fem.contact_candidates import REACHES, ContactCandidates
 from fem.edge_tables import EdgeTables
-from fem.local_law import Film, FilmLaw, PairLaws
+from fem.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.local_law import Film
 from fem.moving_contact import ContactMoves, contact_moves, moved_share
+from fem.opposite_flanks import OppositeShare, share_with_opposite
 from fem.setting import Setting
 
 if TYPE_CHECKING:
@@ -27,7 +29,8 @@ class Solution:
 
     kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
     closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear. With moving
-    contacts that do not settle, share is the one of contacts that stay, and settled is False.
+    contacts that do not settle, share is the one of contacts that stay, and settled is False. opposite: the flanks on
+    the other side, where they were looked at.
     """
 
     where: ContactCandidates
@@ -39,11 +42,34 @@ class Solution:
     open: Array
     moves: ContactMoves | None
     settled: bool
+    opposite: OppositeShare | None = None
 
     @property
     def touch(self) -> Array:
         """Transmission error at which the gears touch without load (pitches, positions) [m]."""
         return np.asarray(self.where.gap.min(axis=-1))
+
+    def deflection(self, number: int) -> Array:
+        """Transmission error under a torque less that without any (pitches, positions) [m]."""
+        moved = self.share.transmission_error[number]
+        return np.asarray(moved if self.opposite is None else moved - self.opposite.rest)
+
+    def moments(self, loaded: Array, other: Array | None, lost: Array | float = 0.0) -> Array:
+        """Sums of forces kappa F, or of their slopes, by their levers about pinion and wheel (2, positions).
+
+        Parameters
+        ----------
+        loaded : (positions, pairs) array
+            Of the loaded flanks.
+        other : (positions, pairs) array or None
+            Of those on the other side, which turn the gears the other way.
+        lost : (positions, pairs) array
+            Part of the loaded flanks' levers that contacts which move lose.
+        """
+        found = _levered(self.where, self.kappa, loaded, lost)
+        if other is not None and self.opposite is not None:
+            found = found - _levered(self.opposite.where, self.opposite.kappa, other)
+        return found
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
@@ -52,7 +78,7 @@ class Solution:
             most = 1e3 * np.max(self.share.transmission_error)
             return (
                 f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move; reduce the "
-                "torque, or let contacts stay (moving_contact)"
+                "torque, or let contacts stay"
             )
         if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
             return "a tip edge presses over more than the strips cover; reduce the torque"
@@ -63,7 +89,7 @@ class Solution:
             )
         if np.any(turned[..., where.chamfered] > 0):
             return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
-        return ""
+        return "" if self.opposite is None else self.opposite.refusal(number)
 
 
 def solve(
@@ -71,82 +97,97 @@ def solve(
 ) -> Solution:
     """Solve, with candidates farther out if the deflection reaches beyond the first ones.
 
+    The flanks on the other side are looked at where the deflection is more than their gap, without a force, or where
+    the setting asks for them.
+
     Parameters
     ----------
     given : Setting
     bodies : Compliance
     force : (torques,) array
-        [N]
+        [N], all above 0 or all 0.
     film : Film or None
     tables : EdgeTables, optional
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
+    tables, most = tables or EdgeTables(given, bodies), float(np.max(force))
+    for reach in REACHES:
+        flanks = loaded_flanks(given, bodies, film, reach, most, tables)
+        found = _one_sided(given, bodies, force, flanks) if np.all(force) else None
+        if given.both or found is None or _near(flanks, found):
+            found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
+        assert found is not None
+        if np.max(found.closing + found.touch) <= flanks.where.reach_gap:
+            break
+    return found
+
+
+def _near(flanks: LoadedFlanks, found: Solution) -> bool:
+    """Whether the other side may bear: teeth bend by no more than the deflection and the film between them.
+
+    That side's gap is left by j + D - b_1 - b_2 - s', with b the bending of two loaded teeth, b <= D + s each, and
+    s' its own film.
+    """
+    film = 0.0
+    if flanks.oil is not None:
+        film = float(np.max(flanks.oil.approach(np.zeros_like(found.share.forces))))
+    reached = found.closing.reshape(len(found.closing), -1)
+    return bool(np.any(flanks.where.back_gap < reached + 3.0 * film))
+
+
+def _one_sided(given: Setting, bodies: Compliance, force: Array, flanks: LoadedFlanks) -> Solution:
+    """Solution with the loaded flanks alone."""
     from gears.load_sharing import share_load
 
-    tables = tables or EdgeTables(given, bodies)
-    for reach in REACHES:
-        where = contact_candidates(given, reach)
-        kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
-        table, largest = tables.at(where)
-        rho1, rho2 = where.rho
-        matrix = bodies.bulk(rho1, rho2, where.leaning)
-        _leave_out_corner(bodies, matrix, where)
-        # A force along another normal than the line of action has the lever kappa r_b1 about the pinion's
-        # axis. In F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j);
-        # the edges' laws are in F' already.
-        matrix /= kappa[..., :, None] * kappa[..., None, :]
-        on_path = where.touchable & ~where.edge
-        middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
-        # contacts that move have a law of their own near the corner
-        near = () if given.moving_contact else cut_offs(given, bodies, where, float(np.max(force)))
-        laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table, near)
-        oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
-        levers = _levers(given, where) / kappa
-        touch = where.gap.min(axis=-1)
-        share = share_load(
-            force[:, None, None],
-            matrix,
-            laws,
-            where.gap - touch[..., None],
-            oil,
-            levers if given.friction else None,
-        )
-        moves, settled = contact_moves(bodies, where) if given.moving_contact else None, True
-        if moves is not None:
-            gaps = where.gap - touch[..., None]
-            moved = moved_share(share, force[:, None, None], matrix, laws, gaps, oil, levers, moves)
-            settled = moved is not None
-            share = share if moved is None else moved
-        closing = share.transmission_error - bodies.turning * force[:, None, None]
-        if np.max(closing + touch) <= where.reach_gap:
-            break
+    where, matrix, laws, oil = flanks.where, flanks.matrix, flanks.laws, flanks.oil
+    whole, gaps = force[:, None, None], where.gap - where.gap.min(axis=-1, keepdims=True)
+    share = share_load(whole, matrix, laws, gaps, oil, flanks.levers if given.friction else None)
+    moves, settled = contact_moves(bodies, where) if given.moving_contact else None, True
+    if moves is not None:
+        moved = moved_share(share, whole, matrix, laws, gaps, oil, flanks.levers, moves)
+        settled = moved is not None
+        share = share if moved is None else moved
     propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
-    bent = (matrix @ share.forces[..., None])[..., 0] + where.gap - touch[..., None]
+    bent = (matrix @ share.forces[..., None])[..., 0] + gaps
     left = bent - propped - share.transmission_error[..., None]
     if moves is not None:
         left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
-    return Solution(where, share, kappa, levers, largest, closing, left, moves, settled)
+    closing = share.transmission_error - bodies.turning * whole
+    return Solution(where, share, flanks.kappa, flanks.levers, flanks.largest, closing, left, moves, settled)
 
 
-def _levers(given: Setting, where: ContactCandidates) -> Array:
-    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
-    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
-    first, second = given.pair.base_radii
-    arm = np.where(where.touchable, arm, 0.0)
-    slip = np.sign(arm[0] / first - arm[1] / second)
-    return np.asarray(lever[0] + given.friction * slip * arm[0] / first)
+def _two_sided(
+    given: Setting,
+    bodies: Compliance,
+    force: Array,
+    film: Film | None,
+    flanks: LoadedFlanks,
+    alone: Solution | None,
+    reach: float,
+    tables: EdgeTables,
+) -> Solution:
+    """Solution with the flanks on both sides."""
+    share, opposite, left = share_with_opposite(
+        given, bodies, force, film, flanks, None if alone is None else alone.share, reach, tables
+    )
+    if alone is not None and not opposite.bears:
+        return replace(alone, opposite=opposite)
+    closing = share.transmission_error - bodies.turning * force[:, None, None]
+    return Solution(
+        flanks.where,
+        share,
+        flanks.kappa,
+        flanks.levers,
+        flanks.largest,
+        closing,
+        left,
+        None,
+        True,
+        opposite,
+    )
 
 
-def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:
-    """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
-
-    The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
-    """
-    width = bodies.pair.face_width
-    for corner, chosen in where.corners():
-        gear = (bodies.pinion, bodies.wheel)[corner]
-        position, column = np.nonzero(chosen)
-        rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
-        angle = where.leaning[corner][position, column]
-        lever = np.cos(angle) - np.sin(angle) * rho / gear.base_radius
-        matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width
+def _levered(where: ContactCandidates, kappa: Array, forces: Array, lost: Array | float = 0.0) -> Array:
+    """Sum by the levers of the normals (2, positions)."""
+    lever = np.where(forces != 0.0, where.lever, 0.0) / kappa
+    return np.asarray(np.sum((lever - lost) * forces, axis=-1))

@@ -12,6 +12,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from base import Array, Cost, Stopwatch, record
+from fem.back_compliance import BackCompliance, back_compliance
 from fem.elasticity import PlaneElasticity
 from fem.flank_motion import FlankMotion, flank_motion
 from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
@@ -25,6 +26,9 @@ __all__ = ["Gears", "Kept", "SolvedFlanks", "forget_gears"]
 T = TypeVar("T")
 
 MOST_RECORDS, MOST_RINGS = 512, 2
+
+BACK_SAMPLES = 20
+"""Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
 _RINGS: Memo[tuple[Ring, Ring]] = Memo(MOST_RINGS)
@@ -121,6 +125,10 @@ class Gears:
         """Motion of the flank, on the coarser mesh: a correction."""
         return self.record("motion", (meshed,), lambda: self._motion(meshed))
 
+    def backs(self, meshed: MeshedShape) -> BackCompliance:
+        """What loads on the front flanks do to the back flanks."""
+        return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
+
     def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         """Factorised gears, the coarser one first."""
         return _RINGS.obtain(meshed, lambda: self._rings(meshed))
@@ -175,4 +183,11 @@ class Gears:
         watch = Stopwatch()
         found = flank_motion(ring)
         self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
+        return found
+
+    def _backs(self, meshed: MeshedShape) -> BackCompliance:
+        ring = self.rings(meshed)[1]
+        watch, shape = Stopwatch(), meshed.shape
+        found = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
+        self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
         return found

@@ -231,6 +231,9 @@ def root_stress(
         found.add("fillets", f"plane {fillets.plane}", f"must be of plane {cycle.plane}", "use one plane")
     if not np.all(np.isfinite(cycle.forces)):
         found.add("cycle", "not converged", "must have finite forces", cycle.message)
+    elif cycle.opposite is not None:
+        allowed = "must have flanks that bear on one side of the teeth"
+        found.add("cycle", "flanks that bear on both sides", allowed, "give more backlash")
     found.raise_if_any()
     watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
@@ -264,7 +267,7 @@ def _gear_stress(pair: GearPair, cycle: MeshCycle, influence: FilletInfluence, g
         rho = cycle.flank_rho[gear][rows, column]
         for i, tooth in enumerate(teeth):
             total[rows, i] += line_load * influence.stress(turn * int(tooth - offset), rho)
-    return GearRootStress(line, influence.law, cycle.position, teeth, total)
+    return GearRootStress(line, influence.law, cycle.loaded_position, teeth, total)
 
 
 def _extreme(arc: Array, values: Array) -> tuple[Array, Array]:

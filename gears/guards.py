@@ -26,6 +26,9 @@ THIN_RIM = 0.5
 THINNEST_RIM = 0.25
 """Rim thickness below which a pair is refused [modules]."""
 
+TIGHTEST = 0.1
+"""Overlap of flanks up to which a tight pair is accepted [modules]."""
+
 ROUNDING = 1e-12
 """Lengths of this many modules are rounding: a backlash of -1e-16 m is none, not a jam."""
 
@@ -154,7 +157,7 @@ def check_mesh(found: Findings, pair: PairGeometry) -> None:
         found.add("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy)
         return
     rounding = ROUNDING * pair.module
-    if pair.backlash < -rounding:
+    if pair.backlash < (-TIGHTEST * pair.module if pair.tight else -rounding):
         _add_jam(found, pair)
     if not pair.contact_ratio >= 1.0:
         remedy = "the next pair comes too late: reduce the working pressure angle, or lengthen the teeth"
@@ -179,12 +182,14 @@ def check_mesh(found: Findings, pair: PairGeometry) -> None:
 
 
 def _add_jam(found: Findings, pair: PairGeometry) -> None:
-    """Note teeth thicker than their gaps at the given centre distance."""
-    free = sum(pair.base_radii) * math.hypot(1.0, tangent_from_involute(max(pair._working_involute, 1e-300)))
+    """Note teeth thicker than their gaps at the given centre distance, by more than a tight pair may be."""
+    least = pair.centre_distance_of_backlash(-TIGHTEST * pair.module if pair.tight else 0.0)
     allowance = -pair.backlash / math.cos(pair.rack.alpha)
     remedy = f"the teeth jam: move the axes apart, shift the profiles less or add {allowance:.3g} m of "
     remedy += "thickness_allowance in all"
-    allowed = f"must be at least {free:.6g} m for nominal teeth"
+    if not pair.tight:
+        remedy += ", or let both sides of the teeth bear: tight = true"
+    allowed = f"must be at least {least:.6g} m"
     found.add("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
 
 

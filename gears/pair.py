@@ -50,6 +50,9 @@ class GearPair(PairGeometry):
         Of both gears, or of pinion and wheel.
     centre_distance : float or None
         a [m].
+    tight : bool
+        Whether teeth may be thicker than their gaps, by up to a tenth of the module: flanks on both sides then bear
+        (``fem.mesh_cycle``). Otherwise such a pair is refused, since it jams.
 
     Raises
     ------
@@ -93,6 +96,8 @@ class GearPair(PairGeometry):
     def _check_values(self, found: Findings) -> None:
         """Note faults of single values of the pair and its parts: wrong kind, not finite, out of bounds."""
         found.fields(self, LIMITS)
+        if not isinstance(self.tight, bool):
+            found.add("tight", self.tight, "must be True or False", "True lets both sides of the teeth bear")
         for name, kind in (("pinion", Gear), ("wheel", Gear), ("rack", BasicRack)):
             if isinstance(part := getattr(self, name), kind):
                 found.extend(part.faults(name))

@@ -40,6 +40,7 @@ class PairGeometry:
     rack: BasicRack = ISO_53_A
     material: Material | tuple[Material, Material] = STEEL
     centre_distance: float | None = None  # a, m
+    tight: bool = False
 
     @cached_property
     def materials(self) -> tuple[Material, Material]:
@@ -160,6 +161,17 @@ class PairGeometry:
         shifts = self.pinion.profile_shift + self.wheel.profile_shift
         teeth = self.pinion.teeth + self.wheel.teeth
         return self.module * math.cos(self.rack.alpha) * (teeth * spread - 2.0 * shifts * tangent)
+
+    def centre_distance_of_backlash(self, backlash: float) -> float:
+        """Centre distance at which these teeth have a normal backlash [m], both in metres.
+
+        inv alpha_w grows by (j - j_0)/(2 (r_b1 + r_b2)) from that of no backlash.
+        """
+        bases = sum(self.base_radii)
+        thinning = self.pinion.thickness_allowance + self.wheel.thickness_allowance
+        more = (backlash - thinning * math.cos(self.rack.alpha)) / (2.0 * bases)
+        involute = max(self._working_involute + more, 1e-300)
+        return bases * math.hypot(1.0, tangent_from_involute(involute))
 
     @property
     def reduced_modulus(self) -> float:

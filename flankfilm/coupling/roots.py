@@ -76,7 +76,7 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
     found = fem.root_stress(pair, cycle, replace(fillets, pair=pair))
     iso, fault = None, ""
     try:
-        iso = iso6336_3(pair, pair.normal_force(cycle.torque))
+        iso = iso6336_3(pair, abs(pair.normal_force(cycle.torque)))
     except GeometryError as error:
         fault = str(error)
     return RootStresses(found, iso, fault, found.error, Cost(watch.seconds))

@@ -1,0 +1,96 @@
+"""What loads on one side of the teeth do to the other side: front flanks loaded, back flanks seen, and the reverse.
+
+u on the flanks of the other hand along their inward normals, per unit line load; in the loaded sector itself the sum
+of the half-plane and the regular part (``fem.line_load``). X_k(a, b) belongs to a load at rho = a on the left flank of
+tooth 0 and the right flank of tooth k at rho = b, counted anticlockwise. Mirrored gears are the same gears, and
+Maxwell and Betti let load and point change places: X_k(a, b) = X_k(b, a), and a load on the right flank moves the
+left one of tooth -k by the same. Samples that are not symmetric show an error of the elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from base import Array, Integers, record
+from fem.gear_compliance import CROSS_DEGREE
+from fem.line_load import flank_points, line_loads
+
+if TYPE_CHECKING:
+    from fem.ring import Ring
+
+__all__ = ["BackCompliance", "back_compliance"]
+
+
+@record
+class BackCompliance:
+    """Displacement of the flanks on the other side of a gear's teeth per unit line load.
+
+    Attributes
+    ----------
+    rho_range : (float, float)
+        Curvature radii covered [m]; those beyond are moved to its ends.
+    series : mapping of int to (k, k) array
+        Chebyshev coefficients of X_k over both curvature radii [m per N/m].
+    error : float
+        Largest asymmetry of the samples and what the series leave out [m per N/m].
+    """
+
+    rho_range: tuple[float, float]
+    series: Mapping[int, Array]
+    error: float
+
+    def scaled(self, module: float, plane_modulus: float) -> BackCompliance:
+        """Give a gear in modules and E* its size [m] and modulus [Pa]."""
+        low, high = self.rho_range
+        return BackCompliance(
+            (low * module, high * module),
+            {tooth: series / plane_modulus for tooth, series in self.series.items()},
+            self.error / plane_modulus,
+        )
+
+    def across(self, tooth: Integers, load: Array, point: Array) -> Array:
+        """Displacement into the right flank of a tooth by a load on the left flank of tooth 0 [m per N/m].
+
+        Parameters
+        ----------
+        tooth : array of int
+            Counted anticlockwise from the loaded one; 0 where it is too far away to feel the load.
+        load, point : arrays
+            Curvature radii [m].
+        """
+        tooth, load, point = np.broadcast_arrays(tooth, load, point)
+        low, high = self.rho_range
+        degree = len(next(iter(self.series.values()))) - 1
+        loads, points = (
+            chebyshev.chebvander(np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0), degree)
+            for rho in (load, point)
+        )
+        moved = np.zeros(tooth.shape)
+        for number, series in self.series.items():
+            here = tooth == number
+            moved[here] = np.sum((loads[here] @ series) * points[here], axis=-1)
+        return moved
+
+
+def back_compliance(ring: Ring, rho: Array, reach: int) -> BackCompliance:
+    """Load left flanks at growing curvature radii (n,) [m] and see the right ones of ``reach`` teeth on either side."""
+    loads = line_loads(ring, flank_points(ring.mesh, rho, "left"))
+    seen = flank_points(ring.mesh, rho, "right")
+    low, high = float(rho[0]), float(rho[-1])
+    basis = chebyshev.chebvander((2 * rho - low - high) / (high - low), min(CROSS_DEGREE, len(rho) - 1))
+    fit = np.linalg.pinv(basis)
+    series, error = {}, 0.0
+    most = min(reach, (ring.mesh.teeth - 1) // 2)
+    for tooth in range(-most, most + 1):
+        moved = loads.on_tooth(tooth, seen)
+        if tooth == 0:
+            moved = moved + loads.singular(seen)
+        even = 0.5 * (moved + moved.T)
+        series[tooth] = fit @ even @ fit.T
+        left_out = basis @ series[tooth] @ basis.T - even
+        error = max(error, float(np.max(np.abs(moved - even))), float(np.max(np.abs(left_out))))
+    return BackCompliance((low, high), series, error)

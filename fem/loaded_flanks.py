@@ -1,0 +1,111 @@
+"""Flanks on one side of the teeth: candidates, compliances, laws and levers of all contacts, put together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, record
+from fem.contact_candidates import ContactCandidates, contact_candidates
+from fem.cut_off import cut_offs
+from fem.edge_tables import EdgeTables
+from fem.local_law import Film, FilmLaw, PairLaws
+from fem.setting import Setting
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+
+__all__ = ["LoadedFlanks", "loaded_flanks"]
+
+
+@record
+class LoadedFlanks:
+    """What the contacts on one side yield, as ``share_load`` asks for it.
+
+    A force along another normal than the line of action has the lever kappa r_b1 about the pinion's axis. In
+    F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j); the edges' laws are in
+    F' already.
+
+    Attributes
+    ----------
+    where : ContactCandidates
+    kappa : (positions, pairs) array
+    matrix : (positions, pairs, pairs) array
+        bulk_ij/(kappa_i kappa_j) [m/N].
+    laws : PairLaws
+    oil : FilmLaw or None
+    levers : (positions, pairs) array
+        Of the tilted forces about the pinion's axis, over kappa r_b1.
+    largest : (edges,) array
+        Forces that the tip edges' laws cover [N].
+    """
+
+    where: ContactCandidates
+    kappa: Array
+    matrix: Array
+    laws: PairLaws
+    oil: FilmLaw | None
+    levers: Array
+    largest: Array
+
+
+def loaded_flanks(
+    given: Setting, bodies: Compliance, film: Film | None, reach: float, force: float, tables: EdgeTables
+) -> LoadedFlanks:
+    """Put together what the flanks yield that bear in a setting.
+
+    Parameters
+    ----------
+    given : Setting
+    bodies : Compliance
+    film : Film or None
+    reach : float
+        Base pitches outside the path within which tip edges are looked for.
+    force : float
+        Greatest force by a torque [N].
+    tables : EdgeTables
+        Laws of the tip edges.
+    """
+    where = contact_candidates(given, reach)
+    kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
+    table, largest = tables.at(where)
+    rho1, rho2 = where.rho
+    matrix = bodies.bulk(rho1, rho2, where.leaning)
+    _leave_out_corner(bodies, matrix, where)
+    matrix /= kappa[..., :, None] * kappa[..., None, :]
+    on_path = where.touchable & ~where.edge
+    middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
+    if (overlap := -float(np.min(where.back_gap))) > 0.0:  # presses both sides without a torque
+        force += overlap / float(bodies.own(np.array([middle]))[0])
+    # contacts that move have a law of their own near the corner
+    near = () if given.moving_contact else cut_offs(given, bodies, where, force)
+    laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table, near)
+    oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
+    return LoadedFlanks(where, kappa, matrix, laws, oil, _levers(given, where) / kappa, largest)
+
+
+def _levers(given: Setting, where: ContactCandidates) -> Array:
+    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
+    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
+    first, second = given.pair.base_radii
+    arm = np.where(where.touchable, arm, 0.0)
+    slip = np.sign(arm[0] / first - arm[1] / second)
+    # the gears turn on, whichever flanks bear: on the back flanks all surfaces move the other way
+    turning = -given.friction if given.back else given.friction
+    return np.asarray(lever[0] + turning * slip * arm[0] / first)
+
+
+def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:
+    """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
+
+    The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
+    """
+    width = bodies.pair.face_width
+    for corner, chosen in where.corners():
+        gear = (bodies.pinion, bodies.wheel)[corner]
+        position, column = np.nonzero(chosen)
+        rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
+        angle = where.leaning[corner][position, column]
+        lever = np.cos(angle) - np.sin(angle) * rho / gear.base_radius
+        matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width

@@ -1,0 +1,291 @@
+"""Flanks on the other side of the teeth: whether they bear beside the loaded ones, and what both carry then.
+
+The gap of a flank on the other side is the backlash, its own gap and the transmission error D, less what loads on both
+sides bend it by:
+
+    g_k = j + gap_k + D + sum_i X_ki F_i + sum_l B_kl G_l + local(G_k) >= 0,   sum l_i F_i - sum l_k G_k = T/r_b1,
+
+with B of the mirrored gears and X of loads on one side seen from the other (``fem.back_compliance``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, Integers, quantity, record
+from fem.contact_candidates import ContactCandidates
+from fem.edge_tables import EdgeTables
+from fem.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.local_law import Film
+from fem.setting import Setting
+from gears import LoadShare
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+    from gears.load_sharing import DeflectionLaw
+
+__all__ = ["OppositeFlanks", "OppositeShare", "share_with_opposite"]
+
+ROUNDING = 1e-12
+"""Overlap over the deflection that is none."""
+
+
+@record
+class OppositeFlanks:
+    """Contacts on the other side of the teeth at the positions of a cycle; rho and levers of the mirrored gears."""
+
+    forces: Array = quantity("N", "normal force; zero where unloaded", "position pair")
+    pair_stiffness: Array = quantity("N/m", "slope of the force by D, not above zero", "position pair")
+    flank_rho: Array = quantity("m", "curvature radii on pinion and wheel", "gear position pair", shown="mm")
+    edge: Booleans = quantity("1", "whether a tip edge touches outside the path", "position pair")
+    teeth: Integers = quantity("1", "numbers of the teeth of pinion and wheel", "gear position pair")
+    lever: Array = quantity(
+        "1", "lever of the normal about the axes, over the base radii", "gear position pair"
+    )
+    gap: Array = quantity("m", "gap that is left where no force is", "position pair", shown="um")
+
+    def per_deflection(self, slope: Array) -> OppositeFlanks:
+        """Measure slopes by another deflection, whose slope by D is given (n,)."""
+        return replace(self, pair_stiffness=self.pair_stiffness / slope[:, None])
+
+
+@record
+class OppositeShare:
+    """What the flanks on the other side carry; leading dimensions (torques, pitches, positions of one).
+
+    Attributes
+    ----------
+    where : ContactCandidates
+        Of the mirrored gears.
+    kappa, levers, largest : arrays
+        As of the loaded flanks.
+    forces, pair_stiffness, open : (..., pairs) arrays
+        kappa G [N], its slope dG/dD, not above 0 [N/m], and the gap that is left [m].
+    rest : (pitches, positions) array
+        Transmission error without torque, from where the loaded flanks touch: not 0 where both sides are pressed
+        together [m].
+    moving : bool
+        Whether contacts were to move.
+    reached : (torques,) array
+        By how much D closes gaps on this side [m].
+    """
+
+    where: ContactCandidates
+    kappa: Array
+    levers: Array
+    largest: Array
+    forces: Array
+    pair_stiffness: Array
+    open: Array
+    rest: Array
+    moving: bool
+    reached: Array
+
+    @property
+    def bears(self) -> bool:
+        """Whether a flank on this side bears anywhere."""
+        return bool(np.any(self.forces > 0.0))
+
+    def flanks(self, number: int) -> OppositeFlanks:
+        """Contacts under one of the torques, pitch after pitch."""
+        where, pairs = self.where, len(self.where.offset)
+        pitches = len(where.gap)
+        rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, pitches, 1))
+        return OppositeFlanks(
+            (self.forces[number] / self.kappa).reshape(-1, pairs),
+            (self.pair_stiffness[number] / self.kappa).reshape(-1, pairs),
+            rho,
+            np.tile(where.edge, (pitches, 1)),
+            where.teeth,
+            where.lever,
+            np.where(self.forces[number] > 0.0, 0.0, self.open[number]).reshape(-1, pairs),
+        )
+
+    def refusal(self, number: int) -> str:
+        """Why the solution for a torque is not to be believed, empty if it is."""
+        where, turned = self.where, self.forces[number]
+        if self.moving and np.any(turned > 0.0):
+            return "flanks on both sides bear, which contacts that move do not know; let contacts stay"
+        if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
+            return "a tip edge of a back flank presses over more than the strips cover; give more backlash"
+        if self.reached[number] > where.reach_gap:
+            return "back flanks overlap by more than was looked for outside the path; give more backlash"
+        if np.any(turned[..., where.chamfered] > 0.0):
+            return (
+                "the face of a chamfer touches on a back flank, for which there is no law; give more backlash"
+            )
+        return ""
+
+
+@record
+class _Joined:
+    """Laws of the pairs on either side, one after the other."""
+
+    first: DeflectionLaw
+    second: DeflectionLaw
+    count: int
+
+    def approach(self, force: Array) -> Array:
+        """Deflection or separation (..., pairs) [m]."""
+        return self._of(self.first.approach, self.second.approach, force)
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative [m/N]."""
+        return self._of(self.first.slope, self.second.slope, force)
+
+    def _of(self, first: Callable[[Array], Array], second: Callable[[Array], Array], force: Array) -> Array:
+        sides = first(force[..., : self.count]), second(force[..., self.count :])
+        return np.concatenate(sides, axis=-1)
+
+
+def across(bodies: Compliance, front: ContactCandidates, back: ContactCandidates) -> Array:
+    """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
+
+    Forces at tip edges are taken along the normals of the flanks here.
+    """
+    positions, pair = len(front.place), bodies.pair
+    if "coupling" in bodies.left_out:
+        return np.zeros((positions, len(front.offset), len(back.offset)))
+    moved = 0.0
+    for gear, (flexible, teeth) in enumerate(
+        zip(bodies.back_flanks, (pair.pinion.teeth, pair.wheel.teeth), strict=True)
+    ):
+        here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
+        # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
+        tooth = _nearest(here - there if gear == 0 else there - here, teeth)
+        moved = moved + flexible.across(tooth, front.rho[gear][:, :, None], back.rho[gear][:, None, :])
+    return np.asarray(moved / pair.face_width + bodies.common_across)
+
+
+def _nearest(steps: Integers, teeth: int) -> Integers:
+    """Steps round a gear by the shorter way."""
+    half = teeth // 2
+    return np.asarray((steps + half) % teeth - half)
+
+
+@record
+class _BothSides:
+    """Loaded flanks and those on the other side, one after the other, as ``share_between`` asks for them."""
+
+    count: int
+    matrix: Array
+    laws: _Joined
+    oil: _Joined | None
+    gaps: Array
+    sides: Array
+    levers: Array | None
+
+    def open(self, loads: Array, approach: Array) -> Array:
+        """Gaps that are left where pairs do not bear."""
+        bent = (self.matrix @ loads[..., None])[..., 0] + self.gaps - self.sides * approach[..., None]
+        return np.asarray(bent if self.oil is None else bent - self.oil.approach(np.zeros_like(bent)))
+
+    def pressed(self) -> Array:
+        """Where both sides bear without a torque (pitches, positions)."""
+        film = 0.0 if self.oil is None else self.oil.approach(np.zeros_like(self.gaps))
+        clear = self.gaps - film
+        return np.asarray(clear[..., : self.count].min(axis=-1) + clear[..., self.count :].min(axis=-1) < 0.0)
+
+    def share(self, force: Array) -> LoadShare:
+        """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
+        from gears.both_flanks import share_between
+
+        return share_between(force, self.matrix, self.laws, self.gaps, self.sides, self.oil, self.levers)
+
+
+def _both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: LoadedFlanks) -> _BothSides:
+    count, more = len(flanks.where.offset), len(other.where.offset)
+    matrix = np.zeros((given.positions, count + more, count + more))
+    matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
+    front, back = (other, flanks) if given.back else (flanks, other)
+    cross = across(bodies, front.where, back.where) / (front.kappa[:, :, None] * back.kappa[:, None, :])
+    cross = np.swapaxes(cross, 1, 2) if given.back else cross
+    matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
+    touch = flanks.where.gap.min(axis=-1, keepdims=True)
+    behind = given.pair.backlash + other.where.gap + touch
+    oil = None if flanks.oil is None or other.oil is None else _Joined(flanks.oil, other.oil, count)
+    return _BothSides(
+        count,
+        matrix,
+        _Joined(flanks.laws, other.laws, count),
+        oil,
+        np.concatenate([flanks.where.gap - touch, behind], axis=-1),
+        np.repeat([1.0, -1.0], [count, more]),
+        np.concatenate([flanks.levers, other.levers], axis=-1) if given.friction else None,
+    )
+
+
+def share_with_opposite(
+    given: Setting,
+    bodies: Compliance,
+    force: Array,
+    film: Film | None,
+    flanks: LoadedFlanks,
+    alone: LoadShare | None,
+    reach: float,
+    tables: EdgeTables,
+) -> tuple[LoadShare, OppositeShare, Array]:
+    """Share forces (torques,) [N] among the flanks on both sides.
+
+    Parameters
+    ----------
+    given, bodies, film, reach, tables
+        As for ``loaded_flanks``.
+    force : (torques,) array
+        [N]
+    flanks : LoadedFlanks
+        Of the side that the torque loads.
+    alone : LoadShare or None
+        Solution without the other side, kept where it lets nothing overlap; None without a torque.
+
+    Returns
+    -------
+    (LoadShare, OppositeShare, array)
+        Of the loaded flanks and of the others, and the gaps that are left on the loaded side.
+    """
+    other = loaded_flanks(given.opposite, bodies, film, reach, float(np.max(force)), tables)
+    both = _both_sides(given, bodies, flanks, other)
+    whole, count = force[:, None, None], both.count
+    pressed = both.pressed()
+    found, clear = alone, np.zeros((len(force), *pressed.shape), dtype=bool)
+    loads = np.zeros((len(force), *both.gaps.shape))
+    if alone is not None:
+        loads[..., :count] = alone.forces
+        left = both.open(loads, alone.transmission_error)[..., count:]
+        clear = np.all(left >= -ROUNDING * np.abs(alone.transmission_error)[..., None], axis=-1)
+    slopes, rest = np.zeros_like(loads), np.zeros(pressed.shape)
+    if alone is not None:
+        slopes[..., :count] = alone.pair_stiffness
+    if not clear.all():
+        joint = both.share(whole + 0.0 * pressed)
+        loads = np.where(clear[..., None], loads, joint.forces)
+        slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
+        moved, tangent = joint.transmission_error, joint.stiffness
+        if alone is not None:
+            moved = np.where(clear, alone.transmission_error, moved)
+            tangent = np.where(clear, alone.stiffness, tangent)
+        found = LoadShare(loads[..., :count], moved, tangent, slopes[..., :count], joint.iterations)
+    assert found is not None
+    if pressed.any():
+        small = np.where(pressed, 0.0, max(float(np.max(force)), 1.0))
+        rest = np.where(pressed, both.share(small).transmission_error, 0.0)
+    left = both.open(loads, found.transmission_error)
+    touch = flanks.where.gap.min(axis=-1)
+    closing = bodies.turning * whole - found.transmission_error - touch - given.pair.backlash
+    opposite = OppositeShare(
+        other.where,
+        other.kappa,
+        other.levers,
+        other.largest,
+        loads[..., count:],
+        slopes[..., count:],
+        left[..., count:],
+        rest,
+        given.moving_contact,
+        closing.max(axis=(1, 2)),
+    )
+    return found, opposite, left[..., :count]

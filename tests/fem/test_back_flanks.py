@@ -1,0 +1,288 @@
+"""Back flanks: reversal as the mirrored problem, both sides of the teeth at zero and negative backlash."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import fem
+from base import InputError
+from fem.back_compliance import back_compliance
+from fem.edge_tables import EdgeTables
+from fem.gear_compliance import sample_places
+from fem.line_load import flank_points, line_loads
+from fem.loaded_flanks import loaded_flanks
+from fem.opposite_flanks import _both_sides
+from fem.setting import Setting
+from fem.sharing import _one_sided, solve
+from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
+
+
+def pressed(overlap, first=36, second=40):
+    """Pair whose teeth overlap [m]."""
+    plain = GearPair(Gear(first), Gear(second), 2e-3, 0.04)
+    distance = plain.centre_distance_of_backlash(-overlap)
+    return replace(plain, centre_distance=distance, tight=True)
+
+
+@pytest.fixture(scope="module")
+def tight():
+    pair = pressed(5e-6)
+    return pair, fem.compliance(pair, tolerance=0.005)
+
+
+@pytest.fixture(scope="module")
+def loose():
+    relief = TipRelief(8e-6, 1.5e-3)
+    pair = GearPair(Gear(36, tip_relief=relief), Gear(40), 2e-3, 0.04).with_backlash(50e-6)
+    return pair, fem.compliance(pair, tolerance=0.005)
+
+
+@pytest.mark.parametrize("beyond", [True, False])
+def test_reversal_is_the_mirrored_problem(loose, beyond):
+    pair, bodies = loose
+    position = np.linspace(0.01, 0.99, 23)
+    force = np.array([600.0 / pair.base_radii[0]])
+    given = Setting(pair, beyond_path=beyond)
+    back = solve(replace(given, back=True).at(position), bodies, force, None)
+    front = solve(given.at((given.mirror - position) % 1.0), bodies, force, None)
+    for name in ("forces", "transmission_error", "stiffness"):
+        np.testing.assert_allclose(getattr(back.share, name), getattr(front.share, name), rtol=1e-12)
+
+
+def test_a_braking_pinion(loose):
+    pair, bodies = loose
+    drives, brakes = fem.mesh_cycle(pair, (600.0, -600.0), 40, bodies)
+    assert (drives.flank, brakes.flank) == ("front", "back")
+    assert brakes.force == -drives.force
+    assert np.all(brakes.forces >= 0.0)
+    np.testing.assert_allclose(brakes.load_share.sum(axis=1), 1.0, atol=1e-12)
+    # the wheel leads by the backlash and the deflection
+    assert np.all(brakes.transmission_error < -pair.backlash)
+    for name in ("mean_stiffness", "mean_secant_stiffness", "transmission_error_range", "least_stiffness"):
+        assert getattr(brakes, name) == pytest.approx(getattr(drives, name), rel=3e-6)
+    np.testing.assert_allclose(brakes.wheel_torque.mean(), -drives.wheel_torque.mean(), rtol=1e-2)
+    # the phases of the harmonics are those of the mirror
+    c = Setting(pair).mirror
+    first, mirrored = (one.arcs.harmonics("stiffness", np.array([1]))[0][0] for one in (drives, brakes))
+    assert mirrored == pytest.approx(np.conj(first) * np.exp(-2j * np.pi * c), rel=1e-5)
+    measured = brakes.against("body")
+    np.testing.assert_allclose(
+        measured.transmission_error - brakes.transmission_error,
+        np.interp(
+            np.mod(c - brakes.position, 1.0),
+            drives.position,
+            drives.transmission_error - drives.against("body").transmission_error,
+            period=1.0,
+        ),
+        rtol=1e-3,
+    )
+
+
+def test_the_mirror_is_where_the_back_flanks_touch():
+    # the wheel stands, the pinion turns back by its backlash: its back flank is at rho1' = L - rho2'
+    pair = GearPair(Gear(23, 0.2), Gear(40, -0.1), 2e-3, 0.04).with_backlash(70e-6)
+    given = Setting(pair)
+    first, _ = pair.teeth_profiles
+    placed = pair.placement(pair.points.A)
+    turned = placed.pinion_angle - pair.backlash / first.base_radius
+    alpha = pair.working_pressure_angle
+    # the tooth's right flank is the left one of the mirror, which turns the other way
+    rho1 = first.base_radius * (-turned + first.base_half_angle + alpha)
+    assert (rho1 - pair.points.A) / pair.base_pitch == pytest.approx(given.mirror, abs=1e-12)
+
+
+def test_pitch_deviations_open_one_side_and_close_the_other():
+    pair = GearPair(Gear(12, 0.3), Gear(17), 2e-3, 0.02).with_backlash(80e-6)
+    late = np.zeros(12)
+    late[3] = 10e-6
+    deviations = (GearDeviations(None, PitchDeviations(tuple(late))), None)
+    front = Setting(pair, 1, deviations=deviations)
+    teeth = np.array([[3, 4], [3, 4]])
+    np.testing.assert_allclose(front.pitch_gap(teeth), [10e-6 * np.cos(pair.rack.alpha), 0.0])
+    np.testing.assert_allclose(front.opposite.pitch_gap(teeth), -front.pitch_gap(teeth))
+
+
+def test_back_flanks_by_loads_on_them(tight):
+    _, bodies = tight
+    ring = bodies.rings()[0]
+    profile = bodies.pair.teeth_profiles[0]
+    rho = sample_places(profile, 20)
+    across = back_compliance(ring, rho, 2)
+    assert across.error < 2e-4 * np.abs(bodies.pinion.own(rho)).max()
+    right = line_loads(ring, flank_points(ring.mesh, rho[[4, 15]], "right"))
+    left = flank_points(ring.mesh, rho[[4, 15]], "left")
+    for tooth in (-2, -1, 1, 2):
+        moved = right.on_tooth(-tooth, left)
+        found = across.across(np.array(tooth), rho[[4, 15]][:, None], rho[[4, 15]])
+        np.testing.assert_allclose(moved, found, rtol=2e-3)
+
+
+def test_large_backlash_costs_nothing_and_changes_nothing(loose):
+    pair, bodies = loose
+    bodies = replace(bodies)
+    cycle = fem.mesh_cycle(pair, 600.0, 10, bodies)
+    assert "back_flanks" not in vars(bodies)
+    assert cycle.opposite is None
+    assert "back flanks" not in cycle.message
+    close = GearPair(Gear(36, tip_relief=pair.pinion.tip_relief), Gear(40), 2e-3, 0.04)
+    bodies = fem.compliance(close, tolerance=0.005)
+    given = Setting(close, 10)
+    force = np.array([600.0 / close.base_radii[0]])
+    flanks = loaded_flanks(given, bodies, None, 0.6, float(force[0]), EdgeTables(given, bodies))
+    alone = _one_sided(given, bodies, force, flanks)
+    cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
+    assert np.array_equal(cycle.forces, (alone.share.forces / alone.kappa).reshape(cycle.forces.shape))
+    assert "back flanks stand clear by at least" in cycle.message
+
+
+def test_both_sides_balance_the_torque(tight):
+    pair, bodies = tight
+    torques = (-600.0, -50.0, -1.0, 0.0, 1.0, 50.0, 600.0)
+    cycles = fem.mesh_cycle(pair, torques, 10, bodies)
+    moved = np.array([cycle.transmission_error for cycle in cycles])
+    assert np.all(np.diff(moved, axis=0) > 0.0)
+    for cycle, torque in zip(cycles, torques, strict=True):
+        first, second = cycle._moments()
+        np.testing.assert_allclose(first[0] * pair.base_radii[0], abs(torque), atol=1e-8)
+        np.testing.assert_allclose(cycle.stiffness, second[0], rtol=1e-9)
+        assert np.all(cycle.secant_stiffness > 0.0)
+    rest = cycles[3]
+    assert rest.flank == "front"
+    assert "flanks on both sides of the teeth bear at 10 of 10 positions" in rest.message
+    assert np.all(rest.opposite_force > 100.0)
+    # secants start at the tangent, from where the pressed gears rest
+    for cycle in (cycles[2], cycles[4]):
+        np.testing.assert_allclose(cycle.secant_stiffness, rest.stiffness, rtol=2e-3)
+    sine = np.sin(pair.working_pressure_angle)
+    np.testing.assert_allclose(rest.separating_force, (rest.forces.sum(axis=1) + rest.opposite_force) * sine)
+    np.testing.assert_allclose(rest.bearing_force, rest.separating_force, rtol=0.05)
+
+
+def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight):
+    pair, bodies = tight
+    given = Setting(pair)
+    middle = np.array([0.5 * given.mirror % 1.0, (0.5 * given.mirror + 0.5) % 1.0])
+    found = solve(given.at(middle), bodies, np.array([0.0]), None)
+    # the mean approach of both sides is zero, and both bear alike
+    np.testing.assert_allclose(found.share.transmission_error[0, 0], -0.5 * pair.backlash, rtol=2e-4)
+    both = found.share.forces[0, 0].sum(axis=-1), found.opposite.forces[0, 0].sum(axis=-1)
+    np.testing.assert_allclose(*both, rtol=1e-9)
+    np.testing.assert_allclose(
+        np.sort(found.share.forces[0, 0], axis=-1), np.sort(found.opposite.forces[0, 0], axis=-1), rtol=2e-3
+    )
+
+
+def test_reversal_of_pressed_gears(tight):
+    pair, bodies = tight
+    position = np.linspace(0.02, 0.98, 9)
+    given, force = Setting(pair), np.array([100.0 / pair.base_radii[0]])
+    back = solve(replace(given, back=True).at(position), bodies, force, None)
+    front = solve(given.at((given.mirror - position) % 1.0), bodies, force, None)
+    np.testing.assert_allclose(back.share.forces, front.share.forces, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(back.opposite.forces, front.opposite.forces, rtol=1e-9, atol=1e-6)
+
+
+def test_forces_are_those_of_a_convex_program(tight):
+    pair, bodies = tight
+    given, force = Setting(pair, 3), 100.0 / pair.base_radii[0]
+    tables = EdgeTables(given, bodies)
+    flanks, other = (loaded_flanks(one, bodies, None, 0.6, force, tables) for one in (given, given.opposite))
+    both = _both_sides(given, bodies, flanks, other)
+    found = solve(given, bodies, np.array([force]), None)
+    forces = np.concatenate([found.share.forces, found.opposite.forces], axis=-1)[0, 0]
+    length = 1e-6
+    for row in range(3):
+        on = np.isfinite(both.gaps[0, row])
+        # with Hertz's slope, which belongs to the energy of a flank, the compliance is definite
+        whole = both.matrix[row] + np.diag(both.laws.slope(np.maximum(forces, 1.0))[row])
+        assert np.linalg.eigvalsh(whole[np.ix_(on, on)]).min() > 0.0
+        size = forces[row].max()
+
+        def gaps(x, row=row, on=on, size=size):
+            loads = np.zeros((3, len(on)))
+            loads[row, on] = size * np.maximum(x, 0.0)
+            local = both.laws.approach(loads)[row, on]
+            return both.matrix[row][np.ix_(on, on)] @ loads[row, on] + local + both.gaps[0, row, on]
+
+        def energy(x):
+            # integral of the gaps' closing along a straight path from no force, whose Hertz part is smooth
+            t, weight = np.polynomial.legendre.leggauss(12)
+            t, weight = 0.5 * (t + 1), 0.5 * weight
+            return sum(w * (gaps(s * x) @ x) for s, w in zip(t, weight, strict=True)) / length
+
+        by_scipy = minimize(
+            energy,
+            np.full(on.sum(), 0.5),
+            jac=lambda x: gaps(x) / length,
+            bounds=[(0.0, None)] * int(on.sum()),
+            constraints={
+                "type": "eq",
+                "fun": lambda x, on=on, size=size: both.sides[on] @ x - force / size,
+                "jac": lambda x, on=on: both.sides[on],
+            },
+            method="SLSQP",
+            options={"ftol": 1e-14, "maxiter": 300},
+        )
+        np.testing.assert_allclose(by_scipy.x, forces[row, on] / size, atol=1e-3)
+
+
+def test_tangent_of_both_sides_is_the_derivative(tight):
+    pair, bodies = tight
+    less, here, more = fem.mesh_cycle(pair, (99.9, 100.0, 100.1), 10, bodies)
+    slope = (more.force - less.force) / (more.transmission_error - less.transmission_error)
+    np.testing.assert_allclose(here.stiffness, slope, rtol=1e-4)
+
+
+def test_figures_of_pressed_gears(tight):
+    pair, bodies = tight
+    found = [fem.mesh_cycle(pair, torque, 10, bodies) for torque in (0.0, 30.0)]
+    for cycle in found:
+        assert cycle.mean_stiffness == pytest.approx(cycle.stiffness.mean(), rel=0.02)
+        assert cycle.errors["mean_stiffness"] < 1e-3
+        against = cycle.against("teeth")
+        assert against.mean_stiffness > cycle.mean_stiffness
+
+
+def test_a_film_presses_both_sides(tight):
+    pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04)
+    bodies = fem.compliance(pair, tolerance=0.005)
+
+    def film(rho1, force):
+        return np.full_like(force, 3e-6), np.zeros_like(force)
+
+    cycle = fem.mesh_cycle(pair, 50.0, 10, bodies, beyond_path=False, film=film)  # tip edges are dry
+    assert np.all(cycle.opposite_force > 0.0)
+    # as teeth that are thicker by the two films
+    thick = pressed(6e-6)
+    thick = fem.mesh_cycle(thick, 50.0, 10, fem.compliance(thick, tolerance=0.005), beyond_path=False)
+    np.testing.assert_allclose(cycle.opposite_force, thick.opposite_force, rtol=2e-3)
+
+
+def test_weak_bearings_let_pressed_gears_part():
+    pair = pressed(5e-6)
+    rigid, weak = (
+        fem.mesh_cycle(pair, 0.0, 4, fem.compliance(pair, tolerance=0.02, supports=support))
+        for support in (None, fem.Support(radial_stiffness=2e8))
+    )
+    assert np.all(weak.bearing_force < 0.8 * rigid.bearing_force)
+
+
+def test_what_both_sides_refuse(tight, loose):
+    pair, bodies = tight
+    with pytest.raises(InputError, match="must not be 0 where no flank bears: there is play of 50 um"):
+        fem.mesh_cycle(loose[0], 0.0, 4, loose[1])
+    cycle = fem.mesh_cycle(pair, 10.0, 4, bodies)
+    with pytest.raises(InputError, match="flanks that bear on both sides"):
+        fem.root_stress(pair, cycle, tolerance=0.1)
+
+
+def test_contacts_stay_where_both_sides_bear(tight):
+    pair, bodies = tight
+    moving = fem.mesh_cycle(pair, 10.0, 4, bodies, moving_contact=True)
+    assert not moving.moving_contact
+    assert "and contacts stay" in moving.message
+    np.testing.assert_array_equal(moving.forces, fem.mesh_cycle(pair, 10.0, 4, bodies).forces)
