@@ -184,15 +184,13 @@ def mesh_cycle(
     )
     ready = watch.seconds
     tables = EdgeTables(given, bodies)
-    forces, found = torque / pair.base_radii[0], {}
+    found: dict[int, tuple[Setting, Solution, int]] = {}
     for back, chosen in ((False, torque > 0.0), (True, torque < 0.0), (False, torque == 0.0)):
-        if chosen.any():
-            side = replace(given, back=back)
-            contact = solve(side, bodies, np.abs(forces[chosen]), film, tables)
-            if given.moving_contact and contact.opposite is not None and contact.opposite.bears:
-                side = replace(side, moving_contact=False)
-                contact = solve(side, bodies, np.abs(forces[chosen]), film, tables)
-            found.update({k: (side, contact, n) for n, k in enumerate(np.flatnonzero(chosen).tolist())})
+        numbers = np.flatnonzero(chosen)
+        if numbers.size:
+            asked = np.abs(torque[numbers]) / pair.base_radii[0]
+            for side, contact, which in _solved(replace(given, back=back), bodies, asked, film, tables):
+                found.update({int(numbers[k]): (side, contact, n) for n, k in enumerate(which)})
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
         watch.seconds,
@@ -206,6 +204,22 @@ def mesh_cycle(
         for k, (side, contact, number) in sorted(found.items())
     )
     return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
+
+
+def _solved(
+    given: Setting, bodies: Compliance, force: Array, film: Film | None, tables: EdgeTables
+) -> list[tuple[Setting, Solution, list[int]]]:
+    """Solutions for forces (torques,) [N], each with the numbers of its own; contacts stay where both sides bear."""
+    contact, every = solve(given, bodies, force, film, tables), list(range(len(force)))
+    if not given.moving_contact or contact.opposite is None:
+        return [(given, contact, every)]
+    bears = np.any(contact.opposite.forces > 0.0, axis=(1, 2, 3))
+    stay = replace(given, moving_contact=False)
+    found = []
+    for side, chosen in ((given, ~bears), (stay, bears)):
+        if which := np.flatnonzero(chosen).tolist():
+            found.append((side, solve(side, bodies, force[which], film, tables), which))
+    return found
 
 
 def _check(given: Setting, torque: Array, compliance: Compliance | None, reference: str) -> None:
@@ -269,7 +283,7 @@ def _result(
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
-    both = opposite is not None and opposite.bears
+    both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
     return MeshCycle(
         torque=torque,
         force=force,

@@ -86,7 +86,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
     stations = given.stations
     position = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
-    within, turned = position, 0
+    within, turned = position, np.zeros(len(position), dtype=np.int64)
     if given.back:
         within = given.mirror - position
         turned = np.floor(within).astype(np.int64)

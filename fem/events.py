@@ -187,7 +187,7 @@ def _reserve(found: Solution, force: float, given: Setting) -> Array:
 
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.
     """
-    size = np.mean(found.share.transmission_error)
+    size = float(np.mean(found.share.transmission_error))
     loads, left = found.share.forces[0, 0], found.open[0, 0]
     if given.both and found.opposite is not None:
         # both sides may be pressed together without a torque, or with next to none

@@ -150,7 +150,7 @@ def across(bodies: Compliance, front: ContactCandidates, back: ContactCandidates
     positions, pair = len(front.place), bodies.pair
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
-    moved = 0.0
+    moved = np.zeros((positions, len(front.offset), len(back.offset)))
     for gear, (flexible, teeth) in enumerate(
         zip(bodies.back_flanks, (pair.pinion.teeth, pair.wheel.teeth), strict=True)
     ):

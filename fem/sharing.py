@@ -111,14 +111,15 @@ def solve(
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
     tables, most = tables or EdgeTables(given, bodies), float(np.max(force))
+    found: Solution | None = None
     for reach in REACHES:
         flanks = loaded_flanks(given, bodies, film, reach, most, tables)
         found = _one_sided(given, bodies, force, flanks) if np.all(force) else None
         if given.both or found is None or _near(flanks, found):
             found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
-        assert found is not None
         if np.max(found.closing + found.touch) <= flanks.where.reach_gap:
             break
+    assert found is not None
     return found
 
 
