@@ -22,6 +22,7 @@ from fem.ring import Ring
 from fem.solved_gear import Gears
 from fem.support import FIXED, Support, held_profiles
 from fem.tip_strips import TipStrips
+from fem.torsion import step_wind_up
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -184,6 +185,26 @@ class Compliance:
     @described("m/N", "gear")
     def hub_windup(self) -> tuple[float, float]:
         """Turn of pinion's and wheel's body on its hub, along the line of action, at the pair's face width."""
+        first, second = (
+            plane + steps for plane, steps in zip(self.plane_windup, self.step_windup, strict=True)
+        )
+        return first, second
+
+    @described("m/N", "gear")
+    def step_windup(self) -> tuple[float, float]:
+        """Part of that turn by steps of pinion's and wheel's thickness, where rim and hub meet a narrower web."""
+        width = self.pair.face_width
+        first, second = (
+            step_wind_up(profile, width, gear.law.shear_modulus) / width
+            for profile, gear in zip(
+                held_profiles(self.pair, self.supports), (self.pinion, self.wheel), strict=True
+            )
+        )
+        return first, second
+
+    @property
+    def plane_windup(self) -> tuple[float, float]:
+        """The part that the finite elements of the plane hold, in ``own`` and cross terms of the gears [m/N]."""
         width = self.pair.face_width
         return self.pinion.hub_windup / width, self.wheel.hub_windup / width
 
@@ -203,7 +224,9 @@ class Compliance:
     def _common(self) -> float:
         """What all contacts yield alike beyond the compliances of the flanks [m/N]; less what is left out."""
         support = 0.0 if "support" in self.left_out else sum(self.support)
-        return support - (sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0)
+        if "hub_windup" in self.left_out:
+            return support - sum(self.plane_windup)
+        return support + sum(self.step_windup)
 
     @property
     def common_across(self) -> float:
@@ -241,8 +264,8 @@ class Compliance:
         windup, support = sum(self.hub_windup), sum(self.support)
         return MappingProxyType(
             {
-                "pinion": self.pinion.own(rho1) / width - self.hub_windup[0],
-                "wheel": self.wheel.own(self.pair.line_of_action - rho1) / width - self.hub_windup[1],
+                "pinion": self.pinion.own(rho1) / width - self.plane_windup[0],
+                "wheel": self.wheel.own(self.pair.line_of_action - rho1) / width - self.plane_windup[1],
                 "hub_windup": np.full(rho1.shape, windup),
                 "support": np.full(rho1.shape, support),
                 "coupling": np.where(ahead <= self.pair.points.E, coupling, np.nan),

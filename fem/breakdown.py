@@ -48,8 +48,8 @@ def deflection_parts(cycle: MeshCycle, bodies: Compliance) -> Mapping[str, Array
     apart = 1.0 - np.eye(force.shape[-1])
     cross = (whole.bulk(place) - turn.sum() - hubs) * apart
     own = (
-        whole.pinion.own(place) / width - turn[0],
-        whole.wheel.own(pair.line_of_action - place) / width - turn[1],
+        whole.pinion.own(place) / width - whole.plane_windup[0],
+        whole.wheel.own(pair.line_of_action - place) / width - whole.plane_windup[1],
     )
     found = {
         "hertz": np.sum(weight * whole.hertz(place).approach(force), axis=-1),

@@ -194,7 +194,7 @@ def nodal_stress_matrix(
     lam, mu = law.lame
     gradient, _ = physical_gradients(points, triangles, NODES[:, 0], NODES[:, 1])
     least = np.full(len(points), np.inf)
-    np.minimum.at(least, triangles, thickness[:, None])
+    np.minimum.at(least, triangles.ravel(), np.repeat(thickness, 6))
     counts = thickness[:, None] == least[triangles]
     share = counts / np.bincount(triangles[counts], minlength=len(points))[triangles]
     dx, dy = (gradient[..., axis] * share[:, :, None] for axis in (0, 1))  # (elements, node at, node of)

@@ -8,8 +8,8 @@ same for all pairs in contact and changes no force:
 
 N_g the moment of the normal forces about the gear's axis over its base radius, F without friction and tip edges. With
 the torsional stiffness k_t of the support, the body's wind-up w between the held radius and the root circle
-(``gears.closed_form.body_wind_up``), and the share lambda of it that is left where inertia balances the torque
-(``gears.closed_form.inertial_wind_up``), the turn c per force that D holds is
+(``gears.closed_form.body_wind_up``, and ``fem.torsion`` for a web), and the share lambda of it that is left where
+inertia balances the torque (``gears.closed_form.inertial_wind_up``), the turn c per force that D holds is
 
 - bore: w + r_b^2/k_t, all up to what holds the gear: the static transmission error between the shafts;
 - body: lambda w, against the turn of the ring weighted by its inertia, the torque balanced by that inertia: what the
@@ -30,6 +30,7 @@ import numpy as np
 from base import Array, Faults, Limit
 from fem.elasticity import PlaneElasticity
 from fem.support import Support, held_profiles
+from fem.torsion import step_wind_up
 from gears.closed_form import body_wind_up, inertial_wind_up
 
 if TYPE_CHECKING:
@@ -68,11 +69,12 @@ def turns(
         if reference == "teeth":
             turn = 0.0
         elif reference == "bore":
-            turn = body_wind_up(*body) / width + supports[gear].turn(base)
+            turn = (body_wind_up(*body) + step_wind_up(profile, width, body[2])) / width
+            turn += supports[gear].turn(base)
         else:
             filled = profile.bore_radius**4 - pair.bore_radii[gear] ** 4
             inside = bore_inertia[gear] / (0.5 * pi * material.density * width) + filled
-            turn = inertial_wind_up(*body, inside) / width
+            turn = (inertial_wind_up(*body, inside) + step_wind_up(profile, width, body[2], inside)) / width
         found.append(turn)
     return np.array(found)
 
