@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from base import InputError
@@ -56,3 +59,26 @@ def write_new(path: Path, text: str, remedy: str) -> None:
             file.write(text)
     except FileExistsError as fault:
         raise InputError.at(path, "", "exists already and is kept", remedy) from fault
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep a second run or study out of the folder; the lock goes with the process that holds it.
+
+    Raises
+    ------
+    InputError
+        Where another one is at work there.
+    """
+    if sys.platform == "win32":
+        yield  # no lock that a killed process lets go of by itself is at hand there
+        return
+    import fcntl
+
+    with (folder / ".lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as fault:
+            allowed = "another run or study is at work there"
+            raise InputError.at(folder, "", allowed, "Wait for it, or name another --out") from fault
+        yield

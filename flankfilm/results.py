@@ -41,6 +41,8 @@ class Results:
         Cost of the whole run [s].
     dataset : xarray.Dataset
         What ``results.nc`` holds; the functions of `flankfilm.figures` draw from it.
+    others : tuple of str
+        Files in the folder that this run did not write.
     """
 
     headline = ("title", "stages", "written")
@@ -52,6 +54,7 @@ class Results:
     files: tuple[Path, ...]
     seconds: float
     dataset: xr.Dataset
+    others: tuple[str, ...] = ()
 
     def get(self, stage: Stage[T]) -> T | None:
         """Result of a stage, such as `flankfilm.stages.catalogue.DRY_CYCLE`; None where the scene did not need it."""

@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from flankfilm.cache import results_cache
-from flankfilm.folder import claim
+from flankfilm.folder import claim, locked
+from flankfilm.manifest import conclude
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.results import Results
@@ -46,8 +47,29 @@ def run_scene(
         Where a solver did not reach a result that it believes.
     """
     start = time.perf_counter()
-    if folder is not None:
-        claim(folder)
+    if folder is None:
+        return _computed(scene, use_cache, progress)[0]
+    claim(folder)
+    with locked(folder):
+        found, engine = _computed(scene, use_cache, progress)
+        files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, found.dataset))
+        if "vtk" in scene.wants:
+            files += engine.timed(
+                "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
+            )
+        found = replace(found, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
+        if "report" in scene.wants:
+            from flankfilm.report.contents import write_report
+
+            progress("writing the report", 1, 1)
+            files.append(write_report(found, folder))
+        others = conclude(folder, files)
+    return replace(found, files=tuple(files), others=others, seconds=time.perf_counter() - start)
+
+
+def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Results, Engine]:
+    """Results without files, and the engine that has them."""
+    start = time.perf_counter()
     wanted = goals(scene)
     announce = in_steps(progress, len(wanted) + 2)
     engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))
@@ -55,18 +77,4 @@ def run_scene(
         engine[stage]
     values = engine.results()
     dataset = results_dataset(scene, values)
-    found = Results(scene, folder, values, engine.runs, (), time.perf_counter() - start, dataset)
-    if folder is None:
-        return found
-    files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, dataset))
-    if "vtk" in scene.wants:
-        files += engine.timed(
-            "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
-        )
-    if "report" in scene.wants:
-        from flankfilm.report.contents import write_report
-
-        progress("writing the report", len(wanted) + 1, len(wanted) + 2)
-        so_far = replace(found, files=tuple(files), seconds=time.perf_counter() - start)
-        files.append(write_report(so_far, folder))
-    return replace(found, files=tuple(files), seconds=time.perf_counter() - start)
+    return Results(scene, None, values, engine.runs, (), time.perf_counter() - start, dataset), engine

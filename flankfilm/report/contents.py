@@ -40,6 +40,10 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
 """Stages with a section of their own, after geometry, stiffness and film."""
 
 
+SHOWN = 5
+"""Files of somebody else that are named."""
+
+
 def headlines(results: Results) -> list[Headline]:
     """Numbers for the page's head and for the terminal."""
     values, cycle = results.values, final_cycle(results)
@@ -56,7 +60,11 @@ def summary(results: Results) -> list[str]:
     lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
         lines.append(results.plan.line)
-    return [*lines, f"{results.written} after {results.seconds:.1f} s"]
+    lines.append(f"{results.written} after {results.seconds:.1f} s")
+    if results.others:
+        more = ", ..." if len(results.others) > SHOWN else ""
+        lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")
+    return lines
 
 
 def final_cycle(results: Results) -> MeshCycle | None:

@@ -11,10 +11,10 @@ from typing import Any, Literal
 
 from base import InputError
 from flankfilm.cache import PACKAGES, code_digest
-from flankfilm.folder import claim
+from flankfilm.folder import claim, locked
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
-from flankfilm.studies.table import ROWS, Columns, Line, append, forget, locked, read_lines
+from flankfilm.studies.table import ROWS, Columns, Line, append, forget, read_lines
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,8 @@ from __future__ import annotations
 import csv
 import io
 import os
-import sys
 import zlib
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -126,26 +124,3 @@ def append(path: Path, columns: Columns, values: Sequence[object], result: RowRe
         os.fsync(handle)
     finally:
         os.close(handle)
-
-
-@contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Keep a second study out of the folder; the lock goes with the process that holds it.
-
-    Raises
-    ------
-    InputError
-        Where another study is at work there.
-    """
-    if sys.platform == "win32":
-        yield  # no lock that a killed process lets go of by itself is at hand there
-        return
-    import fcntl
-
-    with (folder / ".lock").open("w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as fault:
-            allowed = "another study is at work there"
-            raise InputError.at(folder, "", allowed, "Wait for it, or name another --out") from fault
-        yield

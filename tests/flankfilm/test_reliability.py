@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -13,6 +15,8 @@ import pytest
 import xarray as xr
 
 from base import InputError
+from flankfilm.folder import locked
+from flankfilm.report.contents import summary
 from flankfilm.reproduce import scene_in
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
@@ -119,14 +123,71 @@ class TestResultsReproduceThemselves:
             scene_in(tmp_path / "missing.nc")
 
 
-def test_two_runs_at_once_in_one_folder_and_one_cache_end_well(tmp_path, small_run):
+def test_two_runs_at_once_with_one_cache_end_well(tmp_path, small_run):
     (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
     shared = {"cwd": tmp_path, "wait": False, "FLANKFILM_CACHE": str(tmp_path / "cache")}
-    begun = [flankfilm("run", "scene.toml", "--out", "out", **shared) for _ in range(2)]
+    outs = ("out", "other")
+    begun = [flankfilm("run", "scene.toml", "--out", out, **shared) for out in outs]
     for process in begun:
         ended(process)
-    same(tmp_path / "out" / "results.nc", small_run / "results.nc")
-    assert [p.name for p in (tmp_path / "out").rglob(".*")] == []
+    for out in outs:
+        same(tmp_path / out / "results.nc", small_run / "results.nc")
+        assert [p.name for p in (tmp_path / out).rglob(".*")] == [".lock"]
+
+
+def test_two_runs_do_not_share_a_folder(tmp_path):
+    (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
+    (tmp_path / "out").mkdir()
+    with locked(tmp_path / "out"):
+        begun = flankfilm("run", "scene.toml", "--out", "out", cwd=tmp_path, wait=False)
+        assert "another run or study is at work there" in ended(begun, status=2)
+
+
+class TestManifest:
+    """Files of an earlier run go, those of somebody stay."""
+
+    @pytest.fixture
+    def folder(self, tmp_path):
+        run_scene(parse_scene(SMALL), tmp_path / "out")
+        return tmp_path / "out"
+
+    def test_what_the_next_run_does_not_write_goes(self, folder):
+        before = {str(path.relative_to(folder)) for path in folder.rglob("*.csv")}
+        found = run_scene(parse_scene(ishikawa("Y", "geometry")), folder)
+        after = {str(path.relative_to(folder)) for path in folder.rglob("*.csv")}
+        assert after == {str(path.relative_to(folder)) for path in found.files if path.suffix == ".csv"}
+        assert before - after
+        assert found.others == ()
+        assert json.loads((folder / "files.json").read_text())["sha256"].keys() == {
+            path.relative_to(folder).as_posix() for path in found.files
+        }
+
+    def test_what_somebody_wrote_or_changed_stays_and_is_named(self, folder):
+        changed = sorted((folder / "csv").iterdir())[0]
+        changed.write_text(changed.read_text() + "# mine\n")
+        (folder / "notes.txt").write_text("mine")
+        found = run_scene(parse_scene(ishikawa("Y", "geometry")), folder)
+        expected = {"notes.txt"} if changed in found.files else {"notes.txt", f"csv/{changed.name}"}
+        assert set(found.others) == expected
+        assert "notes.txt" in summary(found)[-1]
+        assert (folder / "notes.txt").read_text() == "mine"
+
+    @pytest.mark.parametrize("name", ["../mine", "/tmp/mine", "link/mine", "files.json", "a\0b"])
+    def test_a_changed_list_removes_nothing_outside(self, folder, name):
+        mine, other = folder.parent / "mine", folder.parent / "elsewhere"
+        mine.write_text("mine")
+        other.mkdir()
+        (other / "mine").write_text("mine")
+        (folder / "link").symlink_to(other)
+        digest = hashlib.sha256(b"mine").hexdigest()
+        (folder / "files.json").write_text(json.dumps({"sha256": {name: digest}}))
+        run_scene(parse_scene(SMALL), folder)
+        assert mine.read_text() == (other / "mine").read_text() == "mine"
+
+    @pytest.mark.parametrize("text", ["", "[]", "{", '{"sha256": 3}', "[" * 100_000, '{"sha256": {"x": 1}}'])
+    def test_a_damaged_list_is_none(self, folder, text):
+        (folder / "files.json").write_text(text)
+        assert run_scene(parse_scene(SMALL), folder).files
 
 
 @pytest.mark.parametrize(

@@ -16,11 +16,12 @@ import pytest
 import xarray as xr
 
 from base import InputError
+from flankfilm.folder import locked
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.run import run_study
-from flankfilm.studies.table import Columns, append, locked, read_lines
+from flankfilm.studies.table import Columns, append, read_lines
 from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
 
 GEOMETRY = """

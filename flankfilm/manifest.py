@@ -1,0 +1,88 @@
+"""Which files of a folder a run wrote, so that the next one there leaves none of another pair beside its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
+
+from base.files import replacing
+
+MANIFEST = "files.json"
+"""Name of the list in the folder."""
+
+UNLISTED = (MANIFEST, ".lock")
+
+LARGEST = 50_000_000
+"""Bytes of a list above which it is not ours."""
+
+
+def conclude(folder: Path, files: Iterable[Path]) -> tuple[str, ...]:
+    """List what a run wrote, and remove what an earlier one left there.
+
+    A file of an earlier run goes only if it is as that run wrote it; files that somebody changed, and all that no run
+    wrote, are kept.
+
+    Parameters
+    ----------
+    folder : Path
+    files : iterable of Path
+        What was written; what a ``.pvd`` among it refers to counts as well.
+
+    Returns
+    -------
+    tuple of str
+        Files in the folder that are not of this run.
+    """
+    written = {_name(folder, path): _digest(path) for path in _with_references(files)}
+    for name, digest in _listed(folder).items():
+        path = folder / name
+        if name not in written and path.is_file() and not path.is_symlink() and _digest(path) == digest:
+            path.unlink()
+            with suppress(OSError):  # it is no longer empty, or was not there
+                path.parent.rmdir()
+    with replacing(folder / MANIFEST) as beside:
+        beside.write_text(json.dumps({"sha256": written}, indent=1), encoding="utf-8")
+    names = (_name(folder, path) for path in folder.rglob("*") if path.is_file() or path.is_symlink())
+    return tuple(sorted(name for name in names if name not in written and name not in UNLISTED))
+
+
+def _listed(folder: Path) -> Mapping[str, str]:
+    """Names and digests of an earlier run's files, those inside the folder alone; none where the list is not ours."""
+    path = folder / MANIFEST
+    try:
+        if path.stat().st_size > LARGEST:
+            return {}
+        held = json.loads(path.read_text(encoding="utf-8"))["sha256"]
+        return {name: digest for name, digest in held.items() if _inside(folder, name)}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}  # no earlier run, or a list that somebody changed: then nothing is removed
+
+
+def _inside(folder: Path, name: str) -> bool:
+    path = PurePosixPath(name)
+    if path.is_absolute() or ".." in path.parts or "\0" in name or name in UNLISTED:
+        return False
+    return (folder / path).parent.resolve().is_relative_to(folder.resolve())
+
+
+def _with_references(files: Iterable[Path]) -> list[Path]:
+    """Files, and those that a ``.pvd`` among them names."""
+    found = list(files)
+    for path in [one for one in found if one.suffix == ".pvd"]:
+        found += [
+            path.parent / name for name in re.findall(r'file="([^"]+)"', path.read_text(encoding="utf-8"))
+        ]
+    return found
+
+
+def _name(folder: Path, path: Path) -> str:
+    return path.relative_to(folder).as_posix()
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
