@@ -55,6 +55,8 @@ def _left_out(pair: GearPair) -> tuple[str, ...]:
             )
         if gear.tip_relief is not None:
             omitted.append(f"{name}: tip relief is not written")
+        if gear.blank is not None:
+            omitted.append(f"{name}: blank is not written, the gear is a disc in the file")
     return tuple(omitted)
 
 

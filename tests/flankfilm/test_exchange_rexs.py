@@ -18,7 +18,7 @@ from flankfilm.exchange.rexs_file import parse_model
 from flankfilm.exchange.rexs_pair import draft_of, stages
 from flankfilm.exchange.rexs_write import rexs_text
 from flankfilm.scene import parse_scene
-from gears import BasicRack, Gear, GearPair, Material, TipRelief
+from gears import BasicRack, Blank, Gear, GearPair, Material, TipRelief
 
 # Elements, attribute ids and units of the REXS schemas: up to 1.1 a gear names its tool by an
 # ordered_reference, its flanks are of type flank_geometry and angles have the unit "°"; later the flank
@@ -178,12 +178,13 @@ def test_a_pair_goes_out_and_comes_back(tmp_path):
 def test_what_rexs_is_not_given_is_told():
     relieved = GearPair(
         pinion=Gear(teeth=36, thickness_allowance=20e-6, tip_relief=TipRelief(10e-6, 1e-3)),
-        wheel=Gear(teeth=40),
+        wheel=Gear(teeth=40, blank=Blank(5e-3, 10e-3)),
         module=2e-3,
         face_width=40e-3,
     )
     _, left_out = rexs_text(relieved, "")
-    assert [message.split(":")[0] for message in left_out] == ["pinion", "pinion"]
+    assert [message.split(":")[0] for message in left_out] == ["pinion", "pinion", "wheel"]
+    assert "blank" in left_out[2]
 
 
 def test_the_driving_gear_is_the_pinion(tmp_path):
