@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|Pa s|m2/s|m/s|W|Hz|rad|rad/s"
+_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|W|Hz|rad|rad/s"
 
 FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "%": 1e-2,

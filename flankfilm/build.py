@@ -6,12 +6,14 @@ What a section hands over one to one is its `Section.si`; here stands what takes
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeVar
 
 import fem
 import gears
+from base import InputError
 from flankfilm.scene.gears import GearSection, PairSection, RackSection
-from flankfilm.scene.ground import under_keys
+from flankfilm.scene.ground import in_keys, under_keys
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import Section, required
 
@@ -23,13 +25,18 @@ ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25),
 
 
 def gear_pair(scene: Scene) -> gears.GearPair:
-    """Build the pair of a scene; without a material it is of steel.
+    """Build the pair of a scene, grown to its temperatures; without a material it is of steel.
 
     Raises
     ------
     InputError
         With every fault of the geometry, each under the scene's key.
     """
+    return warm_pair(scene).pair
+
+
+def _cold_pair(scene: Scene) -> gears.GearPair:
+    """Build the pair of a scene as it was measured."""
     section = required(scene.pair, "[pair]")
     with under_keys(section, "pair"):
         materials = (gears.STEEL, gears.STEEL)
@@ -41,6 +48,29 @@ def gear_pair(scene: Scene) -> gears.GearPair:
         )
         backlash = section.value("backlash_um")
         return pair.with_backlash(backlash) if backlash else pair
+
+
+def warm_pair(scene: Scene) -> gears.WarmPair:
+    """Build the pair of a scene at its temperatures, beside the cold one.
+
+    Raises
+    ------
+    InputError
+        With every fault of the geometry and of the temperatures, each under the scene's key.
+    """
+    cold = _cold_pair(scene)
+    heat = gears.Heat() if scene.heat is None else gears.Heat(**scene.heat.si())
+    try:
+        return gears.warm_pair(cold, heat)
+    except InputError as error:
+        heated = [fault for fault in error.faults if fault.where.startswith("heat.")]
+        if not heated:
+            with under_keys(scene.pair, "pair"):
+                raise
+        raise InputError(
+            in_keys(replace(fault, where=fault.where.removeprefix("heat.")), scene.heat, "heat")
+            for fault in heated
+        ) from error
 
 
 def _both(sections: tuple[S, S], build: Callable[[S], B]) -> tuple[B, B]:

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable
 from typing import TypeVar
 
-from flankfilm.build import gear_pair
+from flankfilm.build import gear_pair, warm_pair
 from flankfilm.build_film import lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.cache import Cache
@@ -40,6 +40,12 @@ def check_scene(scene: Scene) -> list[str]:
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
         )
         lines += warned
+        if scene.heat is not None:
+            warm = warm_pair(scene)
+            lines.append(
+                f"Heat: backlash {1e6 * warm.cold_backlash:.1f} µm cold, {1e6 * warm.backlash:.1f} µm warm; the base "
+                f"pitch of the pinion is {1e6 * warm.base_pitch_difference:+.2f} µm longer than that of the wheel."
+            )
     if scene.lubricant is not None:
         oil, warned = _built(lubricant, scene)
         lines.append(

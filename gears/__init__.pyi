@@ -9,6 +9,9 @@ from .flank_curves import ProfileDeviation as ProfileDeviation
 from .flank_curves import WearDepth as WearDepth
 from .gear import Gear as Gear
 from .gear import TipRelief as TipRelief
+from .heat import Heat as Heat
+from .heat import WarmPair as WarmPair
+from .heat import warm_pair as warm_pair
 from .hertz import half_width as half_width
 from .hertz import peak_pressure as peak_pressure
 from .load_sharing import LoadShare as LoadShare

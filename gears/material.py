@@ -10,6 +10,7 @@ LIMITS = {
     "youngs_modulus": Limit(1e6, 1e13, "Pa", "give the modulus in pascals (steel 206e9)"),
     "poisson_ratio": Limit(0.0, 0.4999, remedy="give Poisson's ratio of a compressible solid (steel 0.3)"),
     "density": Limit(1.0, 1e5, "kg/m3", "give the density in kg/m3 (steel 7850)"),
+    "thermal_expansion": Limit(0.0, 1e-3, "1/K", "give the coefficient per kelvin (steel 11.5e-6)"),
 }
 """What the numbers of a material may be."""
 
@@ -29,6 +30,8 @@ class Material:
         nu [-].
     density : float
         Mass density [kg/m3].
+    thermal_expansion : float
+        Coefficient of linear expansion alpha [1/K]; of steel unless given.
 
     Examples
     --------
@@ -40,6 +43,7 @@ class Material:
     youngs_modulus: float  # E, Pa
     poisson_ratio: float  # nu, -
     density: float  # kg/m3
+    thermal_expansion: float = 11.5e-6  # alpha, 1/K
 
     @property
     def shear_modulus(self) -> float:

@@ -11,6 +11,7 @@ import fem
 import gears
 from base import Array, Cost, Faults, Stopwatch
 from fem.local_law import film_yielding
+from fem.setting import Setting
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
@@ -40,6 +41,8 @@ class Flanks:
         Radii of the tip edges of pinion and wheel [m].
     friction : float
         Coefficient of friction by which the forces are tilted.
+    base_pitch_difference : float
+        Base pitch of the pinion less that of the wheel, by unequal temperatures [m].
     moving_contact : bool
         Whether contacts on the path move under load.
     """
@@ -49,6 +52,7 @@ class Flanks:
     tip_rounding: tuple[float, float] = (0.0, 0.0)
     friction: float = 0.0
     moving_contact: bool = True
+    base_pitch_difference: float = 0.0
 
 
 PLAIN_FLANKS = Flanks()
@@ -73,7 +77,7 @@ class LoadedTeeth:
     ----------
     pair : gears.GearPair
     torque : float
-        Of the pinion [N m].
+        Of the pinion [N m], negative where the wheel drives: the mirrored gears on their back flanks.
     model : str
         ``"fem"``, ``"ishikawa"``, ``"weber-banaschek"`` or ``"potential-energy"``.
     pairs : str
@@ -128,7 +132,15 @@ class LoadedTeeth:
     @property
     def force(self) -> float:
         """Normal force of all pairs together [N]."""
-        return self.pair.normal_force(self.torque)
+        return abs(self.pair.normal_force(self.torque))
+
+    def on_path(self, position: Array) -> Array:
+        """Positions at which the loaded flanks stand on the path of contact: back flanks in the mirror."""
+        return position if self.torque > 0.0 else (Setting(self.pair).mirror - position) % 1.0
+
+    def lag(self, approach: Array) -> Array:
+        """Transmission error [m] of an approach of the loaded flanks; beyond the backlash on back flanks."""
+        return approach if self.torque > 0.0 else -(self.pair.backlash + approach)
 
     def cycle(self, positions: int, film: FilmLaw | None = None, tolerance: float = 1e-3) -> MeshCycle:
         """Mesh cycle at the midpoints of some equal intervals of one base pitch.
@@ -190,7 +202,8 @@ class LoadedTeeth:
     def _by_single_pairs(self, positions: int, film: FilmLaw | None, tolerance: float) -> MeshCycle:
         """Pairs that know each other only through the force they share."""
         watch = Stopwatch()
-        position, rho1 = contact_places(self.pair, positions)
+        position, _ = contact_places(self.pair, positions)
+        rho1 = places_of(self.pair, self.on_path(position))
         pairs = SinglePairsProblem(self, film, tolerance)
         share, secant = pairs.shared(rho1)
         return MeshCycle(
@@ -201,7 +214,7 @@ class LoadedTeeth:
             load_share=share.forces / self.force,
             secant_stiffness=secant,
             stiffness=np.asarray(share.stiffness),
-            transmission_error=np.asarray(share.transmission_error),
+            transmission_error=self.lag(np.asarray(share.transmission_error)),
             error=pairs.error,
             cost=Cost(watch.seconds),
             reference="bore" if self.model == "fem" else "teeth",
@@ -240,18 +253,18 @@ class SinglePairsProblem:
             if profile.tip_relief is not None:
                 start = profile.flank_rho[1] - profile.tip_relief.length
                 ends.append(start if gear == 0 else pair.line_of_action - start)
-        corners = (np.array(ends) - pair.points.A) / pair.base_pitch
+        corners = self.teeth.on_path((np.array(ends) - pair.points.A) / pair.base_pitch)
         if self.film is not None:
-            corners = np.concatenate([corners, self.film.corners(pair)])
+            corners = np.concatenate([corners, self.teeth.on_path(self.film.corners(pair))])
         division = arcs_between_events(self._sample, CURVES, corners, tolerance=SAMPLING * self.tolerance)
         return MeshArcs(division, None, 1.0, self.error)
 
     def _sample(self, position: Array) -> Sampled:
-        rho1 = places_of(self.teeth.pair, position)
+        rho1 = places_of(self.teeth.pair, self.teeth.on_path(position))
         share, secant = self.shared(rho1)
         moved, tangent = np.asarray(share.transmission_error), np.asarray(share.stiffness)
         if self.teeth.pairs == "independent":
-            return Sampled(np.stack([moved, tangent, secant]), np.zeros((position.size, 0)))
+            return Sampled(np.stack([self.teeth.lag(moved), tangent, secant]), np.zeros((position.size, 0)))
         clear = np.where(np.isfinite(rho1), _relief(self.teeth.pair, rho1), np.inf) - moved[:, None]
         if self.film is not None:
             clear = clear - self.film(rho1, np.zeros_like(rho1))[0]
@@ -259,7 +272,7 @@ class SinglePairsProblem:
             secant = secant * moved / (moved + added)
         left = np.minimum(-clear / moved.mean(), -1e-300)
         return Sampled(
-            np.stack([moved, tangent, secant]),
+            np.stack([self.teeth.lag(moved), tangent, secant]),
             np.where(share.forces > 0.0, share.forces / self.teeth.force, left),
         )
 

@@ -272,7 +272,7 @@ class _Run:
         tolerance = min(self.resolution.sampling, self.resolution.transmission_error)
         cycle = self.teeth.cycle(self.dry.position.size, law, tolerance)
         if self.teeth.pairs == "coupled":
-            moved = cycle.transmission_error
+            moved = self.teeth.lag(cycle.transmission_error)
             yields = film_yielding(law, cycle.rho1, cycle.forces, cycle.load_share)
             cycle = replace(cycle, secant_stiffness=cycle.secant_stiffness * moved / (moved + yields))
         return replace(cycle, label=label)

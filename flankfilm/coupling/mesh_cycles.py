@@ -71,7 +71,7 @@ def resolved(
     """
     with Faults() as faults:
         faults.number("tolerance", tolerance, Limit.above(0.0, 0.4, remedy="such as 0.005"))
-        for name, value in {"torque": teeth.torque, **positive}.items():
+        for name, value in {"torque": abs(teeth.torque), **positive}.items():
             faults.number(name, value, Limit.above(0.0))
     asked = resolution_of(tolerance, teeth.model, teeth.pairs, film)
     return teeth.meshed(asked.compliance), asked

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import dynamics
 import gears
-from base import Cost, described, part, quantity, record
+from base import Cost, InputError, described, part, quantity, record
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.series import MeshSeries, mesh_series
@@ -119,6 +120,9 @@ def pair_oscillator(
     independent pairs and given series have no turn that all pairs share, and stay as they are; the message says
     which it was.
 
+    On the far side of the backlash the flanks that the load does not press bear with the same k(t). Theirs is its
+    mirror image, k(c - t) with c of `fem.setting.Setting.mirror`: of the same mean and harmonics, in other phases.
+
     Parameters
     ----------
     pair : gears.GearPair
@@ -126,7 +130,8 @@ def pair_oscillator(
         Of a mesh cycle the first harmonic of the secant is taken. A series of a mesh cycle with another reference
         is fitted anew, to the same order.
     torque, speed : float
-        Of the pinion [N m], [rad/s].
+        Of the pinion [N m], [rad/s]. Where the wheel drives, with a negative torque, X counts in the direction of that
+        load, and the stiffness is that of the back flanks.
     damping_ratio : float
         Dimensionless.
     error_amplitude, error_phase : float
@@ -157,16 +162,20 @@ def pair_oscillator(
     """
     series = _measured(stiffness, reference, extra_inertia)
     said = "" if series.reference is None else f"stiffness measured against {MEANINGS[series.reference]}"
-    force = pair.normal_force(torque)
+    if pair.backlash < -1e-12 * pair.module:
+        allowed = "must be at least 0 for the motion, in which back flanks touch by turns"
+        remedy = "give more backlash; the mesh cycle of pressed teeth needs no motion"
+        raise InputError.at("pair.backlash", f"{1e6 * pair.backlash:.4g} um", allowed, remedy)
+    force = abs(pair.normal_force(torque))
     scales = pair_scales(pair, torque, series.mean, extra_inertia, length_scale)
     oscillator = scales.oscillator(
         stiffness=series.stiffness,
         damping_ratio=damping_ratio,
         force=force,
         error_amplitude=error_amplitude,
-        half_backlash=0.5 * pair.backlash,
+        half_backlash=0.5 * max(pair.backlash, 0.0),
         speed=speed,
-        error_phase=error_phase,
+        error_phase=error_phase if torque > 0.0 else error_phase + math.pi,
     )
     return PairOscillator(
         replace(oscillator, one_sided=one_sided),
@@ -224,6 +233,6 @@ def pair_scales(
         mean_stiffness=mean_stiffness,
         cycles_per_revolution=pair.pinion.teeth,
         length=length_scale,
-        force=pair.normal_force(torque) if length_scale is None else None,
+        force=abs(pair.normal_force(torque)) if length_scale is None else None,
         mean_force=MEAN_FORCE if length_scale is None else None,
     )

@@ -108,7 +108,7 @@ def stiffness_references(
         mean_stiffness=np.array([one.mean_stiffness for one in each]),
         mean_secant_stiffness=np.array([one.mean_secant_stiffness for one in each]),
         mean_error=errors,
-        iso_mesh_stiffness=1e9 * pair.face_width * iso6336(pair, force=cycle.contact.force).c_gamma,
+        iso_mesh_stiffness=1e9 * pair.face_width * iso6336(pair, force=abs(cycle.contact.force)).c_gamma,
         deflection={name: float(part.mean()) for name, part in parts.items()},
         error=float(np.max(errors)),  # nan where a contact between the positions has no solution
         cost=Cost(watch.seconds),

@@ -126,7 +126,7 @@ def single_pairs(
         with unclocked():
             import fem  # noqa: F401 - its import is no cost of the result
     watch = Stopwatch()
-    path, force = pair.path_of_contact(n=points), pair.normal_force(torque)
+    path, force = pair.path_of_contact(n=points), abs(pair.normal_force(torque))
     models = [*(["fem"] if compliance is not None else []), *CLOSED_FORMS]
     return SinglePairs(
         travel=path.position,

@@ -219,7 +219,7 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
     for model in CLOSED_FORMS:
         yield _curves(MODELS[model], LoadedTeeth(pair, torque, model, "independent"))
     watch = Stopwatch()
-    iso = forms.iso6336(pair, force=pair.normal_force(torque))
+    iso = forms.iso6336(pair, force=abs(pair.normal_force(torque)))
     means = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
     nothing = np.zeros(0)
     yield Curves(

@@ -58,6 +58,7 @@ RECORDS = {
     "reference": "references",
     "torque": "torques",
     "pair": "pair",
+    "heat": "heat",
 }
 """Prefix of the variables of each stage whose result is one record."""
 

@@ -64,7 +64,7 @@ def teeth(scene: Scene, pair: gears.GearPair) -> Options:
 def _outside(scene: Scene, pair: gears.GearPair) -> str:
     """Where a scene lies outside the comparison; empty where it does not."""
     modulus = min(m.youngs_modulus for m in pair.materials)
-    force = pair.normal_force(pinion_torque(scene))
+    force = abs(pair.normal_force(pinion_torque(scene)))
     both = (pair.pinion, pair.wheel)
     of_gears: dict[str, list[float]] = {
         "teeth": [gear.teeth for gear in both],

@@ -108,6 +108,8 @@ def _result_parts(results: Results) -> list[Part]:
     parts = []
     if pair is not None:
         parts.append(mesh_parts.geometry(pair, data))
+        if (heat := values.get("heat")) is not None:
+            parts.append(mesh_parts.heat(heat))
         if any(f"flank_{gear}_diameter" in data for gear in ("pinion", "wheel")):
             parts.append(mesh_parts.flanks(data))
         if cycle is not None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from base.results import quantities
 from flankfilm.coupling.references import MEANINGS, PARTS
 from flankfilm.figures.reading import read, read_figure, travel
 from flankfilm.report.page import Headline, Part, Table, pictures, said
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
         StiffnessReferences,
         TorqueCurves,
     )
-    from gears import GearPair
+    from gears import GearPair, WarmPair
     from gears.closed_form import Iso6336RootStress
 
 OF_EACH = (
@@ -79,6 +80,18 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     drawn = pictures(results, "gears_in_mesh", "kinematics")
     tables = Table(("", "pinion", "wheel"), rows), Table(("pair", ""), common)
     return Part("geometry", "Geometry", figures=drawn, tables=tables)
+
+
+def heat(warm: WarmPair) -> Part:
+    """Cold and warm backlash, pressure angle and base pitches."""
+    names = [one.name for one in quantities(warm).values()]
+    found = [read_figure(warm, name) for name in names]
+    rows = tuple((figure.label, number(float(figure.values), 6)) for figure in found)
+    note = (
+        "All other figures are of the gears grown to their temperatures. Unequal base pitches act as a gap that grows "
+        "along the path of contact, in the loaded contact by finite elements of coupled pairs."
+    )
+    return Part("heat", "Growth by heat", notes=(note,), tables=(Table(("pair", ""), rows),))
 
 
 def flanks(results: xr.Dataset) -> Part:

@@ -155,6 +155,10 @@ class PairSection(Section):
         "distance of the axes, if not by the backlash, which then follows", None, such_as=76.0
     )
 
+    tight: bool = key(
+        "whether teeth may be thicker than their gaps, so that both sides bear; refused if false", False
+    )
+
     @property
     def each(self) -> tuple[GearSection, GearSection]:
         """Pinion and wheel."""
@@ -169,6 +173,7 @@ class ElasticSection(Section):
     youngs_modulus_GPa: float = key("Young's modulus", example=206)
     poisson_ratio: float = key("Poisson's ratio", example=0.3)
     density_kg_per_m3: float = key("density, for the moments of inertia", 7850.0, example=7850)
+    thermal_expansion_per_K: float = key("coefficient of linear expansion by heat", 11.5e-6, such_as=11.5e-6)
 
 
 class MaterialSection(Section):
@@ -179,6 +184,9 @@ class MaterialSection(Section):
     youngs_modulus_GPa: float | None = key("Young's modulus of both gears", None, example=206)
     poisson_ratio: float | None = key("Poisson's ratio of both gears", None, example=0.3)
     density_kg_per_m3: float | None = key("density of both gears; 7850 if left out", None, example=7850)
+    thermal_expansion_per_K: float | None = key(
+        "coefficient of linear expansion of both gears; 11.5e-6 of steel if left out", None, such_as=11.5e-6
+    )
     pinion: ElasticSection | None = key("material of the pinion alone, instead of the keys above", None)
     wheel: ElasticSection | None = key("material of the wheel alone, beside that of the pinion", None)
 

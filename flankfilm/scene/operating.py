@@ -11,14 +11,17 @@ from base.units import factor
 from flankfilm.scene.key import key, within
 from flankfilm.scene.section import Limits, Section, refused
 
-TORQUE = Limit(1e-9, 1e9, "N m")
+TORQUE = Limit(-1e9, 1e9, "N m")
+
+LEAST = 1e-9
+"""Least torque of either sign [N m]."""
 
 GIVEN = ("mean_N_per_m", "amplitudes", "phases_deg")
 """Keys of a given stiffness."""
 
 
 class OperatingSection(Section):
-    """Load and speed; the pinion drives, anticlockwise."""
+    """Load and speed; the pinion turns anticlockwise."""
 
     ground: ClassVar[Limits] = {
         "pinion_torque": TORQUE,
@@ -27,13 +30,16 @@ class OperatingSection(Section):
         "pitches": Limit(1, 100_000, whole=True),
     }
 
-    pinion_torque_Nm: float = key("torque on the pinion, which drives anticlockwise", example=600)
+    pinion_torque_Nm: float = key(
+        "torque on the pinion, which turns anticlockwise; negative where the wheel drives, on the back flanks",
+        example=600,
+    )
     pinion_speed_rpm: float | None = key("speed of the pinion, which the film needs", None, example=2000)
     friction: float = key(
         "coefficient of friction, which tilts the forces against the sliding", 0.0, such_as=0.05
     )
     torques_Nm: Annotated[tuple[Annotated[float, within(TORQUE)], ...], Field(strict=False)] = key(
-        "torques on the pinion, of the wanted torques; none if left out",
+        "torques on the pinion, of the wanted torques, of either sign; none if left out",
         (),
         such_as=(100, 300, 600),
         max_length=1000,
@@ -44,6 +50,18 @@ class OperatingSection(Section):
     first_teeth: Annotated[tuple[int, int], Field(strict=False)] = key(
         "numbers of the teeth of pinion and wheel that meet at A first", (0, 0)
     )
+
+    @model_validator(mode="after")
+    def _some_torque(self) -> OperatingSection:
+        for where, value in (
+            ("pinion_torque_Nm", self.pinion_torque_Nm),
+            *((f"torques_Nm[{k}]", torque) for k, torque in enumerate(self.torques_Nm)),
+        ):
+            if abs(value) < LEAST:
+                allowed = f"must be at least {LEAST:g} N m, or at most {-LEAST:g} N m where the wheel drives"
+                remedy = "Without torque no flank bears but those of pressed teeth: fem.mesh_cycle(pair, 0.0)"
+                raise refused(allowed, remedy, where=where, value=f"{value:g}")
+        return self
 
 
 class StiffnessSection(Section):

@@ -14,6 +14,7 @@ from base import InputError, Limit
 from flankfilm.scene.dynamics import DynamicsSection
 from flankfilm.scene.film import FilmSection, LubricantSection, RoughnessSection
 from flankfilm.scene.gears import MaterialSection, PairSection
+from flankfilm.scene.heat import HeatSection
 from flankfilm.scene.key import key
 from flankfilm.scene.operating import OperatingSection, StiffnessSection
 from flankfilm.scene.section import Section
@@ -90,6 +91,9 @@ class Scene(Section):
     pair: PairSection | None = key("Geometry of the pair", None, shown=True)
     material: MaterialSection | None = key(
         "Material of both gears, or of each in material.pinion and material.wheel", None, shown=True
+    )
+    heat: HeatSection | None = key(
+        "Temperatures, by which gears and housing grow; all at 20 degC if left out", None
     )
     operating: OperatingSection | None = key("Load and speed", None, shown=True)
     lubricant: LubricantSection | None = key(

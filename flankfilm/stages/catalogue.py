@@ -16,7 +16,7 @@ import dynamics
 import fem
 import gears
 from flankfilm import coupling
-from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings
+from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
@@ -30,7 +30,7 @@ from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.scene.section import required
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact operating tolerance"
+TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact operating heat tolerance"
 """Keys of all that is loaded."""
 
 
@@ -44,12 +44,18 @@ _TEETH_DECIDED = _decided(
 )
 
 
-@stage("pair", "geometry", "pair material")
+@stage("pair", "geometry", "pair material heat")
 def PAIR(run: Engine) -> gears.GearPair:
     """Geometry of the scene's pair; curves that do not fit its flanks are refused before anything is computed."""
     pair = gear_pair(run.scene)
     deviations(run.scene, pair, every_tooth=True)
     return pair
+
+
+@stage("heat", "growth by heat", "pair material heat")
+def HEAT(run: Engine) -> gears.WarmPair:
+    """The pair at its temperatures beside the cold one."""
+    return warm_pair(run.scene)
 
 
 @stage(
@@ -79,7 +85,7 @@ def PLAN(run: Engine) -> Plan:
 @stage(
     "bodies",
     "tooth compliance by finite elements",
-    "pair material stiffness.plane",
+    "pair material heat stiffness.plane",
     kept="gears meshes fem",
     by_parts=True,
     of=plain_flanks,
@@ -123,6 +129,7 @@ def loaded_teeth(
         tip_roundings(scene),
         scene.operating.friction if scene.operating else 0.0,
         scene.stiffness.moving_contact,
+        warm_pair(scene).base_pitch_difference,
     )
     compliance = run[COMPLIANCE] if model == "fem" else None
     return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)
@@ -214,7 +221,7 @@ def MESH(run: Engine) -> coupling.MeshCycle:
 @stage(
     "fillets",
     "root stress per load by finite elements",
-    "pair material stiffness.plane tolerance",
+    "pair material heat stiffness.plane tolerance",
     kept="gears meshes fem",
     by_parts=True,
     of=plain_flanks,
@@ -290,7 +297,7 @@ def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, floa
     return min(ends), max(ends)
 
 
-@stage("scaling", "physical to dimensionless", "operating dynamics pair material", FOURIER)
+@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER)
 def SCALING(run: Engine) -> coupling.PairOscillator:
     """Oscillator of the scene at its speed, or at the start of the sweep."""
     section, series, operating = _dynamics(run), run[FOURIER], run.scene.operating

@@ -18,6 +18,8 @@ def goals(scene: Scene) -> tuple[Stage[Any], ...]:
 def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "geometry" in wants:
         yield of.PAIR
+    if scene.heat is not None and scene.pair is not None:
+        yield of.HEAT
     if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
         yield of.CLOSED_FORMS
     if wants & {"stiffness", "film"} and not given:

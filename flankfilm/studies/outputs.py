@@ -26,9 +26,9 @@ from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.tables import spelt
 from flankfilm.output.variables import sentence
-from flankfilm.stages.catalogue import FILM, MESH, PAIR, ROOT_STRESS, VERIFICATION
+from flankfilm.stages.catalogue import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.stages.engine import Engine, Stage
-from gears import GearPair
+from gears import GearPair, WarmPair
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,7 @@ def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}")
 
 
 _pair = _from(lambda engine: engine[PAIR], GearPair, "geometry")
+_heat = _from(lambda engine: engine[HEAT], WarmPair, "geometry")
 _mesh = _from(lambda engine: engine[MESH], MeshCycle, "stiffness")
 _film = _from(lambda engine: engine[FILM].film, FilmAlongPath, "film")
 _lubricated = _from(lambda engine: engine[FILM], LubricatedCycle, "film")
@@ -209,6 +210,8 @@ def _harmonics_error(curve: str, name: str) -> Named:
 OUTPUTS: Mapping[str, Output] = dict(
     (
         _pair("contact_ratio"),
+        _heat("cold_backlash"),
+        _heat("base_pitch_difference"),
         _pair("working_centre_distance", name="centre_distance"),
         _pair("working_pressure_angle"),
         _output(
