@@ -24,7 +24,6 @@ import numpy as np
 
 from base import Array, Booleans, Faults, Limit, part, quantity, record
 from gears.bisection import bisect
-from gears.blank import Blank
 from gears.errors import GeometryError
 from gears.gear import Gear
 from gears.guards import ROUNDING, TIGHTEST
@@ -188,7 +187,8 @@ def _larger(gear: Gear, factor: float) -> Gear:
         relief = dataclasses.replace(relief, amount=relief.amount * factor, length=relief.length * factor)
     if blank is not None:
         lengths = {one.name: getattr(blank, one.name) for one in dataclasses.fields(blank)}
-        blank = Blank(**{name: None if one is None else one * factor for name, one in lengths.items()})
+        larger = {name: one * factor for name, one in lengths.items() if one is not None}
+        blank = dataclasses.replace(blank, **larger)
     return dataclasses.replace(
         gear,
         bore_radius=None if gear.bore_radius is None else gear.bore_radius * factor,
