@@ -55,7 +55,7 @@ def _of_gear(
     made = gears.GearDeviations()
     if given is not None:
         made = gears.GearDeviations(curves.profile(given), _pitches(given))
-    if wear is not None:
+    if wear is not None and wear.factor > 0.0:  # a factor of 0 is the gear unworn
         made = gears.GearDeviations(made.profile, made.pitch, curves.wear(wear))
     return _plain_as_none(made)
 

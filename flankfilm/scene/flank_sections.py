@@ -155,7 +155,9 @@ class WearSection(DepthSection):
         such_as=({"roll_deg": (10.0, 28.0), "depth_um": (12.0, 0.0)},),
         max_length=MOST_POINTS,
     )
-    factor: float = key("times the depth, for studies over wear", 1.0, of=None, limit=Limit(0.0, 1000.0))
+    factor: float = key(
+        "times the depth, for studies over wear; 0 is unworn", 1.0, of=None, limit=Limit(0.0, 1000.0)
+    )
     beyond: Beyond = key(f"{BEYOND}; a curve that ends at no depth may", "refuse")
 
     def _faults(self) -> Iterator[Fault]:

@@ -86,8 +86,8 @@ def test_one_pitch_knows_the_mean_and_the_revolution_every_tooth(table):
         "factor = 1.0", "factor = 0.0"
     )
     unworn = parse_scene(pitches)
-    assert deviations(unworn, pair, every_tooth=False)[0] is None
-    assert max(deviations(unworn, pair, every_tooth=True)[1].wear.depth) == 0.0
+    assert deviations(unworn, pair, every_tooth=False) is None  # pitches count in the revolution alone
+    assert deviations(unworn, pair, every_tooth=True)[1] is None
 
 
 def test_wear_in_files_of_all_teeth_or_of_each(tmp_path):
