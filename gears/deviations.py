@@ -94,7 +94,8 @@ class GearDeviations:
     Notes
     -----
     Curves of each tooth are taken apart into the mean of the gear, at the points of the trace that has most, and
-    what each tooth has beyond it. A mesh cycle of one base pitch knows the mean alone (`mean`).
+    what each tooth has beyond it. A mesh cycle of one base pitch knows the mean alone (`mean`). Where the flanks on the
+    other side of the teeth bear too, they are taken to be as these.
     """
 
     profile: ProfileDeviation | Sequence[ProfileDeviation] | None = None
