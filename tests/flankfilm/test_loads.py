@@ -98,7 +98,11 @@ def test_tables_read_back(run):
             "teeth = 35",
             "cumulative_pitch_um = 36 values: must have one value for each of 35 teeth",
         ),
-        ("roll_deg = [11.0, 16.0", "roll_deg = [16.0, 11.0", "roll_deg: must rise"),
+        (
+            "roll_deg = [11.0, 16.0",
+            "roll_deg = [16.0, 11.0",
+            r"roll_deg = 16, 11 .points 1 and 2.: must rise",
+        ),
         ("friction = 0.05", "friction = 0.9", "operating.friction"),
     ],
 )
