@@ -16,7 +16,7 @@ def replacing(path: Path) -> Iterator[Path]:
     """Give a temporary path beside `path`; rename it onto `path` when the block ends well.
 
     The new file is flushed to the disk before the rename, so that a power cut leaves the old
-    file or the whole new one. When the block raises, the temporary file is removed.
+    file or the whole new one. When the block raises, the temporary file is removed; an `OSError` names `path`.
 
     Examples
     --------
@@ -32,6 +32,10 @@ def replacing(path: Path) -> Iterator[Path]:
         with beside.open("rb+") as written:
             os.fsync(written.fileno())
         beside.replace(path)
+    except OSError as fault:
+        if fault.filename is None or Path(os.fsdecode(fault.filename)) == beside:
+            raise OSError(fault.errno, fault.strerror or str(fault), str(path)) from fault
+        raise
     finally:
         beside.unlink(missing_ok=True)
 

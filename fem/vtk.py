@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -179,6 +180,7 @@ def rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
     """Write a ``.vtu`` with its arrays packed behind the text; ``grid.save`` spells them in a third more bytes."""
+    from vtkmodules.vtkCommonMisc import vtkErrorCode
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer = vtkXMLUnstructuredGridWriter()
@@ -191,7 +193,15 @@ def write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
     writer.SetBlockSize(BLOCK)
     with replacing(path) as beside:
         writer.SetFileName(str(beside))
-        writer.Write()
+        shown = writer.GetGlobalWarningDisplay()
+        writer.GlobalWarningDisplayOff()  # what goes wrong is raised
+        try:
+            done = writer.Write()
+        finally:
+            writer.SetGlobalWarningDisplay(shown)
+        if not done:
+            fault = vtkErrorCode.GetStringFromErrorCode(writer.GetErrorCode())
+            raise OSError(errno.ENOSPC, fault, str(path))
 
 
 def _write_series(path: Path, steps: Sequence[tuple[float, Mapping[str, Path]]]) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import warnings
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 USER_FAULT = 2
 SOLVER_FAULT = 3
 ROWS_FAILED = 4
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says of a disk or quota that is full, and of a file that may not grow."""
 INTERRUPTED = 130
 
 app = App(
@@ -299,7 +303,8 @@ def guarded(command: Callable[[], int]) -> int:
         return 0
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        print(f"flankfilm: {where}{error.strerror or error}", file=sys.stderr)
+        remedy = "; free some space, or name another folder with --out" if error.errno in FULL else ""
+        print(f"flankfilm: {where}{error.strerror or error}{remedy}", file=sys.stderr)
         return USER_FAULT
     except (KeyboardInterrupt, Ended) as stop:
         how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"

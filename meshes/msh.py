@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,10 @@ from meshes.gmsh_session import gmsh_session
 
 LINE3, TRIANGLE6 = 8, 9
 """gmsh's numbers of second-order lines (first, last, middle) and triangles (corners, middles of 01, 12, 20)."""
+
+
+END = b"$EndElements\n"
+"""With which a whole file ends."""
 
 
 def write_msh(path: Path, mesh: GearMesh) -> Path:
@@ -58,4 +64,8 @@ def write_msh(path: Path, mesh: GearMesh) -> Path:
             model.addPhysicalGroup(dimension, tags, name=name)
         gmsh.option.setNumber("Mesh.Binary", 1)
         gmsh.write(str(beside))
+        with beside.open("rb") as file:  # gmsh does not tell that a disk is full
+            file.seek(-min(len(END), beside.stat().st_size), os.SEEK_END)
+            if file.read() != END:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
     return path

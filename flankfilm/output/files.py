@@ -18,9 +18,13 @@ if TYPE_CHECKING:
 
 
 def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
-    """Replace the file `path` by the dataset."""
+    """Replace the file `path` by the dataset.
+
+    It is made in memory first: HDF5 does not survive a disk that fills while it writes.
+    """
+    content = dataset.to_netcdf(engine="h5netcdf")
     with replacing(path) as beside:
-        dataset.to_netcdf(beside, engine="h5netcdf")
+        beside.write_bytes(content)
 
 
 def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
