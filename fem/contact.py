@@ -19,7 +19,7 @@ from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
-from fem.moving_contact import LoadedContacts, moved_places
+from fem.moving_contact import LoadedContacts
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, held_turns
 from fem.setting import Deviations, Setting
@@ -269,15 +269,8 @@ def _result(
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
-    share = turned * contact.levers
-    rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, given.pitches, 1))
-    lost: Array | float = 0.0
-    if contact.moves is not None:
-        lost = 0.5 * contact.moves.rolled(turned)
-        share = share - turned * lost
-        lost = lost.reshape(-1, pairs)
-        shift = moved_places(contact.moves, turned, contact.share.transmission_error[number])
-        rho = _on_flanks(given.pair, rho + shift.reshape(rho.shape))
+    rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
+    lost = contact.lever_loss(number)
     large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
@@ -291,9 +284,12 @@ def _result(
         pair_offset=where.offset,
         rho1=np.tile(np.where(on_path, where.rho[0], np.nan), (given.pitches, 1)),
         edge=edge,
-        flank_rho=rho,
+        flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
         forces=forces,
-        load_share=(share.reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)) + bad,
+        load_share=(
+            contact.torques(number).reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)
+        )
+        + bad,
         gaps=where.gap.reshape(-1, pairs),
         transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
         stiffness=stiffness + bad,
@@ -303,7 +299,7 @@ def _result(
         beyond_path=given.beyond_path,
         error=bodies.error,
         moving_contact=given.moving_contact,
-        lever_loss=lost,
+        lever_loss=lost if isinstance(lost, float) else lost.reshape(-1, pairs),
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
@@ -320,12 +316,6 @@ def _result(
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
     )
-
-
-def _on_flanks(pair: GearPair, rho: Array) -> Array:
-    """Curvature radii (gear, ...), moved to the ends of the flanks where they are beyond."""
-    ends = [profile.flank_rho for profile in pair.teeth_profiles]
-    return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
 
 
 def _large(given: Setting, contact: Solution, number: int, forces: Array, plane: str) -> list[str]:

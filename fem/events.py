@@ -89,7 +89,7 @@ class ContactProblem:
             if why := found.refusal(0):
                 raise SolverError(f"between the positions of the mesh cycle {why}")
             reserve = _reserve(found, abs(self.force), self.given)
-            return Sampled(self._curves(found), reserve)
+            return Sampled(self._curves(found), reserve, self._pairs(found))
 
         return sample
 
@@ -125,6 +125,14 @@ class ContactProblem:
         film = np.zeros(0) if self.corners is None else self.corners
         return self.given.seen(np.concatenate([self.given.corners, more, film]))
 
+    def _pairs(self, found: Solution) -> Array | None:
+        """Share, normal force and places of every pair (positions, pairs, 4); None without a torque to share."""
+        if not self.force:
+            return None
+        forces = found.share.forces[0, 0] / found.kappa
+        rho = found.flank_rho(self.given.pair, 0)[:, 0]
+        return np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+
     def _curves(self, found: Solution) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
         share, where, turned = found.share, found.where, found.share.forces[0, 0]
@@ -139,7 +147,8 @@ class ContactProblem:
             secant = secant * moved / (moved + added)
         if self.given.back:
             moved = -(self.given.pair.backlash + moved)
-        lost = 0.5 * found.moves.rolled(turned) if found.moves is not None else 0.0  # as MeshCycle.lever_loss
+        lost = found.lever_loss(0)
+        lost = lost if isinstance(lost, float) else lost[0]
         other = found.opposite
         moments = found.moments(turned, None if other is None else other.forces[0, 0], lost)
         moments = moments / size if size else np.zeros_like(moments)

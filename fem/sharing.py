@@ -13,12 +13,12 @@ from fem.contact_candidates import REACHES, ContactCandidates
 from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.local_law import Film
-from fem.moving_contact import ContactMoves, contact_moves, moved_share
+from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share
 from fem.opposite_flanks import OppositeShare, share_with_opposite
 from fem.setting import Setting
 
 if TYPE_CHECKING:
-    from gears import LoadShare
+    from gears import GearPair, LoadShare
 
 __all__ = ["Solution", "solve"]
 
@@ -70,6 +70,24 @@ class Solution:
         if other is not None and self.opposite is not None:
             found = found - _levered(self.opposite.where, self.opposite.kappa, other)
         return found
+
+    def lever_loss(self, number: int) -> Array | float:
+        """Part of the base radius by which tilted flanks shorten levers (pitches, positions, pairs); 0 if they stay."""
+        return 0.0 if self.moves is None else 0.5 * self.moves.rolled(self.share.forces[number])
+
+    def torques(self, number: int) -> Array:
+        """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
+        return np.asarray(self.share.forces[number] * (self.levers - self.lever_loss(number)))
+
+    def flank_rho(self, pair: GearPair, number: int) -> Array:
+        """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m], untouched ones too."""
+        share = self.share
+        rho = np.repeat(self.where.rho[:, None], len(share.forces[number]), axis=1)
+        if self.moves is None:
+            return rho
+        rho = rho + moved_places(self.moves, share.forces[number], share.transmission_error[number])
+        ends = [profile.flank_rho for profile in pair.teeth_profiles]
+        return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""

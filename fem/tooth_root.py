@@ -1,9 +1,10 @@
 """Root stress of both gears along the mesh cycle.
 
-Forces of a loaded mesh cycle times the influence functions of the fillets (``fem.fillet_influence``), all
-loaded teeth together: a tooth's root also feels the loads of its neighbours. The fillet is a free edge, so the
-stress there is uniaxial along it: sigma_t is a principal stress, the one across is zero, and in plane strain
-the third is nu sigma_t.
+Forces of a loaded mesh cycle times the influence functions of the fillets (``fem.fillet_influence``), all loaded teeth
+together: a tooth's root also feels the loads of its neighbours. Greatest stresses are those on the cycle's arcs between
+events, where forces have corners and steps, whatever the cycle's positions. The fillet is a free edge, so the stress
+there is uniaxial along it: sigma_t is a principal stress, the one across is zero, and in plane strain the third is
+nu sigma_t.
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, Integers, Stopwatch, described, part, quantity, record
+from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
 from fem.contact import MeshCycle
 from fem.elasticity import MIRROR, PlaneElasticity
 from fem.fillet import FilletLine
 from fem.fillet_influence import FilletInfluence, Fillets
 from fem.fillet_influence import fillets as _fillets
+from fem.setting import Setting
+from gears.arcs import FORCE, Arcs
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -38,7 +41,6 @@ class RootPeak:
         "Pa", "principal stress along the fillet, negative in compression", shown="MPa"
     )
     von_mises_Pa: float = quantity("Pa", "von Mises stress", shown="MPa")
-    row: int = quantity("1", "position of the cycle, counted")
     tooth: int = quantity("1", "base pitches that the tooth is ahead of the pair that entered last")
     position: float = quantity("1", "base pitches since the tooth's pair passed A")
     arc: float = quantity("m", "arc length from the middle of the gap between two teeth", shown="mm")
@@ -49,6 +51,8 @@ class RootPeak:
         "axis",
         shown="mm",
     )
+    along_Pa: Array = quantity("Pa", "stress along that fillet at that instant", "sample", shown="MPa")
+    sampling: float = quantity("1", "estimated relative error by what is greater between the instants")
 
 
 @record
@@ -67,6 +71,14 @@ class GearRootStress:
         "Pa",
         "principal stress along the fillet, under the loaded flank first, along the other one second",
         "position tooth fillet sample",
+        shown="MPa",
+    )
+    greatest_tension: RootPeak = part("greatest tension of all teeth and instants, and where it acts")
+    greatest_compression: RootPeak = part("greatest compression of all teeth and instants, and where it acts")
+    passage_range_Pa: Array = quantity(
+        "Pa",
+        "least and greatest stress of a tooth's passage at every sample, of all instants",
+        "bound fillet sample",
         shown="MPa",
     )
 
@@ -95,21 +107,6 @@ class GearRootStress:
         """Place of the least stress: arc length from the middle of the gap."""
         return _extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
 
-    def von_mises(self, principal: Array | float) -> Array:
-        """Von Mises stress [Pa] of an edge under one principal stress: sqrt(1 - nu + nu^2) in plane strain."""
-        nu = self.law.nu if self.law.plane == "strain" else 0.0
-        return np.asarray(np.sqrt(1 - nu + nu**2) * np.abs(principal))
-
-    @property
-    def greatest_tension(self) -> RootPeak:
-        """Greatest tension of all teeth and positions, and where it acts."""
-        return self._peak(self.tension_Pa, self.tension_arc, LOADED)
-
-    @property
-    def greatest_compression(self) -> RootPeak:
-        """Greatest compression of all teeth and positions, and where it acts."""
-        return self._peak(self.compression_Pa, self.compression_arc, OTHER)
-
     @described("Pa", shown="MPa")
     def greatest_tension_Pa(self) -> float:
         """Greatest tension under a loaded flank, of all teeth and positions."""
@@ -119,22 +116,6 @@ class GearRootStress:
     def greatest_compression_Pa(self) -> float:
         """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
         return self.greatest_compression.stress_Pa
-
-    def _peak(self, stress: Array, arc: Array, side: int) -> RootPeak:
-        row, column = np.unravel_index(np.argmax(np.abs(stress)), stress.shape)
-        value, place = float(stress[row, column]), float(arc[row, column])
-        line = self.line
-        point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
-        return RootPeak(
-            value,
-            float(self.von_mises(value)),
-            int(row),
-            int(self.tooth[column]),
-            float(self.position[row] + self.tooth[column]),
-            place,
-            float(np.interp(place, line.arc, line.tangent_angle)),
-            point * MIRROR if side == LOADED else point,
-        )
 
     def passage(self) -> tuple[Array, Array]:
         """Follow one tooth through its mesh: every position and tooth is one instant of it.
@@ -154,8 +135,7 @@ class GearRootStress:
 
         A tooth's root is drawn when it bears and pressed when the tooth before it bears.
         """
-        _, stress = self.passage()
-        high, low = np.max(stress, axis=0), np.min(stress, axis=0)
+        low, high = self.passage_range_Pa
         # far from its mesh the tooth is unloaded
         high, low = np.maximum(high, 0.0), np.minimum(low, 0.0)
         return 0.5 * (high - low), 0.5 * (high + low)
@@ -171,7 +151,8 @@ class RootStress:
     wheel: GearRootStress = part("of the wheel")
     error: float = quantity(
         "1",
-        "estimated relative numerical error of the greatest stresses: of the fillets' mesh and of the forces",
+        "estimated relative numerical error of the greatest stresses: of the fillets' mesh, of the forces, and of what "
+        "lies between the instants",
     )
     cost: Cost
     converged: bool
@@ -212,7 +193,9 @@ def root_stress(
     Raises
     ------
     base.InputError
-        Fillets of another pair or plane, or a cycle without forces.
+        Fillets of another pair or plane, or a cycle without forces or without arcs.
+    base.SolverError
+        The contact has no solution between the cycle's positions.
 
     Examples
     --------
@@ -235,39 +218,118 @@ def root_stress(
         allowed = "must have flanks that bear on one side of the teeth"
         found.add("cycle", "flanks that bear on both sides", allowed, "give more backlash")
     found.raise_if_any()
+    arcs = cycle.arcs
+    if arcs is None:
+        raise InputError.at(
+            "cycle", "curves alone", "must have arcs between events", "take it from mesh_cycle"
+        )
     watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = watch.seconds
-    both = [
-        _gear_stress(pair, cycle, influence, gear)
+    pinion, wheel = (
+        _gear_stress(pair, cycle, arcs.arcs, influence, gear)
         for gear, influence in enumerate((roots.pinion, roots.wheel))
-    ]
+    )
+    sampling = max(
+        peak.sampling for one in (pinion, wheel) for peak in (one.greatest_tension, one.greatest_compression)
+    )
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
     cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
-        both[0],
-        both[1],
-        roots.error + cycle.error,
+        pinion,
+        wheel,
+        roots.error + cycle.error + sampling,
         cost,
         roots.converged and cycle.converged,
         roots.message,
     )
 
 
-def _gear_stress(pair: GearPair, cycle: MeshCycle, influence: FilletInfluence, gear: int) -> GearRootStress:
+def _gear_stress(
+    pair: GearPair, cycle: MeshCycle, arcs: Arcs, influence: FilletInfluence, gear: int
+) -> GearRootStress:
+    """Stress at the cycle's positions, and the greatest at all nodes of its arcs."""
     offsets = cycle.pair_offset
     teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
-    # the pair ahead is the next tooth anticlockwise on the pinion, clockwise on the wheel
-    turn = 1 if gear == 0 else -1
-    line = influence.line
-    total = np.zeros((len(cycle.position), len(teeth), 2, len(line.arc)))
-    for column, offset in enumerate(offsets):
-        rows = np.flatnonzero(cycle.forces[:, column] > 0)
-        line_load = cycle.forces[rows, column, None, None] / pair.face_width
-        rho = cycle.flank_rho[gear][rows, column]
-        for i, tooth in enumerate(teeth):
-            total[rows, i] += line_load * influence.stress(turn * int(tooth - offset), rho)
-    return GearRootStress(line, influence.law, cycle.loaded_position, teeth, total)
+    forces = _Forces(offsets, teeth, pair.face_width, gear)
+    total = forces.stress(influence, cycle.forces, cycle.flank_rho[gear])
+    nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
+    assert len(nodes) == len(arcs.arcs)  # of finite elements
+    every = np.concatenate(nodes)
+    at_nodes = forces.stress(influence, every[..., FORCE], every[..., FORCE + 1 + gear])
+    low, high = at_nodes.min(axis=(0, 1)), at_nodes.max(axis=(0, 1))
+    position = _positions(cycle, arcs)
+    tension, compression = (
+        _peak(arcs, position, influence, teeth, at_nodes, side) for side in (LOADED, OTHER)
+    )
+    return GearRootStress(
+        influence.line,
+        influence.law,
+        cycle.loaded_position,
+        teeth,
+        total,
+        tension,
+        compression,
+        np.stack([low, high]),
+    )
+
+
+@record
+class _Forces:
+    """Forces on the teeth of one gear: columns are pairs, each so many base pitches ahead."""
+
+    offsets: Integers
+    teeth: Integers
+    width: float
+    gear: int
+
+    def stress(self, influence: FilletInfluence, forces: Array, rho: Array) -> Array:
+        """Stress (n, teeth, 2, samples) by forces on the pairs at curvature radii, both (n, pairs)."""
+        # the pair ahead is the next tooth anticlockwise on the pinion, clockwise on the wheel
+        turn = 1 if self.gear == 0 else -1
+        total = np.zeros((len(forces), len(self.teeth), 2, len(influence.line.arc)))
+        for column, offset in enumerate(self.offsets):
+            rows = np.flatnonzero(forces[:, column] > 0)
+            line_load = forces[rows, column, None, None] / self.width
+            for i, tooth in enumerate(self.teeth):
+                total[rows, i] += line_load * influence.stress(turn * int(tooth - offset), rho[rows, column])
+        return total
+
+
+def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
+    """Positions of the loaded flanks at all nodes of the arcs, as `MeshCycle.loaded_position`."""
+    if cycle.flank == "front":
+        return np.concatenate([arc.position for arc in arcs.arcs])
+    found = []
+    for arc in arcs.arcs:
+        middle = arc.low + 0.5 * arc.width  # ends of arcs may be where the path starts anew
+        found.append((Setting(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
+    return np.concatenate(found)
+
+
+def _peak(
+    arcs: Arcs, position: Array, influence: FilletInfluence, teeth: Integers, stress: Array, side: int
+) -> RootPeak:
+    """Greatest stress on one side of all teeth (nodes, teeth, 2, samples), and what is missed between the nodes."""
+    line, law, sign = influence.line, influence.law, 1.0 if side == LOADED else -1.0
+    most, arc = _extreme(line.arc, sign * stress[:, :, side])
+    ends = np.cumsum([len(one.position) for one in arcs.arcs])[:-1]
+    row, column = np.unravel_index(np.argmax(most), most.shape)
+    value, place = float(most[row, column]), float(arc[row, column])
+    greatest, error = arcs.with_curves("tooth", np.split(most, ends)).greatest_of_all()
+    nu = law.nu if law.plane == "strain" else 0.0
+    point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
+    return RootPeak(
+        sign * value,
+        float(np.sqrt(1 - nu + nu**2)) * value,
+        int(teeth[column]),
+        float(position[row] + teeth[column]),
+        place,
+        float(np.interp(place, line.arc, line.tangent_angle)),
+        point * MIRROR if side == LOADED else point,
+        stress[row, column, side],
+        (greatest + error) / value - 1.0,
+    )
 
 
 def _extreme(arc: Array, values: Array) -> tuple[Array, Array]:

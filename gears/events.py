@@ -189,7 +189,8 @@ class _Search:
         found, start = self.ask(np.concatenate(places)), 0
         for piece, degree, place in zip(pieces, degrees, places, strict=True):
             here = slice(start, start := start + len(place))
-            piece.add(degree, Sampled(found.curves[:, here], found.reserve[here]))
+            pairs = None if found.pairs is None else found.pairs[here]
+            piece.add(degree, Sampled(found.curves[:, here], found.reserve[here], pairs))
         least, most = found.curves.min(axis=1), found.curves.max(axis=1)
         self.low = least if self.low.size == 0 else np.minimum(self.low, least)
         self.high = most if self.high.size == 0 else np.maximum(self.high, most)
@@ -203,7 +204,7 @@ class _Search:
             (one for one in events if first < one.before and one.after < last), key=lambda one: one.before
         )
         if inside:
-            ends = [piece.low, *_apart(inside), piece.high]
+            ends = _parted([piece.low, *_apart(inside), piece.high])
             return [Piece.between(*both, piece.halvings) for both in pairwise(ends)]
         look = piece.degree == DEGREES[0] and piece.halvings < LOOKS
         middle = piece.missed() if look else None
@@ -211,7 +212,7 @@ class _Search:
             return None
         if middle is None and piece.degree < DEGREES[-1]:
             return [piece]
-        if middle is None and piece.halvings >= HALVINGS:
+        if middle is None and (piece.halvings >= HALVINGS or piece.towards):
             return None
         end = End.at(0.5 * (first + last) if middle is None else middle)
         more = piece.halvings + 1
@@ -231,7 +232,7 @@ class _Search:
             for one, places in zip(wide, asked, strict=True):
                 one.add(places, found[start : start + len(places), one.switch])
                 start += len(places)
-        return [End(one.low, one.high, one.switch) for one in brackets]
+        return [one.end() for one in brackets]
 
     def _division(self, pieces: list[Piece], resolved: bool) -> Division:
         ends = [piece.low for piece in pieces] + [pieces[-1].high]
@@ -243,12 +244,22 @@ class _Search:
         return Division(Arcs(self.names, arcs, self.pitches), events, resolved, self.samples, self.calls)
 
 
+def _parted(ends: list[End]) -> list[End]:
+    """Ends with one more in the middle where contacts begin at one of two and end at the other."""
+    found = ends[:1]
+    for low, high in pairwise(ends):
+        if low.rises > 0 and high.rises < 0:
+            found.append(End.at(0.5 * (low.after + high.before)))
+        found.append(high)
+    return found
+
+
 def _apart(ends: list[End]) -> list[End]:
     """Events that do not overlap; of those that do, one over both."""
     kept = [ends[0]]
     for end in ends[1:]:
         if end.before - kept[-1].after < SHORTEST:
-            kept[-1] = End(kept[-1].before, max(end.after, kept[-1].after), end.switch)
+            kept[-1] = End(kept[-1].before, max(end.after, kept[-1].after), end.switch, end.rises)
         else:
             kept.append(end)
     return kept

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, quantity, record
-from gears.arcs import Arc, lobatto
+from gears.arcs import Arc, graded, lobatto
 
 BESIDE = 1e-11
 """Distance from a corner of the geometry at which curves are sampled on either side [base pitches]."""
@@ -34,15 +34,25 @@ class Sampled:
         "any other switch between two laws. Its sign alone decides; nan where it cannot switch",
         "position switch",
     )
+    pairs: Array | None = quantity(
+        "",
+        "of every pair what `Arc.pairs` holds; no arc is divided for it",
+        "position pair kind",
+        default=None,
+    )
 
 
 @dataclass(frozen=True)
 class End:
-    """A boundary of arcs: last position before it, first one after it, the switch that makes it."""
+    """A boundary of arcs: last position before it, first one after it, the switch that makes it.
+
+    ``rises``: whether a contact begins there, that is, bears after it: 1; -1 where it ends, 0 at corners.
+    """
 
     before: float
     after: float
     switch: int = -1
+    rises: int = 0
 
     @classmethod
     def at(cls, position: float) -> End:
@@ -60,6 +70,7 @@ class Piece:
     reserve: Array
     degree: int = 0
     halvings: int = 0
+    pairs: Array | None = None
 
     @classmethod
     def between(cls, low: End, high: End, halvings: int = 0) -> Piece:
@@ -71,27 +82,35 @@ class Piece:
         """First and last position [base pitches]."""
         return self.low.after, self.high.before
 
+    @property
+    def towards(self) -> int:
+        """End towards which points crowd: where a contact begins or ends that bears on the piece; 0 for neither."""
+        return -1 if self.low.rises > 0 else 1 if self.high.rises < 0 else 0
+
+    def at(self, unit: Array) -> Array:
+        """Positions at arguments of the series, both ends exactly: beyond them another law holds."""
+        first, last = self.ends
+        return np.clip(first + (last - first) * graded(unit, self.towards)[0], first, last)
+
     def place(self, degree: int) -> Array:
         """Chebyshev points; of a higher degree than before only the new ones."""
-        first, last = self.ends
-        unit = lobatto(degree) if self.degree == 0 else lobatto(degree)[1::2]
-        # both ends exactly: beyond them another law holds
-        return np.clip(first + 0.5 * (last - first) * (1 + unit), first, last)
+        return self.at(lobatto(degree) if self.degree == 0 else lobatto(degree)[1::2])
 
     def add(self, degree: int, found: Sampled) -> None:
         """Take samples at `place` of a degree."""
         if self.degree == 0:
-            self.curves, self.reserve = found.curves, found.reserve
+            self.curves, self.reserve, self.pairs = found.curves, found.reserve, found.pairs
         else:
             self.curves = _interleaved(self.curves.T, found.curves.T).T
             self.reserve = _interleaved(self.reserve, found.reserve)
+            if self.pairs is not None and found.pairs is not None:
+                self.pairs = _interleaved(self.pairs, found.pairs)
         self.degree = degree
 
     @property
     def positions(self) -> Array:
         """Where the samples are [base pitches]."""
-        first, last = self.ends
-        return np.asarray(np.clip(first + 0.5 * (last - first) * (1 + lobatto(self.degree)), first, last))
+        return self.at(lobatto(self.degree))
 
     def brackets(self) -> list[Bracket]:
         """Neighbours between which a switch turns; one that turns at the very end of the arc has its event there."""
@@ -114,20 +133,22 @@ class Piece:
             series = chebyshev.chebfit(lobatto(self.degree), values, self.degree)
             between = chebyshev.chebval(unit, series) * (1.0 if values[self.degree // 2] >= 0.0 else -1.0)
             lowest = int(np.argmin(between))
-            if between[lowest] < -1e-9 * np.max(np.abs(values)):
-                first, last = self.ends
-                return float(first + 0.5 * (last - first) * (1 + unit[lowest]))
+            # crowded points leave room for waves at the other end, which reach to where the reserve is small
+            waves = np.max(np.abs(series[-2:])) if self.towards else 0.0
+            if between[lowest] < -waves - 1e-9 * np.max(np.abs(values)):
+                return float(self.at(unit[lowest : lowest + 1])[0])
         return None
 
     def arc(self, low: float | None = None, high: float | None = None) -> Arc:
         """Curves on the piece, as an arc between two events; between its own ends unless given."""
         first, last = self.ends
-        return Arc(first if low is None else low, last if high is None else high, self.curves)
+        ends = first if low is None else low, last if high is None else high
+        return Arc(*ends, self.curves, self.towards, self.pairs)
 
 
 def _interleaved(old: Array, new: Array) -> Array:
     """Rows of old and new, in turn."""
-    both = np.empty((len(old) + len(new), old.shape[1]))
+    both = np.empty((len(old) + len(new), *old.shape[1:]))
     both[::2], both[1::2] = old, new
     return both
 
@@ -157,6 +178,11 @@ class Bracket:
     def width(self) -> float:
         """Room for the event [base pitches]."""
         return self.high - self.low
+
+    def end(self) -> End:
+        """The event, as a boundary of arcs."""
+        rises = 1 if self.reserve[self.node + 1] >= 0.0 else -1
+        return End(self.low, self.high, self.switch, rises)
 
     def foreseen(self) -> float:
         """Where the reserve vanishes, from up to four places on its negative side; else the middle."""

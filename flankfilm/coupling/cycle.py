@@ -148,9 +148,3 @@ class MeshCycle(MeshFigures):
     def fields_of(cls, found: object) -> dict[str, Any]:
         """Fields of this class that another record has as well, for one made of it."""
         return {one.name: getattr(found, one.name) for one in fields(cls) if hasattr(found, one.name)}
-
-
-def harmonics(curve: Array) -> Array:
-    """Amplitudes of the harmonics 1, 2, ... of evenly sampled values (n,) over their mean, (n // 2,)."""
-    spectrum = np.abs(np.fft.rfft(curve))
-    return np.asarray(2.0 * spectrum[1:] / spectrum[0])

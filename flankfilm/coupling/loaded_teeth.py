@@ -264,7 +264,11 @@ class SinglePairsProblem:
         share, secant = self.shared(rho1)
         moved, tangent = np.asarray(share.transmission_error), np.asarray(share.stiffness)
         if self.teeth.pairs == "independent":
-            return Sampled(np.stack([self.teeth.lag(moved), tangent, secant]), np.zeros((position.size, 0)))
+            return Sampled(
+                np.stack([self.teeth.lag(moved), tangent, secant]),
+                np.zeros((position.size, 0)),
+                self._pairs(rho1, share),
+            )
         clear = np.where(np.isfinite(rho1), _relief(self.teeth.pair, rho1), np.inf) - moved[:, None]
         if self.film is not None:
             clear = clear - self.film(rho1, np.zeros_like(rho1))[0]
@@ -274,7 +278,15 @@ class SinglePairsProblem:
         return Sampled(
             np.stack([self.teeth.lag(moved), tangent, secant]),
             np.where(share.forces > 0.0, share.forces / self.teeth.force, left),
+            self._pairs(rho1, share),
         )
+
+    def _pairs(self, rho1: Array, share: gears.LoadShare) -> Array:
+        """Share, force and places of every pair (positions, pairs, 4)."""
+        pair = self.teeth.pair
+        rho = np.where(np.isfinite(rho1), rho1, pair.points.C)
+        kinds = [share.forces / self.teeth.force, share.forces, rho, pair.line_of_action - rho]
+        return np.stack(kinds, axis=-1)
 
     def shared(self, rho1: Array) -> tuple[gears.LoadShare, Array]:
         """Load share and secant stiffness [N/m] with pairs at curvature radii (positions, pairs) [m]."""

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
 import fem
 import gears
-from base import Array, Cost, Integers, Stopwatch, part, quantity, record
-from flankfilm.coupling.cycle import harmonics
+from base import Array, Cost, Stopwatch, part, quantity, record
 from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth, contact_places
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
+from gears.mesh_figures import Estimate, MeshArcs
 
 POSITIONS = 360
-"""Positions of a base pitch; every third of them shows the error of their number."""
+"""Positions of a base pitch in curves; figures follow from arcs, whatever the positions."""
 
 POINTS = 81
 """Equally spaced points of the path A to E, both ends included; the pitch point C is added to them."""
@@ -46,7 +47,7 @@ UNITS: Mapping[str, str] = {
 
 @record
 class Curves:
-    """Stiffness by one model, of one pair at `stations` and of the mesh; ISO 6336-1 has `means` [N/m] alone.
+    """Stiffness by one model, of one pair at `stations` and of the mesh; ISO 6336-1 has some figures alone.
 
     ``error`` is the estimated relative numerical error of the single pair, None for closed forms, whose error is what
     is asked for; ``cost`` is without what several models share; ``left_out`` names the parts of the compliance by
@@ -61,10 +62,11 @@ class Curves:
         "N/m", "secant stiffness of the mesh: force over deflection", "position"
     )
     transmission_error: Array = quantity("m", "deflection along the line of action", "position", shown="um")
-    pairs: Integers = quantity("1", "pairs on the path of contact", "position")
+    figures: Mapping[str, Estimate] = part(
+        "figures by their names, in the units of `UNITS`, with their errors"
+    )
     cost: Cost
     error: float | None = quantity("1", "relative numerical error", default=None)
-    means: Mapping[str, float] = field(default_factory=dict)
     left_out: tuple[str, ...] = ()
 
 
@@ -200,7 +202,7 @@ def verification_of(
         position=contact_places(pair, POSITIONS)[0],
         references=references,
         models=models,
-        differences=tuple(_differences(pair, references, models)),
+        differences=tuple(_differences(references, models)),
         error=compliance.error,
         cost=compliance.cost,
     )
@@ -220,11 +222,10 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
         yield _curves(MODELS[model], LoadedTeeth(pair, torque, model, "independent"))
     watch = Stopwatch()
     iso = forms.iso6336(pair, force=abs(pair.normal_force(torque)))
-    means = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
+    stiffness = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
+    found = {name: Estimate(1e-9 / pair.face_width * value, None) for name, value in stiffness.items()}
     nothing = np.zeros(0)
-    yield Curves(
-        "ISO 6336-1", nothing, nothing, nothing, nothing.astype(np.int64), Cost(watch.seconds), means=means
-    )
+    yield Curves("ISO 6336-1", nothing, nothing, nothing, found, Cost(watch.seconds))
 
 
 def _reference_curves(
@@ -238,80 +239,72 @@ def _reference_curves(
         teeth = LoadedTeeth(
             pair, torque, compliance=parts, flanks=Flanks(beyond_path=whole, moving_contact=False)
         )
-        yield replace(_curves(label, teeth), error=compliance.error, left_out=left_out)
+        yield replace(_curves(label, teeth, compliance.error), left_out=left_out)
 
 
-def _curves(label: str, teeth: LoadedTeeth) -> Curves:
-    """Stiffness of a single pair and of the mesh by one model."""
+def _curves(label: str, teeth: LoadedTeeth, error: float | None = None) -> Curves:
+    """Stiffness of a single pair, of which the error is given, and of the mesh by one model."""
     watch, pair = Stopwatch(), teeth.pair
     cycle = teeth.cycle(POSITIONS)
     single = single_pair_stiffness(pair, teeth.force, stations(pair), teeth.model, teeth.compliance)
-    cost = Cost(watch.seconds)
-    pairs = np.isfinite(contact_places(pair, POSITIONS)[1]).sum(axis=1)
-    return Curves(label, single, cycle.secant_stiffness, cycle.transmission_error, pairs, cost)
+    assert cycle.arcs is not None
+    found = single_figures(pair, single, error) | mesh_figures(pair, cycle.arcs)
+    curves = single, cycle.secant_stiffness, cycle.transmission_error
+    return Curves(label, *curves, found, Cost(watch.seconds), error)
 
 
-def figures(pair: gears.GearPair, curves: Curves, every: int = 1) -> dict[str, float]:
-    """Figures of a model in the units of `UNITS`; nan where it has none.
+def single_figures(pair: gears.GearPair, single: Array, error: float | None) -> dict[str, Estimate]:
+    """Figures of a single pair's stiffness at `stations` [N/m] in the units of `UNITS`.
 
-    Parameters
-    ----------
-    every : int
-        Takes the middle one of as many neighbouring positions, which are midpoints again; odd.
+    To its own error each adds what lies between the stations: the parabola's top over the largest of them, and for
+    the mean a third of what half the stations change.
     """
-    scale = 1e-9 / pair.face_width
-    found = dict.fromkeys(UNITS, float("nan"))
-    found |= {name: scale * value for name, value in curves.means.items()}
-    if not curves.single_stiffness.size:
-        return found
-    rho1, middle = stations(pair), slice(every // 2, None, every)
-    single, secant = curves.single_stiffness, curves.secant_stiffness[middle]
-    two = curves.pairs[middle] == 2
-    spectrum = harmonics(secant)
-    found |= {
-        "one pair, at C": scale * float(np.interp(pair.points.C, rho1, single)),
-        "one pair, largest": scale * float(single.max()),
-        "one pair, mean A to E": scale * float(np.trapezoid(single, rho1) / np.ptp(rho1)),
-        "mesh, two pairs, mean": scale * float(secant[two].mean()) if two.any() else float("nan"),
-        "mesh, mean": scale * float(secant.mean()),
-        "transmission error, peak to peak": 1e6 * float(np.ptp(curves.transmission_error[middle])),
+    rho1, scale = stations(pair), 1e-9 / pair.face_width
+    even = rho1 != pair.points.C
+    mean, half = (
+        float(np.trapezoid(single[even][::step], rho1[even][::step]) / np.ptp(rho1)) for step in (1, 2)
+    )
+    most, top = int(np.argmax(single[even])), 0.0
+    if 0 < most < np.count_nonzero(even) - 1:
+        before, here, after = single[even][most - 1 : most + 2].tolist()
+        top = (after - before) ** 2 / (8 * max(2 * here - before - after, 1e-12 * here))
+    values = {
+        "one pair, at C": (float(np.interp(pair.points.C, rho1, single)), 0.0),
+        "one pair, largest": (float(single.max()), top),
+        "one pair, mean A to E": (mean, abs(mean - half) / 3),
     }
-    return found | {f"harmonic {j} over mean": float(spectrum[j - 1]) for j in (1, 2, 3)}
+    return {
+        name: Estimate(scale * value, None if error is None else scale * hypot(error * value, off))
+        for name, (value, off) in values.items()
+    }
 
 
-def figure_errors(pair: gears.GearPair, curves: Curves) -> dict[str, float]:
-    """Estimate the relative numerical error of each figure by finite elements.
-
-    The error e of the compliance holds at each position. If the errors of different positions had opposite
-    signs, a harmonic over the mean could be off by 2 e, and the peak-to-peak transmission error by e times
-    the sum of the largest and the least deflection; they rarely have. The number of positions adds half the
-    change that a third of them would make.
-    """
-    whole, third = figures(pair, curves), figures(pair, curves, every=3)
-    own = curves.error or 0.0
-    deflection = 1e6 * float(curves.transmission_error.max() + curves.transmission_error.min())
-    errors = {}
-    for name, value in whole.items():
-        absolute = own * value
-        if name.startswith("harmonic"):
-            absolute = (2 + value) * own
-        elif name.startswith("transmission"):
-            absolute = own * deflection
-        sampling = 0.0 if name.startswith("one pair") else 0.5 * abs(third[name] - value)
-        errors[name] = (absolute + sampling) / abs(value)
-    return errors
-
-
-def _differences(
-    pair: gears.GearPair, references: tuple[Curves, ...], models: tuple[Curves, ...]
-) -> list[Difference]:
-    found = []
-    for reference in references:
-        values, errors = figures(pair, reference), figure_errors(pair, reference)
-        for model in models:
-            found += [
-                Difference(name, UNITS[name], reference.label, model.label, values[name], errors[name], value)
-                for name, value in figures(pair, model).items()
-                if np.isfinite(value) and np.isfinite(values[name])
-            ]
+def mesh_figures(pair: gears.GearPair, arcs: MeshArcs) -> dict[str, Estimate]:
+    """Figures of the mesh in the units of `UNITS`, from curves on smooth arcs."""
+    scale, name, orders = 1e-9 / pair.face_width, "secant_stiffness", np.array([1, 2, 3])
+    found = {"mesh, mean": _times(scale, arcs.mean(name))}
+    low, high = max(pair.contact_ratio - 2.0, 0.0), min(pair.contact_ratio - 1.0, 1.0)
+    if low < high:
+        found["mesh, two pairs, mean"] = _times(scale, arcs.mean(name, (low, high)))
+    found["transmission error, peak to peak"] = _times(1e6, arcs.range("transmission_error"))
+    sizes, errors = arcs.amplitudes(name, orders, over_mean=True)
+    for place, order in enumerate(orders):
+        error = None if errors is None else float(errors[place])
+        found[f"harmonic {order} over mean"] = Estimate(float(sizes[place]), error)
     return found
+
+
+def _times(scale: float, found: Estimate) -> Estimate:
+    return Estimate(scale * found.value, None if found.error is None else scale * found.error)
+
+
+def _differences(references: tuple[Curves, ...], models: tuple[Curves, ...]) -> Iterator[Difference]:
+    """Every figure that both a model and a reference have."""
+    for reference in references:
+        for model in models:
+            for name, unit in UNITS.items():
+                known, found = reference.figures.get(name), model.figures.get(name)
+                if known is None or known.relative is None or found is None:
+                    continue
+                labels = reference.label, model.label
+                yield Difference(name, unit, *labels, known.value, known.relative, found.value)

@@ -10,7 +10,7 @@ from base import Array, Quantity
 from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
-    from fem.tooth_root import GearRootStress, RootPeak
+    from fem.tooth_root import GearRootStress
 
 __all__ = ["fillet_stress", "passage"]
 
@@ -42,17 +42,13 @@ def passage(gear: GearRootStress) -> tuple[Quantity, ...]:
 
 def fillet_stress(gear: GearRootStress) -> tuple[Quantity, ...]:
     """Look along the fillets at the worst instants, and over a passage."""
-
-    def worst(peak: RootPeak, side: int) -> Array:
-        return np.asarray(gear.tangential_Pa[peak.row, np.flatnonzero(gear.tooth == peak.tooth)[0], side])
-
     amplitude, mean = gear.fatigue()
     loaded, other = "stress under the loaded flank", "stress on the other side"
     stresses = {
-        "loaded_side": (f"{loaded} at the instant of the greatest tension", worst(gear.greatest_tension, 0)),
+        "loaded_side": (f"{loaded} at the instant of the greatest tension", gear.greatest_tension.along_Pa),
         "other_side": (
             f"{other} at the instant of the greatest compression",
-            worst(gear.greatest_compression, 1),
+            gear.greatest_compression.along_Pa,
         ),
         "loaded_side_amplitude": (f"amplitude of the {loaded} over a passage", amplitude[0]),
         "loaded_side_mean": (f"mean of the {loaded} over a passage", mean[0]),

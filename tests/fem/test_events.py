@@ -42,7 +42,9 @@ def relieved():
 def test_numbers_of_the_article_pair(article_pair, article_bodies):
     cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
     assert cycle.transmission_error_range == pytest.approx(7.577e-6, abs=0.002e-6)
-    np.testing.assert_allclose(cycle.stiffness_harmonics[:2], [0.02636, 0.00653], atol=3e-5)  # 12800 samples
+    np.testing.assert_allclose(
+        cycle.stiffness_harmonics[:2], [0.026361, 0.006530], atol=5e-6
+    )  # 12800 samples
     assert cycle.errors["transmission_error_range"] < 1e-3
     assert np.all(cycle.stiffness_harmonics_error[:2] < 0.01 * cycle.stiffness_harmonics[:2])
     # the samples alone miss 7 % of it
@@ -207,3 +209,12 @@ def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monke
     one = fem.mesh_cycle(article_pair, 600.0, 10, article_bodies)
     assert one.transmission_error_range == pytest.approx(cycles[1].transmission_error_range, rel=1e-6)
     assert once > 0
+
+
+def test_greatest_load_share_is_that_of_very_many_positions(relieved):
+    """With relief and a load so light that two pairs bear nearly always; sampled shares miss the steps."""
+    pair, bodies = relieved
+    few, many = (fem.mesh_cycle(pair, 1.0, n, bodies) for n in (4, 4000))
+    assert few.greatest_load_share == pytest.approx(np.max(many.load_share), abs=2e-4)
+    assert few.greatest_load_share >= np.max(many.load_share) - 1e-6
+    assert few.errors["greatest_load_share"] < 1e-3
