@@ -7,18 +7,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import spsolve
 
 import fem
 from base import InputError
 from fem.back_compliance import back_compliance
 from fem.edge_tables import EdgeTables
+from fem.elasticity import PlaneElasticity, stiffness_matrix
 from fem.gear_compliance import sample_places
 from fem.line_load import flank_points, line_loads
 from fem.loaded_flanks import loaded_flanks
 from fem.opposite_flanks import _both_sides
+from fem.ring import ring_of
 from fem.setting import Setting
 from fem.sharing import _one_sided, solve
 from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
+from gears.plane import turned
+from meshes import gear_mesh, mesh_sector
 
 
 def pressed(overlap, first=36, second=40):
@@ -286,3 +292,28 @@ def test_contacts_stay_where_both_sides_bear(tight):
     assert not moving.moving_contact
     assert "and contacts stay" in moving.message
     np.testing.assert_array_equal(moving.forces, fem.mesh_cycle(pair, 10.0, 4, bodies).forces)
+
+
+def test_back_flanks_on_the_whole_annulus_factorised_at_once():
+    profile = GearPair(Gear(18, 0.2, bore_radius=0.008), Gear(24), 2e-3, 0.04).teeth_profiles[0]
+    law = PlaneElasticity("strain", 206e9, 0.3)
+    sector = mesh_sector(profile, refinements=1)
+    gear = gear_mesh(sector)
+    stiffness = stiffness_matrix(gear.points, gear.triangles, law, gear.thickness)
+    hub = np.unique(gear.facets["bore"])
+    free = np.setdiff1d(np.arange(2 * len(gear.points)), np.concatenate([2 * hub, 2 * hub + 1]))
+    rho = sample_places(profile, 20)
+    load = flank_points(sector, rho[[12]], "left")
+    force = np.zeros((len(gear.points), 2))
+    force[gear.nodes[0][load.nodes[0]]] += load.weights[0][:, None] * load.inward[0]
+    moved = np.zeros(2 * len(gear.points))
+    moved[free] = spsolve(
+        csc_array(stiffness[free][:, free]), force.ravel()[free], permc_spec="MMD_AT_PLUS_A"
+    )
+    across = back_compliance(ring_of(sector, law), rho, 2)
+    seen = flank_points(sector, rho[[3, 9, 16]], "right")
+    for tooth in range(-2, 3):
+        whole = moved.reshape(-1, 2)[gear.nodes[tooth % 18]]
+        found = seen.component(turned(whole, -tooth * profile.pitch_angle))
+        mine = across.across(np.array(tooth), rho[[12]], rho[[3, 9, 16]])
+        np.testing.assert_allclose(mine, found, rtol=2e-3)
