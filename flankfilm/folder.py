@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from base import InputError
+from base import FlankfilmError, InputError, shorten
 from base.files import sweep_temporaries
 
 
@@ -44,6 +44,25 @@ def content_of(path: Path, largest: int, remedy: str, shorter: str) -> bytes:
         return path.read_bytes()
     except OSError as fault:
         raise InputError.at(path, "", f"cannot be read: {fault.strerror}") from fault
+
+
+@contextmanager
+def readable(path: Path, remedy: str = "Run the scene again") -> Iterator[None]:
+    """Turn what libraries raise on damaged files into a fault of the file; for a block that reads and does no more.
+
+    Parameters
+    ----------
+    path : Path
+        What is read.
+    remedy : str
+    """
+    try:
+        yield
+    except FlankfilmError:
+        raise
+    except (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError, EOFError) as fault:
+        allowed = f"cannot be read: {shorten(f'{type(fault).__name__}: {fault}')}"
+        raise InputError.at(path, "", allowed, remedy) from fault
 
 
 def refuse_missing(path: Path, remedy: str) -> None:

@@ -50,6 +50,27 @@ def conclude(folder: Path, files: Iterable[Path]) -> tuple[str, ...]:
     return tuple(sorted(name for name in names if name not in written and name not in UNLISTED))
 
 
+def changed(folder: Path, *patterns: str) -> list[str]:
+    """Files of a run, of names that match, that are no longer as it wrote them; none where there is no list.
+
+    Parameters
+    ----------
+    folder : Path
+    *patterns : str
+        Such as ``"*.nc"``.
+    """
+    wanted = {
+        name: digest
+        for name, digest in _listed(folder).items()
+        if any(PurePosixPath(name).match(pattern) for pattern in patterns)
+    }
+    return [
+        name
+        for name, digest in wanted.items()
+        if not (folder / name).is_file() or _digest(folder / name) != digest
+    ]
+
+
 def _listed(folder: Path) -> Mapping[str, str]:
     """Names and digests of an earlier run's files, those inside the folder alone; none where the list is not ours."""
     path = folder / MANIFEST

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from base import InputError, shorten
-from flankfilm.folder import refuse_missing
+from flankfilm.folder import readable, refuse_missing
 from flankfilm.scene import Scene, read_scene
 from flankfilm.scene.reader import bounded, validated
 
@@ -51,13 +51,9 @@ def _attributes(path: Path) -> dict[str, str]:
     refuse_missing(path, "Name a scene or a results.nc")
     import h5py
 
-    try:
-        with h5py.File(path, "r") as file:
-            names = ("scene_json", "versions_json", "code_sha256", "design")
-            return {name: str(file.attrs[name])[: LARGEST_SCENE + 1] for name in names if name in file.attrs}
-    except (OSError, UnicodeDecodeError) as fault:
-        allowed = f"cannot be read as netCDF: {shorten(str(fault))}"
-        raise InputError.at(path, "", allowed, "Name a scene or a results.nc") from fault
+    with readable(path, "Name a scene or a results.nc"), h5py.File(path, "r") as file:
+        names = ("scene_json", "versions_json", "code_sha256", "design")
+        return {name: str(file.attrs[name])[: LARGEST_SCENE + 1] for name in names if name in file.attrs}
 
 
 def _scene(text: str, name: str) -> Scene:
@@ -88,8 +84,10 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
     try:
         theirs: dict[str, Any] = json.loads(held.get("versions_json", "{}"))
         own: dict[str, Any] = json.loads(here["versions_json"])
-    except ValueError:
+    except (ValueError, RecursionError):
         theirs = own = {}
+    if not isinstance(theirs, dict):
+        theirs = {}
     changed = [f"{n} {theirs.get(n, '?')}, here {v}" for n, v in own.items() if theirs.get(n) != v]
     if changed:
         found.append(f"made with {'; '.join(changed)}")

@@ -16,7 +16,9 @@ from base.files import replacing
 from flankfilm.children import python
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
-from flankfilm.figures.rendering import View, draw, plotter_of, steps
+from flankfilm.figures.rendering import UNREADABLE, View, draw, plotter_of, steps
+from flankfilm.folder import readable
+from flankfilm.manifest import changed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -151,6 +153,10 @@ def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None
     faults = Faults()
     if target is not None and target.suffix not in suffixes:
         faults.add(str(target), "", f"must end in {' or '.join(suffixes)}", "The suffix is the format")
+    for name in changed(folder, "results.nc", "*.pvd", "*.vtu"):
+        faults.add(
+            str(folder / name), "", "is gone, or was changed since it was written", "Run the scene again"
+        )
     missing = [name for name in ("results.nc", "mesh_cycle.pvd") if not (folder / name).is_file()]
     if missing:
         lacks = f"holds no {' and no '.join(missing)}"
@@ -163,7 +169,7 @@ def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tupl
     import xarray as xr
 
     _check(folder, target, suffixes)
-    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
+    with readable(folder), xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
         return _view_of(results, folder, frame)
 
 
@@ -238,6 +244,11 @@ def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:
         ) from fault
     if done.returncode == 0:
         return
+    if done.returncode == UNREADABLE:
+        why = done.stderr.strip().splitlines()[-1]
+        raise InputError.at(
+            view.folder, "", f"holds what cannot be read: {shorten(why)}", "Run the scene again"
+        )
     last = done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "without a word"
     how = f"signal {-done.returncode}" if done.returncode < 0 else f"status {done.returncode}"
     raise SolverError(f"the process that draws ended with {how} ({shorten(last)}). {NO_OPENGL}")

@@ -23,6 +23,9 @@ INK, PAPER = "#1c2126", "#ffffff"
 SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
 """Ending of a field's name to the unit that people read, and its factor."""
 
+UNREADABLE = 2
+"""Exit status where a file that is drawn cannot be read."""
+
 COLOURS = 160
 """Colours of the scale in a GIF, which can hold 256 in all."""
 
@@ -220,4 +223,8 @@ def _palette() -> Any:
 if __name__ == "__main__":
     end_with_parent()
     asked = View(**json.load(sys.stdin))
-    show(asked) if asked.window else write(asked)
+    try:
+        show(asked) if asked.window else write(asked)
+    except (OSError, KeyError, ValueError, ElementTree.ParseError) as fault:
+        print(f"{type(fault).__name__}: {fault}", file=sys.stderr)
+        sys.exit(UNREADABLE)

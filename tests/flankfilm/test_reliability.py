@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -108,6 +109,27 @@ class TestResultsReproduceThemselves:
             file.attrs["scene_json"] = text
         with pytest.raises(InputError):
             scene_in(path)
+
+    def test_flipped_and_cut_files_are_read_or_refused(self, small_run, tmp_path):
+        whole, path = (small_run / "results.nc").read_bytes(), tmp_path / "damaged.nc"
+        rng = np.random.default_rng()
+        for trial in range(300):
+            at = int(rng.integers(len(whole)))
+            content = bytearray(whole)
+            content[at] ^= 1 << int(rng.integers(8))
+            path.write_bytes(content[:at] if trial % 3 == 0 else content)
+            with contextlib.suppress(InputError):
+                scene_in(path)
+
+    @pytest.mark.parametrize("text", ["[1]", "3", "null", "[" * 100_000, '{"python": [1]}'])
+    def test_odd_versions_are_told_as_different(self, small_run, tmp_path, text):
+        import h5py
+
+        path = tmp_path / "odd.nc"
+        shutil.copy(small_run / "results.nc", path)
+        with h5py.File(path, "r+") as file:
+            file.attrs["versions_json"] = text
+        assert scene_in(path)[0] == parse_scene(SMALL)
 
     def test_other_files_are_refused(self, small_run, tmp_path):
         whole = (small_run / "results.nc").read_bytes()

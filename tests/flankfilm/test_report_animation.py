@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -17,6 +18,7 @@ from base import InputError, SolverError
 from fem.vtk import write_vtk_series
 from flankfilm.cache import Cache
 from flankfilm.figures import Frame, animate_cycle, animation, tooth_picture
+from flankfilm.manifest import conclude
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
@@ -158,3 +160,19 @@ def test_a_machine_without_opengl_is_told_what_to_install(run, tmp_path, monkeyp
 def test_the_command_tells_faults_without_a_traceback(tmp_path):
     done = flankfilm("animate", tmp_path, status=2)
     assert "mesh_cycle.pvd" in done.stderr
+
+
+@pytest.mark.parametrize("listed", [True, False])
+@pytest.mark.parametrize("name", ["results.nc", "mesh_cycle.pvd", "vtk/*.vtu"])
+@pytest.mark.parametrize(
+    "damage", [lambda data: data[: len(data) // 2], lambda data: b"<VTKFile>" + data[9:]]
+)
+def test_damaged_files_are_named(run, tmp_path, listed, name, damage):
+    folder = tmp_path / "damaged"
+    shutil.copytree(run, folder)
+    if listed:
+        conclude(folder, [path for path in folder.rglob("*") if path.is_file()])
+    for path in folder.glob(name):
+        path.write_bytes(damage(path.read_bytes()))
+    with pytest.raises(InputError, match="changed since" if listed else "cannot be read"):
+        drawn(tooth_picture, folder, tmp_path / "picture.png")
