@@ -21,7 +21,7 @@ from fem.local_law import HertzApproach
 from fem.ring import Ring
 from fem.solved_gear import Gears
 from fem.support import FIXED, Support, held_profiles
-from fem.tip_strips import TipStrips
+from fem.tip_strips import RESOLVED, TipStrips
 from fem.torsion import step_wind_up
 
 if TYPE_CHECKING:
@@ -87,10 +87,26 @@ class Compliance:
         """Tip edges of both gears, for contact outside the path; solved where they were not."""
         return self.tip_strips or self.tips_of(Gears())
 
-    def tips_of(self, gears: Gears) -> tuple[TipStrips, TipStrips]:
-        """Tip edges of both gears from where solved gears are."""
+    @cached_property
+    def _tips_before(self) -> tuple[TipStrips, TipStrips]:
+        """Tip edges whose difference from these, over the gain of the mesh, is their error.
+
+        Elements at the corner that resolve the strips leave no error to speak of. Longer ones gain less by a
+        refinement than ``gain``, so that the difference from the mesh before is exaggerated.
+        """
+        edge = self.sizes.corner * 0.5**self.refinements * self.pair.module
+        if edge <= RESOLVED * self.pair.module:
+            return self.tips
         first, second = (
-            gears.tips(meshed).scaled(self.pair.module, flexible.law)
+            fine.towards(before, edge, self.gain)
+            for fine, before in zip(self.tips, self.tips_of(Gears(), before=True), strict=True)
+        )
+        return first, second
+
+    def tips_of(self, gears: Gears, before: bool = False) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears from where solved gears are, or on the mesh before the last refinement."""
+        first, second = (
+            gears.tips(meshed, before).scaled(self.pair.module, flexible.law)
             for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
@@ -135,7 +151,10 @@ class Compliance:
 
     @property
     def coarser(self) -> Compliance | None:
-        """The same gears on the mesh before the last refinement; tips, motion and back flanks stay as they are."""
+        """The same gears on the mesh before the last refinement; tip edges that it resolves keep their strips.
+
+        Motion and back flanks stay as they are.
+        """
         if self.before is None:
             return None
         pinion, wheel = self.before
@@ -152,7 +171,7 @@ class Compliance:
             pinion=pinion,
             wheel=wheel,
             before=None,
-            tip_strips=tips,
+            tip_strips=None if tips is None else self._tips_before,
             flank_motions=motions,
             back_series=backs,
         )

@@ -75,12 +75,17 @@ class EdgeTables:
     given : Setting
         At any positions: what counts is how the gears are set up.
     bodies : Compliance
-        On any of its meshes, since these share the answer of the tips.
+        On any of its meshes that share the answer of the tips.
     """
 
     def __init__(self, given: Setting, bodies: Compliance) -> None:
         self.given, self.bodies = given, bodies
         self._kept: dict[int, _Laws] = {}
+
+    def serves(self, bodies: Compliance) -> bool:
+        """Whether laws of these bodies, on whichever mesh, are the ones that are kept here."""
+        strips = bodies.tip_strips
+        return bodies is self.bodies or strips is None or strips is self.bodies.tips
 
     def at(self, where: ContactCandidates) -> tuple[Table | None, Array]:
         """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N]."""

@@ -82,7 +82,8 @@ class ContactProblem:
         return self._divided(self.bodies)
 
     def _sampler(self, bodies: Compliance) -> Sampler:
-        tables = self.tables or EdgeTables(self.given, bodies)
+        known = self.tables
+        tables = known if known is not None and known.serves(bodies) else EdgeTables(self.given, bodies)
 
         def sample(position: Array) -> Sampled:
             found = solve(self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables)

@@ -21,6 +21,7 @@ from fem.flamant import hertz_indentation
 from fem.gear_shape import MeshedShape, shapes
 from fem.solved_gear import Gears, Kept, SolvedFlanks
 from fem.support import Support, held_profiles, on_both
+from fem.tip_strips import gain_beside
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -128,7 +129,7 @@ def compliance(
             _fitted(gears, MeshedShape(shape, sizes, level), tolerance).scaled(pair.module, law)
             for shape, law in zip(both, laws, strict=True)
         )
-        mesh_error, fit_error = _errors(pair, (first, second))
+        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level)
         error = mesh_error + fit_error
         finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance))
         if refinements is not None or error <= tolerance or finer is None:
@@ -177,17 +178,22 @@ def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks
     return found
 
 
-def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks]) -> tuple[float, float]:
-    """Errors by the mesh and by the fit, relative to the deflection of a pair, largest along the path."""
+def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: float) -> tuple[float, float]:
+    """Errors by the mesh and by the fit, relative to the deflection of a pair, largest along the path.
+
+    The element at the corner has a length ``edge`` [modules]; beside it a refinement gains less.
+    """
+    gain = 2**ORDER - 1
     rho1 = np.linspace(pair.points.A, pair.points.E, 60)
     own, change = np.zeros_like(rho1), np.zeros_like(rho1)
     for gear, rho in zip(gears, (rho1, pair.line_of_action - rho1), strict=True):
         flexible = gear.flexible
         own += flexible.own(rho) + hertz_indentation(0.1 * pair.module, flexible.law, pair.module)
-        change += gear.change_at(rho)
+        away = (flexible.rho_end**2 - np.clip(rho, *flexible.rho_range) ** 2) / (2 * flexible.base_radius)
+        change += gear.change_at(rho) / gain_beside(away / (edge * pair.module), gain)
     crossed = sum(gear.cross_change for gear in gears) / float(np.min(own))
     fit = sum(gear.flexible.fit_error for gear in gears) / float(np.min(own))
-    return max(float(np.max(np.abs(change / own))), crossed) / (2**ORDER - 1), fit
+    return max(float(np.max(np.abs(change / own))), crossed / gain), fit
 
 
 def _finer(sizes: Sizes, level: int, error: float, tolerance: float) -> tuple[Sizes, int] | None:

@@ -117,9 +117,10 @@ class Gears:
         """Flanks with loads at a number of places."""
         return self.record("flanks", (meshed, samples), lambda: self._flanks(meshed, samples))
 
-    def tips(self, meshed: MeshedShape) -> TipStrips:
-        """Answer of the tip edges."""
-        return self.record("tips", (meshed,), lambda: self._tips(meshed))
+    def tips(self, meshed: MeshedShape, before: bool = False) -> TipStrips:
+        """Answer of the tip edges, or that on the mesh before the last refinement."""
+        name = "coarse tips" if before else "tips"
+        return self.record(name, (meshed,), lambda: self._tips(meshed, before))
 
     def motion(self, meshed: MeshedShape) -> FlankMotion:
         """Motion of the flank, on the coarser mesh: a correction."""
@@ -171,8 +172,8 @@ class Gears:
         self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
         return found
 
-    def _tips(self, meshed: MeshedShape) -> TipStrips:
-        ring = self.rings(meshed)[1]
+    def _tips(self, meshed: MeshedShape, before: bool) -> TipStrips:
+        ring = self.rings(meshed)[0 if before else 1]
         watch = Stopwatch()
         found = tip_strips(ring, meshed.shape.profile)
         self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))

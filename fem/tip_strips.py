@@ -22,11 +22,14 @@ if TYPE_CHECKING:
     from fem.ring import Ring
     from gears import ToothProfile
 
-__all__ = ["RATIO", "REACH", "TipStrips", "sharp_layout", "tip_strips"]
+__all__ = ["RATIO", "REACH", "RESOLVED", "TipStrips", "gain_beside", "sharp_layout", "tip_strips"]
 
 FIRST_EDGE, RATIO, REACH, RESOLVED = 1e-4, 1.25, 0.5, 0.01
 """End of the strip at the corner, ratio of successive widths, total width, and the distance from the corner
 below which the finite elements are not asked (all in modules of arc length)."""
+
+GAINING = 0.5
+"""Distance from a corner over the length of the element there from which on a refinement gains all of its order."""
 
 FARTHER = 6
 """Strips by which pairs are moved out to see what is linear in the distance from the corner."""
@@ -87,6 +90,28 @@ class TipStrips:
             self.hub_windup / modulus,
         )
 
+    def towards(self, before: TipStrips, edge: float, gain: float) -> TipStrips:
+        """Strips that differ as those on the mesh before would, had the last refinement reduced errors by its gain.
+
+        Parameters
+        ----------
+        before : TipStrips
+            On the mesh before the last refinement.
+        edge : float
+            Length of the element at the corner [m].
+        gain : float
+            Of a refinement, far from the corner; beside it ``gain_beside`` holds.
+        """
+        # nearer than that the elements are not asked
+        farther = np.maximum(np.maximum(self.distance[:, None], self.distance), RESOLVED * self.length)
+        more = gain / gain_beside(farther / edge, gain)
+        return replace(
+            self,
+            kernel=self.kernel + more * (before.kernel - self.kernel),
+            mixed=self.mixed + more * (before.mixed - self.mixed),
+            tangential=self.tangential + more * (before.tangential - self.tangential),
+        )
+
     def leaning(self, angle: Array) -> Array:
         """Kernels for forces and displacements that lean from the inward normals away from the tip.
 
@@ -129,6 +154,20 @@ class TipStrips:
         return replace(
             self, distance=distance, width=width, rho=rho, kernel=kernel, mixed=mixed, tangential=tangential
         )
+
+
+def gain_beside(edges: Array, gain: float) -> Array:
+    """By how much a refinement reduces the error of a displacement at a load beside a tip corner.
+
+    Parameters
+    ----------
+    edges : array
+        Distance from the corner over the length of the element there.
+    gain : float
+        Far from the corner. Well within an element's length of it the displacement grows as a logarithm, of which each
+        refinement shows a further part: half of what is still wrong, or less.
+    """
+    return np.asarray(0.5 + (gain - 0.5) * np.minimum(1.0, edges / GAINING))
 
 
 def sharp_layout(module: float) -> tuple[Array, Array]:

@@ -173,3 +173,12 @@ def test_cost_says_what_was_solved(article_pair):
     assert {"mesh", "assemble", "factor", "condense", "solve", "tips"} <= set(cost.parts)
     assert sum(cost.parts.values()) <= cost.seconds
     assert cost.counts["annulus_unknowns"] > 30 * cost.unknowns
+
+
+@pytest.mark.parametrize(
+    "sizes", [{"corner": 0.05}, {"corner": 0.1}, {"corner": 0.4, "growth": 1.5}, {"fillet": 0.6}]
+)
+def test_the_error_of_ones_own_sizes_is_the_true_one(article_pair, sizes):
+    """Elements at the corner up to thirty times as long as usual: a refinement gains less of their error."""
+    mine = fem.compliance(article_pair, sizes=Sizes(**sizes), refinements=1)
+    assert 0.5 < mine.error / true_error(mine, fem.compliance(article_pair, refinements=3)) < 2
