@@ -84,7 +84,7 @@ def test_nothing_steps_with_a_plastic_wheel(plastic):
 
 
 def test_without_the_strips_inside_it_would_step(article_pair, article_bodies, monkeypatch):
-    monkeypatch.setattr(sys.modules["fem.sharing"], "cut_offs", lambda *_: ())
+    monkeypatch.setattr(sys.modules["fem.loaded_flanks"], "cut_offs", lambda *_: ())
     approach, _, _ = solved(article_pair, article_bodies, 600.0, [-1e-6, 1e-6])
     assert abs(approach[1] / approach[0] - 1) > 4 * STEP
 
@@ -103,7 +103,7 @@ def test_curves_are_smooth_where_the_flanks_law_takes_over(article_pair, article
 
 def test_the_cycle_moves_little(article_pair, article_bodies, monkeypatch):
     with_strips = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
-    monkeypatch.setattr(sys.modules["fem.sharing"], "cut_offs", lambda *_: ())
+    monkeypatch.setattr(sys.modules["fem.loaded_flanks"], "cut_offs", lambda *_: ())
     without = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
     for name in ("stiffness", "secant_stiffness"):
         mean, before = getattr(with_strips, name).mean(), getattr(without, name).mean()
