@@ -94,7 +94,7 @@ def mesh_cycle(
 
     For every loaded pair D = sum_j bulk_ij F_j + Hertz(F_i) - s_i(F_i) + gap_i, with sum F_i = torque/r_b1. Where the
     deflection is more than the gap of the flanks on the other side, these are looked at, and both sides bear where
-    they touch (``fem.opposite_flanks``).
+    they touch (``fem.opposite_flanks``). Of a pair that is not tight, overlap by deviations alone is left out.
 
     Parameters
     ----------
@@ -349,9 +349,10 @@ def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge
         )
     if given.friction:
         remarks.append("friction changes the lever arms only, not the compliance")
-    if np.min(where.back_gap) < 0:
+    if (overlap := -1e6 * float(np.min(where.back_gap))) > 0.0:
+        left_out = "" if given.pair.tight else ", which is left out; give more backlash, or a tight pair"
         remarks.append(
-            f"the teeth jam: without load their back flanks overlap by up to {-1e6 * np.min(where.back_gap):.3g} um"
+            f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
         )
     opposite = contact.opposite
     if opposite is not None and np.any(opposite.forces[number] > 0):

@@ -133,7 +133,7 @@ def solve(
     for reach in REACHES:
         flanks = loaded_flanks(given, bodies, film, reach, most, tables)
         found = _one_sided(given, bodies, force, flanks) if np.all(force) else None
-        if given.both or found is None or _near(flanks, found):
+        if given.both or found is None or _near(flanks, found, given.pair.tight):
             found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
         if np.max(found.closing + found.touch) <= flanks.where.reach_gap:
             break
@@ -141,12 +141,14 @@ def solve(
     return found
 
 
-def _near(flanks: LoadedFlanks, found: Solution) -> bool:
+def _near(flanks: LoadedFlanks, found: Solution, tight: bool) -> bool:
     """Whether the other side may bear: teeth bend by no more than the deflection and the film between them.
 
     That side's gap is left by j + D - b_1 - b_2 - s', with b the bending of two loaded teeth, b <= D + s each, and
-    s' its own film.
+    s' its own film. Teeth that deviations alone make jam are left to one side unless the pair is tight.
     """
+    if np.min(flanks.where.back_gap) < 0.0 and not tight:
+        return False
     film = 0.0
     if flanks.oil is not None:
         film = float(np.max(flanks.oil.approach(np.zeros_like(found.share.forces))))

@@ -33,9 +33,9 @@ def changed(old: str, new: str) -> str:
 
 
 def test_the_template_is_a_valid_scene_with_every_section():
-    """Roughness alone is left out: with it the film is another one."""
+    """Roughness and heat alone are left out: with them the film and the gears are others."""
     scene = parse_scene(template())
-    assert {name for name in Scene.model_fields if getattr(scene, name) is None} == {"roughness"}
+    assert {name for name in Scene.model_fields if getattr(scene, name) is None} == {"heat", "roughness"}
     commented = "\n".join(
         re.findall(r"^# (\[roughness\]|(?:sigma|density_per|tip|law|mean_plane).* = .*)", template(), re.M)
     )
@@ -200,7 +200,7 @@ def test_every_key_has_a_meaning(model: type[BaseModel]):
 def test_a_key_is_converted_by_the_unit_in_which_it_ends():
     scene = parse_scene(template())
     assert scene.pair is not None
-    assert scene.pair.si() == {"module": 2e-3, "face_width": 40e-3}
+    assert scene.pair.si() == {"module": 2e-3, "face_width": 40e-3, "tight": False}
     assert scene.pair.pinion.si()["bore_radius"] == 0.5e-3 * 33.5
     assert scene.operating is not None
     assert scene.operating.value("pinion_speed_rpm") == pytest.approx(2000 * math.pi / 30, rel=1e-15)

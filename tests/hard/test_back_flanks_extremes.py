@@ -82,7 +82,8 @@ def test_a_sweep_that_meets_zero_with_play_is_refused_with_its_remedy():
 
 
 def test_a_tooth_that_jams_presses_its_own_pitches_alone():
-    pair = GearPair(Gear(12, 0.3), Gear(24), 2e-3, 0.02).with_backlash(8e-6)
+    loose = GearPair(Gear(12, 0.3), Gear(24), 2e-3, 0.02).with_backlash(8e-6)
+    pair = replace(loose, tight=True)
     cumulative = np.zeros(12)
     cumulative[5] = 20e-6
     deviations = (GearDeviations(None, PitchDeviations(tuple(cumulative))), None)
@@ -91,6 +92,11 @@ def test_a_tooth_that_jams_presses_its_own_pitches_alone():
     assert cycle.converged
     assert "jam" in cycle.message
     pressed = cycle.opposite_force > 0.0
+    one_side = fem.mesh_cycle(
+        loose, 2.0, 8, fem.compliance(loose, tolerance=0.02), deviations=deviations, pitches=12
+    )
+    assert "which is left out; give more backlash, or a tight pair" in one_side.message
+    np.testing.assert_array_equal(one_side.forces[~pressed], cycle.forces[~pressed])
     assert 0 < pressed.sum() < len(pressed) / 3
     assert np.all(cycle.back_gap[pressed] < 5e-6)
     with pytest.raises(InputError, match="must not be 0"):
