@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flankfilm.report.page import Part, Table, said
 from flankfilm.report.text import percent, seconds
+from flankfilm.scene.flank_files import CURVES
 
 if TYPE_CHECKING:
     from flankfilm.plan.decide import Plan
@@ -117,7 +118,17 @@ def _shares(plan: Plan) -> Table:
 
 
 def inputs(scene: Mapping[str, Any], versions_json: str) -> Part:
-    """Show a scene, and the versions as a file of data holds them."""
+    """Show a scene, and the versions as a file of data holds them; of curves from files the names alone."""
     libraries = ", ".join(f"{name} {version}" for name, version in json.loads(versions_json).items())
-    code = json.dumps(scene, indent=2, ensure_ascii=False)
+    code = json.dumps(_files_by_name(scene), indent=2, ensure_ascii=False)
     return Part("inputs", "Inputs", (f"Made with {libraries}.",), code=code)
+
+
+def _files_by_name(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A table of a scene without what was read from files, which is thousands of numbers."""
+    read = CURVES if "file" in table else ()
+    return {
+        name: _files_by_name(value) if isinstance(value, Mapping) else value
+        for name, value in table.items()
+        if name not in read
+    }

@@ -7,11 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from base import Fault, InputError
+from flankfilm.scene.flank_sections import POSITIONS
 
-__all__ = ["names_a_file", "read_flank_files", "without_curves"]
+__all__ = ["CURVES", "names_a_file", "read_flank_files", "without_curves"]
 
 FILES = {("deviations", "traces"): "material_um", ("wear",): "depth_um"}
 """Tables of a gear that may name a file, and what its values are."""
+
+
+CURVES = ("teeth", *POSITIONS, *dict.fromkeys(FILES.values()))
+"""Keys that a file gives."""
 
 
 def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] = ()) -> list[Fault]:
@@ -32,7 +37,7 @@ def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] =
         where = f"pair.{path}.file"
         if keys and where not in keys:
             continue
-        clash = sorted(table.keys() & {"teeth", kind, "roll_deg", "diameter_mm", "roll_length_mm"})
+        clash = sorted(table.keys() & set(CURVES))
         if clash:
             found.append(
                 Fault(where, table["file"], f"excludes {' and '.join(clash)}", "Leave one of them out")
@@ -60,9 +65,9 @@ def names_a_file(key: str) -> bool:
 
 def without_curves(raw: Mapping[str, Any], key: str) -> None:
     """Take out what was read from the file that stood at a key, which now names another."""
-    for path, table, _, kind in _tables(raw):
+    for path, table, *_ in _tables(raw):
         if key == f"pair.{path}.file":
-            for name in ("teeth", kind, "roll_deg", "diameter_mm", "roll_length_mm"):
+            for name in CURVES:
                 table.pop(name, None)
 
 

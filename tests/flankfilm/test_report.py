@@ -67,7 +67,8 @@ error_amplitude_um = 10
 sweep = { speed_rpm = [12000, 20000], points = 9 }
 diagram = { speed_rpm = [16000, 20000], searches = 2, max_period = 1 }
 """
-PAIR = SCENE[SCENE.index("[pair]") : SCENE.index("[film]")]
+WORN = ", wear = { roll_deg = [15, 25, 35], depth_um = [0, 1, 0] }"
+PAIR = SCENE[SCENE.index("[pair]") : SCENE.index("[film]")].replace(WORN, "")
 SIMPLE = f'wants = ["stiffness"]\n{PAIR}\n[stiffness]\nmodel = "ishikawa"\npairs = "independent"\n'
 
 OF_A_RUN = (
