@@ -209,7 +209,7 @@ class Compliance:
         )
         return first, second
 
-    @described("m/N", "gear")
+    @described("m/N", "gear", kept=True)
     def step_windup(self) -> tuple[float, float]:
         """Part of that turn by steps of pinion's and wheel's thickness, where rim and hub meet a narrower web."""
         width = self.pair.face_width

@@ -24,8 +24,17 @@ FIELDS = ("field_point", "field_von_mises", "field_triangles", "field_centre", "
 SHADES = ("#dce9f5", "#f8e6d8")
 
 
+BODY = tuple(
+    f"pair_{name}"
+    for name in ("bore_radii", "root_radii", "rim_thicknesses", "web_thicknesses", "face_width")
+)
+"""What the drawing of a body takes."""
+
+
 def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw both gears with a pair at the pitch point: the whole, and the path of contact enlarged.
+
+    The inside of a rim on a web is dashed.
 
     Parameters
     ----------
@@ -34,9 +43,9 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, PAIR, "outline_pinion", "outline_wheel", "path_point_place", "pair_bore_radii")
+    need(results, PAIR, "outline_pinion", "outline_wheel", "path_point_place", *BODY)
     outlines = [read(results, f"outline_{name}") for name in ("pinion", "wheel")]
-    centres, bores = (read(results, name).values for name in ("outline_centre", "pair_bore_radii"))
+    centres, bores = (read(results, name).values for name in ("outline_centre", BODY[0]))
     with sheet(style, 1, 2, height=4.4, width_ratios=(2, 3)) as (drawn, (whole, close)):
         lines = colours(2)
         middle, reach = _path(close, results)
@@ -49,10 +58,15 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             }
             whole.fill(*shape.values.T, **look)
             close.fill(*_nearby(shape.values, middle, reach).T, **look)
-        for centre, radius, colour in zip(centres, bores, lines, strict=True):
-            turn = np.linspace(0, 2 * np.pi, 181)
-            circle = centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])
+        turn = np.linspace(0, 2 * np.pi, 181)
+        around = np.column_stack([np.cos(turn), np.sin(turn)])
+        roots, rims, webs, width = (read(results, name).values for name in BODY[1:])
+        for k, (centre, radius, colour) in enumerate(zip(centres, bores, lines, strict=True)):
+            circle = centre + radius * around
             whole.fill(*circle.T, facecolor="#ffffff", edgecolor=colour, linestyle="-", linewidth=0.7)
+            if webs[k] < width:
+                inside = centre + (roots[k] - rims[k]) * around
+                whole.plot(*inside.T, color=colour, linestyle="--", linewidth=0.7)
         for axes in (whole, close):
             axes.set_aspect("equal")
             axes.grid(visible=False)
