@@ -87,7 +87,8 @@ class Table:
 class CutOff:
     """What a near tip corner adds to the flank's law of some contacts, over the force (``fem.cut_off``).
 
-    Cubic between its points in the force's logarithm; zero below the first one, straight beyond the last.
+    Cubic between its points in the force's logarithm; zero below the first one, and in proportion to the
+    force beyond the last, which strips do not cover.
 
     Attributes
     ----------
@@ -113,10 +114,10 @@ class CutOff:
         q0, q1 = self.quotient[rows, cell], self.quotient[rows, cell + 1]
         s0, s1 = self.slope[rows, cell] * width, self.slope[rows, cell + 1] * width
         t = np.clip((log - start) / width, 0.0, 1.0)
-        beyond = np.maximum(log - start - width, 0.0) / width
         quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
-        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t) + s1 * beyond
+        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t)
         slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
+        slope = np.where(log < self.log_force[:, -1], slope, 0.0)
         inside = log > self.log_force[:, 0]
         return np.where(inside, force * quotient, 0.0), np.where(inside, quotient + slope, 0.0)
 

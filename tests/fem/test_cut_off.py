@@ -200,3 +200,12 @@ def test_a_smoothed_law_by_strips_is_hertz():
     ]
     assert error[1] < STEP
     assert error[0] > 3 * error[1]
+
+
+def test_beyond_the_strips_the_correction_grows_in_proportion(article_bodies):
+    place, _ = near(article_bodies, 1, np.array([0.0, 0.05]) * 2e-3)
+    table = cut_off(article_bodies, 1, place, np.ones((2, 1), dtype=bool))
+    last = np.exp(table.log_force[:, -1])
+    (one, rises), (much, steep) = (table.value_and_slope(last * part) for part in (1.0 + 1e-9, 1e4))
+    np.testing.assert_allclose(much, 1e4 * one, rtol=1e-6)
+    np.testing.assert_allclose(steep, rises, rtol=1e-6)
