@@ -40,6 +40,10 @@ class FilmErrors:
     approach_stiffness: float = unsolved("1", "error of the stiffness by separation")
     tangent_stiffness: float = unsolved("1", "error of the stiffness by central film")
     inlet: float = unsolved("1", "share of the film lost to the finite inlet, 0 where the domain was given")
+    separation_shift: float = unsolved("1", "error of the film separation, with the sign of its last change")
+    slope_shift: float = unsolved(
+        "1", "error of the separation's derivative by the load, likewise, of the grid"
+    )
 
 
 @record

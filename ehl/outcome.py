@@ -52,12 +52,17 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     shown, before = figures(fine), figures(coarse)
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     lost = _SEPARATION_LOSS * inlet
+    change = before.separation / shown.separation - 1.0
+    off = _GRID_FACTOR * abs(change) + lost
+    steeper = slope_before.separation / slope.separation - 1.0
     errors = FilmErrors(
         film=error,
-        separation=_GRID_FACTOR * abs(before.separation / shown.separation - 1.0) + lost,
-        approach_stiffness=abs(slope_before.separation / slope.separation - 1.0) + slope.ripple + lost,
+        separation=off,
+        approach_stiffness=abs(steeper) + slope.ripple + lost,
         tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + lost,
         inlet=inlet,
+        separation_shift=math.copysign(off, change),
+        slope_shift=_GRID_FACTOR * steeper,
     )
     groups = fine.groups
     message = "converged"

@@ -49,6 +49,8 @@ class ContactProblem:
         Turn of pinion and wheel per force that is left out of the deflection (``fem.references``) [m/N].
     tables : EdgeTables, optional
         Laws of the tip edges that are known already.
+    varied : tuple of (Film, float)
+        Other films, and how much of what they change is error.
     """
 
     given: Setting
@@ -60,6 +62,7 @@ class ContactProblem:
     film_yields: bool = False
     turn: Array | None = None
     tables: EdgeTables | None = None
+    varied: tuple[tuple[Film, float], ...] = ()
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -75,7 +78,9 @@ class ContactProblem:
         """
         before, fine = self.bodies.coarser, self.divided()
         coarse = None if before is None else self._alike(before, fine)
-        return MeshArcs(fine, coarse, self.bodies.gain, self.bodies.fit_error)
+        others = [(replace(self, film=film), share) for film, share in self.varied]
+        varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
+        return MeshArcs(fine, coarse, self.bodies.gain, self.bodies.fit_error, varied)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""
@@ -180,7 +185,12 @@ def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
 
     before = None if found.before is None else less(found.before)
     division = replace(found.division, arcs=less(found.division.arcs))
-    return replace(found, division=division, before=before)
+    return replace(
+        found,
+        division=division,
+        before=before,
+        varied=tuple((less(arcs), share) for arcs, share in found.varied),
+    )
 
 
 def _less(curves: Array, force: float, turn: Array) -> Array:

@@ -2,7 +2,8 @@
 
 All follow from the smooth arcs between the cycle's events. The error of a figure is that of its arcs' series and, by
 finite elements, that of fits along the flanks and of the mesh: the figure is computed once more from the mesh before
-the last refinement, with events of its own. These parts have nothing to do with each other and are added as squares.
+the last refinement, with events of its own. What films may err by changes it likewise: it is computed once more with
+films so changed. These parts have nothing to do with each other and are added as squares.
 """
 
 from __future__ import annotations
@@ -63,6 +64,10 @@ class MeshArcs:
     other: float | None = quantity(
         "1", "further relative error of all figures; None where a model's is unknown"
     )
+    varied: tuple[tuple[Arcs, float], ...] = part(
+        "the same with a part of the model changed, such as its films, and how much of every change is error",
+        default=(),
+    )
 
     @property
     def arcs(self) -> Arcs:
@@ -81,23 +86,22 @@ class MeshArcs:
     def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
         """Mean of a curve, all over or between two ends of arcs in every base pitch."""
         value, error = self.arcs.mean(name, between)
-        coarse = None if self.before is None else self.before.mean(name, between)[0]
-        return self._estimate(value, error, coarse)
+        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0])
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
         """Least or greatest value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
-        coarse = None if self.before is None else self.before.extremes(name)[greatest][0]
-        return self._estimate(value, error, coarse)
+        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0])
 
     def range(self, name: str) -> Estimate:
         """Greatest less least value of a curve."""
         (least, off), (most, more) = self.arcs.extremes(name)
-        coarse = None
-        if self.before is not None:
-            (low, _), (high, _) = self.before.extremes(name)
-            coarse = high - low
-        return self._estimate(most - least, hypot(off, more), coarse)
+
+        def apart(arcs: Arcs) -> float:
+            (low, _), (high, _) = arcs.extremes(name)
+            return high - low
+
+        return self._estimate(most - least, hypot(off, more), apart)
 
     def greatest_share(self) -> Estimate:
         """Greatest share of the torque that a pair takes; nan where pairs are not told apart."""
@@ -105,8 +109,12 @@ class MeshArcs:
         if shares is None:
             return Estimate(float("nan"), None)
         value, error = shares.greatest_of_all()
-        before = None if self.before is None else self.before.shares()
-        return self._estimate(value, error, None if before is None else before.greatest_of_all()[0])
+
+        def greatest(arcs: Arcs) -> float:
+            others = arcs.shares()
+            return value if others is None else others.greatest_of_all()[0]
+
+        return self._estimate(value, error, greatest)
 
     def harmonics(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
         """Complex amplitudes of harmonics of the mesh frequency, and their errors, in the curve's unit."""
@@ -132,21 +140,28 @@ class MeshArcs:
 
     def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array, Array | None]:
         """Complex amplitudes, what a much finer mesh would change of them, and other errors if known."""
-        value, off = self.arcs.harmonics(name, orders)
-        coarse = None if self.before is None else self.before.harmonics(name, orders)[0]
+
+        def figure(arcs: Arcs) -> Array:
+            return arcs.harmonics(name, orders)[0] / (arcs.mean(name)[0] if over_mean else 1.0)
+
+        value, off = figure(self.arcs), self.arcs.harmonics(name, orders)[1]
         if over_mean:
             mean, less = self.arcs.mean(name)
-            value, off = value / mean, np.hypot(off, np.abs(value) / mean * less) / mean
-            if self.before is not None and coarse is not None:
-                coarse = coarse / self.before.mean(name)[0]
-        change = np.zeros_like(value) if coarse is None else (value - coarse) / self.gain
-        return value, change, None if self.other is None else np.hypot(off, self.other * np.abs(value))
+            off = np.hypot(off, np.abs(value) * less) / mean
+        change = np.zeros_like(value) if self.before is None else (value - figure(self.before)) / self.gain
+        if self.other is None:
+            return value, change, None
+        rest = np.hypot(off, self.other * np.abs(value))
+        for arcs, share in self.varied:
+            rest = np.hypot(rest, share * np.abs(value - figure(arcs)))
+        return value, change, rest
 
-    def _estimate(self, value: float, sampling: float, coarse: float | None) -> Estimate:
+    def _estimate(self, value: float, sampling: float, figure: Callable[[Arcs], float]) -> Estimate:
         if self.other is None:
             return Estimate(value, None)
-        mesh = 0.0 if coarse is None else abs(value - coarse) / self.gain
-        return Estimate(value, hypot(sampling, mesh, self.other * value))
+        mesh = 0.0 if self.before is None else abs(value - figure(self.before)) / self.gain
+        varied = (share * abs(value - figure(arcs)) for arcs, share in self.varied)
+        return Estimate(value, hypot(sampling, mesh, self.other * value, *varied))
 
 
 class MeshFigures(ABC):

@@ -36,6 +36,9 @@ from base import Array
 if TYPE_CHECKING:
     from gears import GearPair
 
+BEYOND = 0.5
+"""Steps between films by which a law goes on beyond the first and the last."""
+
 _LEAST_RATIO = 0.01
 _LEAST_DISTANCE = 1e-12
 _LARGEST_LOGARITHM = 300.0
@@ -105,7 +108,9 @@ class FilmLaw:
 
         Below a hundredth of a solved force the law goes on along its tangent: the power law would grow
         without bound where the pair lets go, and a slope that jumps has Newton's method of the load sharing
-        step to and fro across it. Places beyond the films have the nearest one.
+        step to and fro across it. The line through the first two films, or the last two, goes on for half a step
+        beyond them, as far as the ends of the path; places beyond, and behind a meniscus all beyond the films, have
+        the nearest one.
 
         Parameters
         ----------
@@ -117,7 +122,20 @@ class FilmLaw:
         _, share, found = self._beside(rho1, forces)
         separation, slope = ((1 - share) * a + share * b for a, b in zip(*found, strict=True))
         some = np.isfinite(rho1)
-        return np.where(some, separation, 0.0), np.where(some, slope, 0.0)
+        return np.where(some, separation, 0.0), np.where(some, np.minimum(slope, 0.0), 0.0)
+
+    def every_second(self) -> FilmLaw:
+        """Law without every second film: from the first on, since ends of the path count most.
+
+        Behind a meniscus, where films beyond the ends have the nearest one, both ends stay.
+        """
+        count, held = self.rho1.size, self.held
+        if held is None:
+            each = np.arange(1 if count > 1 else 0, count, 2)
+        else:
+            each = np.unique(np.append(np.arange(0, count, 2), count - 1))
+            held = HeldMeniscus(held.place[each], held.flooded_separation[each], held.flooded_exponent[each])
+        return FilmLaw(self.rho1[each], self.force[each], self.separation[each], self.exponent[each], held)
 
     def corners(self, pair: GearPair) -> Array:
         """Positions within a base pitch at which pairs pass films, where the law along the path has corners (n,)."""
@@ -153,12 +171,13 @@ class FilmLaw:
 
     def _neighbours(self, rho1: Array) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
         """Films on either side of each place, and the share of the second."""
-        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
+        place = np.nan_to_num(rho1)
         second = np.clip(np.searchsorted(self.rho1, place), min(1, self.rho1.size - 1), self.rho1.size - 1)
         first = np.maximum(second - 1, 0)
         step = self.rho1[second] - self.rho1[first]
         share = np.divide(place - self.rho1[first], step, out=np.zeros_like(place), where=step > 0)
-        return (first, second), share
+        beyond = BEYOND if self.held is None else 0.0
+        return (first, second), np.clip(share, -beyond, 1.0 + beyond)
 
     def _beside(
         self, rho1: Array, forces: Array

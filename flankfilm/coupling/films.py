@@ -230,6 +230,25 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
     return FilmLaw(path.rho1, force, separations, exponent, held)
 
 
+def off_by_errors(law: FilmLaw, path: PathFilms) -> tuple[FilmLaw, ...]:
+    """Laws of films that err as far as is estimated: one by their separation, two by its slope.
+
+    Separations are off as the last refinement moved them. Slopes move this way and that along the path, since the
+    pressure spike runs over the nodes: that decides what harmonics err by. Means err by more than the sum of these
+    moves, so that in a further law all slopes are off to one side. Films by formula have no error of their own.
+    """
+    if not all(isinstance(film, ehl.Film | ehl.MixedFilm) for film in path.films):
+        return ()
+    errors = [film_inside(film).errors for film in path.films]
+    by_separation = 1.0 + np.array([error.separation_shift for error in errors])
+    by_slope = np.array([error.slope_shift for error in errors])
+    return (
+        replace(law, separation=law.separation * by_separation, exponent=law.exponent / by_separation),
+        replace(law, exponent=law.exponent * np.maximum(1.0 + by_slope, 0.0)),
+        replace(law, exponent=law.exponent * (1.0 + np.abs(by_slope))),
+    )
+
+
 def _exponent(film: Solved, definition: str) -> float:
     """Exponent by which a film's separation falls with the load.
 

@@ -12,13 +12,15 @@ import numpy as np
 import dynamics
 import gears
 from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
-from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.series import OTHER, arc_fit
+from flankfilm.coupling.series import OTHER, MeshSeries, arc_fit
 
 if TYPE_CHECKING:
     from dynamics.branch import Stretch
+
+MEANS = {"secant": "mean_secant_stiffness", "tangent": "mean_stiffness"}
+"""Figure of a mesh cycle that is the mean of a kind of stiffness."""
 
 DROPPED = 4
 """Harmonics beyond the series that the error budget looks at."""
@@ -37,8 +39,8 @@ class Jump:
     label : str
         The motion that ends.
     budget : mapping
-        Source of error to relative error of the speed: ``"stiffness"``, ``"series"``, ``"flow"``; empty for an
-        oscillator in its own units.
+        Source of error to relative error of the speed: ``"stiffness"`` of meshes, arcs and films, ``"series"`` of what
+        its order leaves out, ``"flow"``; empty for an oscillator in its own units.
     second : float
         Relative change of the speed by the first harmonic that the series leaves out, to first order; 0 if none.
     """
@@ -179,7 +181,7 @@ def _jump(motion: PairOscillator, stretch: Stretch, point: dynamics.SpecialPoint
     """Carry the errors of the stiffness through the exact derivatives of a jump's speed.
 
     The speed is the frequency times sqrt(k_m): half the relative error of the mean stiffness, less what the mean
-    force, which is over k_m, changes of the frequency. The amplitudes over the mean err by twice that at most.
+    force, which is over k_m, changes of the frequency. The amplitudes over the mean err by errors of their own.
     """
     rising = stretch.high - point.parameter < point.parameter - stretch.low
     series, oscillator = motion.series, motion.oscillator
@@ -191,26 +193,26 @@ def _jump(motion: PairOscillator, stretch: Stretch, point: dynamics.SpecialPoint
     here = point.parameter
     force = abs(0.5 - slopes["mean_force"] * oscillator.mean_force / here)
     amplitudes = (*oscillator.stiffness.amplitudes, *dropped)
-    changes = [slopes[f"stiffness.amplitudes[{j}]"] * a / here for j, a in enumerate(amplitudes)]
-    kept, left = changes[:order], changes[order:]
+    steep = [slopes[f"stiffness.amplitudes[{j}]"] / here for j in range(len(amplitudes))]
+    left = [rate * a for rate, a in zip(steep[order:], dropped, strict=True)]
+    mean, off = _stiffness_errors(series)
     budget = {
-        "stiffness": _stiffness_error(motion) * (force + 2.0 * math.fsum(map(abs, kept))),
+        "stiffness": mean * force + float(np.abs(steep[:order]) @ off),
         "series": math.fsum(map(abs, left)),
         "flow": point.error,
     }
     return Jump(here, rising, stretch.label, budget, left[0] if left else 0.0)
 
 
-def _stiffness_error(motion: PairOscillator) -> float:
-    """Relative error of the mean stiffness, that of the films in proportion to what they change of it."""
-    cycle = motion.series.cycle
-    if cycle is None:
-        return 0.0
-    own = cycle.mean_error or 0.0
-    if not isinstance(cycle, LubricatedCycle):
-        return own
-    change = cycle.secant_stiffness_change if motion.series.kind == "secant" else cycle.stiffness_change
-    return own + abs(change) * (cycle.film.error or 0.0)
+def _stiffness_errors(series: MeshSeries) -> tuple[float, Array]:
+    """Relative error of the mean, and errors of the amplitudes over the mean, by meshes, arcs and films.
+
+    Zero where a model's are unknown.
+    """
+    assert series.cycle is not None
+    mean = series.cycle.errors[MEANS[series.kind]]
+    amplitudes = np.zeros(series.order) if series.harmonic_error is None else series.harmonic_error
+    return mean or 0.0, amplitudes
 
 
 def _longer(motion: PairOscillator, order: int) -> tuple[dynamics.GearOscillator, tuple[float, ...]]:

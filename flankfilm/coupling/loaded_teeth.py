@@ -17,7 +17,7 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
-from gears.events import Sampled, arcs_between_events
+from gears.events import Sampled, arcs_alike, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
 
 POSITIONS = 120
@@ -142,7 +142,13 @@ class LoadedTeeth:
         """Transmission error [m] of an approach of the loaded flanks; beyond the backlash on back flanks."""
         return approach if self.torque > 0.0 else -(self.pair.backlash + approach)
 
-    def cycle(self, positions: int, film: FilmLaw | None = None, tolerance: float = 1e-3) -> MeshCycle:
+    def cycle(
+        self,
+        positions: int,
+        film: FilmLaw | None = None,
+        tolerance: float = 1e-3,
+        varied: tuple[tuple[FilmLaw, float], ...] = (),
+    ) -> MeshCycle:
         """Mesh cycle at the midpoints of some equal intervals of one base pitch.
 
         Parameters
@@ -153,6 +159,8 @@ class LoadedTeeth:
             Films in series with the pairs; dry without.
         tolerance : float
             Relative, of means, extremes and harmonics.
+        varied : tuple of (FilmLaw, float)
+            Other films, and how much of what they change of a figure is its error.
 
         Raises
         ------
@@ -160,14 +168,15 @@ class LoadedTeeth:
             Where the loaded contact did not converge.
         """
         if (self.model, self.pairs) != ("fem", "coupled"):
-            return self._by_single_pairs(positions, film, tolerance)
+            return self._by_single_pairs(positions, film, tolerance, varied)
         found = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
         )
         believed(found, "loaded tooth contact")
         if film is not None and found.problem is not None:
             corners = film.corners(self.pair)
-            found = replace(found, problem=replace(found.problem, corners=corners, film_yields=True))
+            problem = replace(found.problem, corners=corners, film_yields=True, varied=varied)
+            found = replace(found, problem=problem)
         return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(found), contact=found)
 
     def sampled(self, sampling: float, transmission_error: float) -> MeshCycle:
@@ -199,12 +208,18 @@ class LoadedTeeth:
             if (model, "independent") != (self.model, self.pairs)
         )
 
-    def _by_single_pairs(self, positions: int, film: FilmLaw | None, tolerance: float) -> MeshCycle:
+    def _by_single_pairs(
+        self,
+        positions: int,
+        film: FilmLaw | None,
+        tolerance: float,
+        varied: tuple[tuple[FilmLaw, float], ...],
+    ) -> MeshCycle:
         """Pairs that know each other only through the force they share."""
         watch = Stopwatch()
         position, _ = contact_places(self.pair, positions)
         rho1 = places_of(self.pair, self.on_path(position))
-        pairs = SinglePairsProblem(self, film, tolerance)
+        pairs = SinglePairsProblem(self, film, tolerance, varied)
         share, secant = pairs.shared(rho1)
         return MeshCycle(
             label=f"{MODELS[self.model]}, {self.pairs} pairs",
@@ -233,11 +248,14 @@ class SinglePairsProblem:
         Films in series.
     tolerance : float
         Relative, of the figures.
+    varied : tuple of (FilmLaw, float)
+        Other films, and how much of what they change is error.
     """
 
     teeth: LoadedTeeth
     film: FilmLaw | None = None
     tolerance: float = 1e-3
+    varied: tuple[tuple[FilmLaw, float], ...] = ()
 
     @property
     def error(self) -> float | None:
@@ -256,8 +274,16 @@ class SinglePairsProblem:
         corners = self.teeth.on_path((np.array(ends) - pair.points.A) / pair.base_pitch)
         if self.film is not None:
             corners = np.concatenate([corners, self.teeth.on_path(self.film.corners(pair))])
-        division = arcs_between_events(self._sample, CURVES, corners, tolerance=SAMPLING * self.tolerance)
-        return MeshArcs(division, None, 1.0, self.error)
+        tolerance = SAMPLING * self.tolerance
+        division = arcs_between_events(self._sample, CURVES, corners, tolerance=tolerance)
+        varied = []
+        for film, share in self.varied:
+            sample = replace(self, film=film)._sample
+            arcs = arcs_alike(sample, CURVES, division)
+            if arcs is None:
+                arcs = arcs_between_events(sample, CURVES, corners, tolerance=tolerance).arcs
+            varied.append((arcs, share))
+        return MeshArcs(division, None, 1.0, self.error, tuple(varied))
 
     def _sample(self, position: Array) -> Sampled:
         rho1 = places_of(self.teeth.pair, self.teeth.on_path(position))

@@ -100,8 +100,10 @@ def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
         return [Headline("jump speeds", "none in range")]
     at = ", ".join(f"{_shown(stage, j.frequency)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
     more = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
-    errors = [j.error for j in stage.jumps if j.budget]
-    note = f"error up to {percent(max(errors))}" if errors else ""
+    worst = max((j for j in stage.jumps if j.budget), key=lambda j: j.error, default=None)
+    note = f"error up to {percent(worst.error)}" if worst else ""
+    if worst and worst.budget["series"] > 0.5 * worst.error:
+        note += f", {percent(worst.budget['series'])} of it by harmonics that the series leaves out"
     return [Headline("jump speeds", at + more, note, "rpm" if stage.speed_of_one else "")]
 
 
