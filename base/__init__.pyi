@@ -11,6 +11,7 @@ from .faults import FlankfilmWarning as FlankfilmWarning
 from .faults import InputError as InputError
 from .faults import RangeWarning as RangeWarning
 from .faults import SolverError as SolverError
+from .faults import printable as printable
 from .faults import shorten as shorten
 from .files import replacing as replacing
 from .files import sweep_temporaries as sweep_temporaries

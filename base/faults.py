@@ -87,6 +87,17 @@ class RangeWarning(FlankfilmWarning):
     """A model used outside the range for which it was derived or fitted, or a result to be read with care."""
 
 
+def printable(text: object) -> str:
+    r"""Text for one line of a terminal: control characters, which could draw or hide things there, are spelt out.
+
+    Examples
+    --------
+    >>> printable("red\x1b[31m")
+    'red\\x1b[31m'
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in str(text))
+
+
 def shorten(value: object, limit: int = 60) -> str:
     """Text of a value for a message, cut to `limit` characters.
 

@@ -12,9 +12,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import App, Parameter
+from cyclopts import App, Parameter, Token
 
-from base import InputError, SolverError
+from base import InputError, SolverError, printable
 from flankfilm.children import Ended, answering_signals
 from flankfilm.studies.execution import Execution
 
@@ -38,6 +38,16 @@ app = App(
 )
 
 
+def _named(_: object, tokens: Sequence[Token]) -> Path:
+    """Folder of a name that is not empty, as the value of a variable that is not set."""
+    if not tokens[0].value.strip():
+        raise ValueError("it must name a folder; a dot is the current one")
+    return Path(tokens[0].value)
+
+
+Folder = Annotated[Path, Parameter(converter=_named)]
+
+
 @dataclass(frozen=True)
 class SceneOptions:
     """Options of the commands that compute a scene.
@@ -52,14 +62,14 @@ class SceneOptions:
         Use results of earlier runs whose inputs and code are the same.
     """
 
-    out: Path | None = None
+    out: Folder | None = None
     tolerance: str | None = None
     cache: bool = True
 
 
 ForScene = Annotated[SceneOptions, Parameter(name="*")]
 HowRows = Annotated[Execution, Parameter(name="*")]
-RowsFolder = Annotated[Path, Parameter(help="Folder for the rows and what is made of them.")]
+RowsFolder = Annotated[Folder, Parameter(help="Folder for the rows and what is made of them.")]
 
 
 def _prepare() -> None:
@@ -77,7 +87,7 @@ def _read(scene: Path, tolerance: str | None) -> Scene:
 
     wanted, differences = scene_in(scene)
     for difference in differences:
-        print(f"flankfilm: {scene}: {difference}", file=sys.stderr)
+        print(printable(f"flankfilm: {scene}: {difference}"), file=sys.stderr)
     if tolerance is None:
         return wanted
     return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance, "--tolerance")})
@@ -104,7 +114,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     with console_progress() as progress:
         results = run_scene(wanted, folder, use_cache=options.cache, progress=progress)
     for line in summary(results):
-        print(line)
+        print(printable(line))
     return 0
 
 
@@ -187,13 +197,13 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> i
 def _conclude(lines: Sequence[str], out: Path, files: Sequence[Path]) -> None:
     """Print what rows gave, and where they are."""
     for line in (*lines, ", ".join(str(path) for path in (out / "rows.csv", *files))):
-        print(line)
+        print(printable(line))
 
 
 @app.command
 def bench(
     *,
-    out: Path = Path("bench-results"),
+    out: Folder = Path("bench-results"),
     only: Annotated[list[str] | None, Parameter(consume_multiple=True, negative="")] = None,
     quick: Annotated[bool, Parameter(negative="")] = False,
     repeat: int | None = None,
@@ -244,7 +254,7 @@ def check(scene: Path, /) -> int:
     from flankfilm.check import check_scene
 
     for line in check_scene(_read(scene, None)):
-        print(line)
+        print(printable(line))
     return 0
 
 
@@ -293,10 +303,10 @@ def guarded(command: Callable[[], int]) -> int:
         count = len(error.faults)
         print(f"flankfilm: {count} fault{'s' if count > 1 else ''}", file=sys.stderr)
         for fault in error.faults:
-            print(f"  {fault}", file=sys.stderr)
+            print(f"  {printable(fault)}", file=sys.stderr)
         return USER_FAULT
     except SolverError as error:
-        print(f"flankfilm: {error}", file=sys.stderr)
+        print(f"flankfilm: {printable(error)}", file=sys.stderr)
         return SOLVER_FAULT
     except BrokenPipeError:
         sys.stderr.close()
@@ -304,7 +314,7 @@ def guarded(command: Callable[[], int]) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         remedy = "; free some space, or name another folder with --out" if error.errno in FULL else ""
-        print(f"flankfilm: {where}{error.strerror or error}{remedy}", file=sys.stderr)
+        print(printable(f"flankfilm: {where}{error.strerror or error}{remedy}"), file=sys.stderr)
         return USER_FAULT
     except (KeyboardInterrupt, Ended) as stop:
         how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
@@ -315,15 +325,27 @@ def guarded(command: Callable[[], int]) -> int:
         return 128 + stop.signal if isinstance(stop, Ended) else INTERRUPTED
 
 
+def _open_streams() -> None:
+    """Give streams that were closed a place that takes everything, lest the first file that is opened becomes one."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
+            stream = os.fdopen(number, "r" if number == 0 else "w", closefd=False, encoding="utf-8")
+            setattr(sys, name, stream)
+
+
 def _say(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
     """Show our own warnings as sentences; those of libraries are not for users."""
     from flankfilm.cache import PACKAGES
 
     if category.__module__.partition(".")[0] in PACKAGES:
-        print(f"flankfilm: {message}", file=sys.stderr)
+        print(f"flankfilm: {printable(message)}", file=sys.stderr)
 
 
 def main() -> None:
     """Entry point of the ``flankfilm`` script."""
+    _open_streams()
     warnings.showwarning = _say
     sys.exit(guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0)))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from base import InputError
+from base import InputError, printable
 
 
 def import_gears(
@@ -39,7 +39,7 @@ def import_gears(
     brought = imported(file, stage=stage, rack=rack)
     write_new(target, brought.text, "Name another: --out")
     for note in brought.notes:
-        print(note)
+        print(printable(note))
     print(f"{target} is written.")
     if brought.faults:
         raise InputError(replace(fault, where=f"{target}: {fault.where}") for fault in brought.faults)
@@ -67,7 +67,7 @@ def export_rexs(scene: Path, /, *, out: Path | None = None) -> int:
     target = out if out is not None else Path(f"{scene.stem}.rexs")
     write_text(target, text)
     for omission in left_out:
-        print(omission)
+        print(printable(omission))
     print(f"{target} is written.")
     return 0
 

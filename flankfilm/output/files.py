@@ -41,7 +41,22 @@ def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
     with replacing(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(listed)
-        writer.writerows(zip(*listed.values(), strict=True))
+        writer.writerows([map(cell, row) for row in zip(*listed.values(), strict=True)])
+
+
+def cell(value: object) -> object:
+    """Value of a cell: a text that a spreadsheet would take for a formula begins with an apostrophe.
+
+    Examples
+    --------
+    >>> cell("=1+1"), cell("auto"), cell(-1.0)
+    ("'=1+1", 'auto', -1.0)
+    """
+    return (
+        f"'{value}"
+        if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r"))
+        else value
+    )
 
 
 def write_text(path: Path, text: str) -> None:

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from base import Faults, InputError
 from base.files import replacing
+from flankfilm.output.files import cell
 from flankfilm.studies.row import RowResult
 
 ROWS = "rows.csv"
@@ -106,7 +107,7 @@ def forget(path: Path, columns: Columns, lines: Sequence[Line]) -> None:
 
 def _row(values: Sequence[object], result: RowResult) -> list[object]:
     """Cells of a row, its checksum last."""
-    line = [result.index, *values, *result.values, result.seconds, result.fault]
+    line = [result.index, *map(cell, values), *result.values, result.seconds, cell(result.fault)]
     return [*line, _checksum(line)]
 
 

@@ -10,9 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
+from flankfilm.output.files import write_csv
 from flankfilm.scene import template
-from tests.flankfilm.program import EXAMPLES, flankfilm
+from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
+from tests.flankfilm.scenes import ishikawa
 
 
 def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
@@ -104,7 +107,7 @@ def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):
     assert done.returncode == 2, done.stderr
     assert "No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
-    assert list((tmp_path / "out").rglob("*.*")) == []
+    assert [path.name for path in (tmp_path / "out").rglob("*.*")] == [".lock"]
 
 
 @pytest.fixture(scope="module")
@@ -160,3 +163,35 @@ def test_csv_reads_back(oscillator_run):
     table = pd.read_csv(oscillator_run / "out" / "csv" / "sweep_up.csv")
     assert list(table.columns) == ["frequency", "up_displacement", "up_velocity", "up_label"]
     assert len(table) == 400 * 64
+
+
+def test_control_characters_are_spelt_out_and_formulas_are_text(tmp_path):
+    text = ishikawa("X", "closed-forms").replace('"X"', '"=cmd()\\u001b[31m\\nred"')
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    said = flankfilm("check", "scene.toml", cwd=tmp_path).stdout
+    assert "=cmd()\\x1b[31m\\nred is valid" in said
+    refused = flankfilm("check", "x\x1b[31m.toml", cwd=tmp_path, status=2).stderr
+    assert "\x1b" not in refused
+    write_csv(tmp_path / "table.csv", {"model": ["=1+1", "plain"], "x": [-1.0, 2.0]})
+    assert (tmp_path / "table.csv").read_text().split() == ["model,x", "'=1+1,-1.0", "plain,2.0"]
+
+
+@pytest.mark.parametrize("name", ["", "  "])
+def test_a_folder_without_a_name_is_refused(tmp_path, name):
+    (tmp_path / "scene.toml").write_text(ishikawa("X", "geometry"), encoding="utf-8")
+    said = flankfilm("run", "scene.toml", "--out", name, cwd=tmp_path, status=2).stderr
+    assert "must name a folder" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
+
+
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&-", "<&- >&- 2>&-"])
+def test_closed_streams_change_nothing(tmp_path, closed):
+    (tmp_path / "scene.toml").write_text(ishikawa("X", "closed-forms"), encoding="utf-8")
+    for command, status in ((f"'{SCRIPT}' run scene.toml --out out", 0), (f"'{SCRIPT}' run none.toml", 2)):
+        done = subprocess.run(
+            ["sh", "-c", f"{command} {closed}"], cwd=tmp_path, capture_output=True, check=False
+        )
+        assert done.returncode == status
+        assert "fault" not in done.stdout.decode()
+    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as results:
+        assert results.sizes
