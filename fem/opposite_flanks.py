@@ -226,6 +226,7 @@ def share_with_opposite(
     film: Film | None,
     flanks: LoadedFlanks,
     alone: LoadShare | None,
+    apart: Booleans,
     reach: float,
     tables: EdgeTables,
 ) -> tuple[LoadShare, OppositeShare, Array]:
@@ -241,6 +242,8 @@ def share_with_opposite(
         Of the side that the torque loads.
     alone : LoadShare or None
         Solution without the other side, kept where it lets nothing overlap; None without a torque.
+    apart : (torques,) boolean array
+        Torques for which it is kept whatever it lets overlap.
 
     Returns
     -------
@@ -257,11 +260,13 @@ def share_with_opposite(
         loads[..., :count] = alone.forces
         left = both.open(loads, alone.transmission_error)[..., count:]
         clear = np.all(left >= -ROUNDING * np.abs(alone.transmission_error)[..., None], axis=-1)
+        clear |= apart[:, None, None]
     slopes, rest = np.zeros_like(loads), np.zeros(pressed.shape)
     if alone is not None:
         slopes[..., :count] = alone.pair_stiffness
     if not clear.all():
-        joint = both.share(whole + 0.0 * pressed)
+        asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
+        joint = both.share(asked[:, None, None] + 0.0 * pressed)
         loads = np.where(clear[..., None], loads, joint.forces)
         slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
         moved, tangent = joint.transmission_error, joint.stiffness
@@ -271,7 +276,7 @@ def share_with_opposite(
         found = LoadShare(loads[..., :count], moved, tangent, slopes[..., :count], joint.iterations)
     assert found is not None
     if pressed.any():
-        small = np.where(pressed, 0.0, max(float(np.max(force)), 1.0))
+        small = np.where(pressed, 0.0, max(float(np.max(force, where=~apart, initial=0.0)), 1.0))
         rest = np.where(pressed, both.share(small).transmission_error, 0.0)
     left = both.open(loads, found.transmission_error)
     touch = flanks.where.gap.min(axis=-1)

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Solution", "solve"]
 
+FAR_TOO_DEEP = 0.25
+"""Deflection in modules above which no law of contact holds, and the other side is not looked at."""
+
 
 @record
 class Solution:
@@ -130,14 +133,14 @@ def solve(
     """
     tables, most = tables or EdgeTables(given, bodies), float(np.max(force))
     found: Solution | None = None
-    for reach in REACHES:
+    # without a torque overlap alone says how far contacts reach
+    for reach in REACHES if np.all(force) else REACHES[-1:]:
         flanks = loaded_flanks(given, bodies, film, reach, most, tables)
         found = _one_sided(given, bodies, force, flanks) if np.all(force) else None
-        if given.both or found is None or _near(flanks, found, given.pair.tight):
-            found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
-        if np.max(found.closing + found.touch) <= flanks.where.reach_gap:
+        if found is None or np.max(found.closing + found.touch) <= flanks.where.reach_gap:
             break
-    assert found is not None
+    if found is None or given.both or _near(flanks, found, given.pair.tight):
+        found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
     return found
 
 
@@ -187,13 +190,21 @@ def _two_sided(
     reach: float,
     tables: EdgeTables,
 ) -> Solution:
-    """Solution with the flanks on both sides."""
+    """Solution with the flanks on both sides, but for torques that are refused with one."""
+    apart = np.zeros(len(force), dtype=bool)
+    if alone is not None:
+        deep = FAR_TOO_DEEP * given.pair.module
+        moved = alone.share.transmission_error.reshape(len(force), -1).max(axis=1)
+        apart = np.array([bool(alone.refusal(n)) or moved[n] > deep for n in range(len(force))])
+        if apart.all():
+            return alone
     share, opposite, left = share_with_opposite(
-        given, bodies, force, film, flanks, None if alone is None else alone.share, reach, tables
+        given, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
     )
     if alone is not None and not opposite.bears:
         return replace(alone, opposite=opposite)
     closing = share.transmission_error - bodies.turning * force[:, None, None]
+    moves, settled = (None, True) if alone is None else (alone.moves, alone.settled)
     return Solution(
         flanks.where,
         share,
@@ -202,8 +213,8 @@ def _two_sided(
         flanks.largest,
         closing,
         left,
-        None,
-        True,
+        moves,
+        settled,
         opposite,
     )
 
