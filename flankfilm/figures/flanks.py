@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from flankfilm.figures.reading import need, read
-from flankfilm.figures.style import MARK, Style, colours, sheet
+from flankfilm.figures.style import MARK, Style, colours, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,14 +29,14 @@ def flanks(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(results, "run a scene that has deviations or wear of a gear", f"flank_{drawn[0]}_diameter")
     with sheet(style, 1, len(drawn), height=3.0, legend=0) as (found, panels):
         for gear, axes in zip(drawn, panels, strict=True):
-            _of_gear(axes, results, f"flank_{gear}")
-            axes.set_title(gear)
-            axes.legend(loc="best")
+            _of_gear(axes, results, gear)
+            legend_over(axes, 2)
     return found
 
 
-def _of_gear(axes: Axes, results: xr.Dataset, prefix: str) -> None:
+def _of_gear(axes: Axes, results: xr.Dataset, gear: str) -> None:
     """Draw the flanks of a gear: material in excess, and less what is worn."""
+    prefix = f"flank_{gear}"
     diameter = read(results, f"{prefix}_diameter")
     looks = dict(zip(("material", "wear"), colours(2), strict=True))
     for name, sign, label in (("material", 1.0, "deviation, mean"), ("wear", -1.0, "wear, mean")):
@@ -47,5 +47,5 @@ def _of_gear(axes: Axes, results: xr.Dataset, prefix: str) -> None:
             axes.plot(diameter.values, each, color=MARK, linestyle="-", linewidth=0.4)
         mean = read(results, f"{prefix}_mean_{name}")
         axes.plot(diameter.values, sign * mean.values, color=looks[name], linestyle="-", label=label)
-        axes.set(ylabel=mean.named("material in excess"))
+        axes.set(ylabel=mean.named(f"material in excess, {gear}"))
     axes.set(xlabel=diameter.label)
