@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from base import Array, Cost, described, part, quantity, record
 from flankfilm.coupling import film_points
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import FilmModel, PathFilms, film_inside
+from flankfilm.coupling.least_film import least_of
 
 
 @record
@@ -56,10 +58,25 @@ class FilmAlongPath:
     converged: bool = True
     message: str = ""
 
-    @described("m", shown="um", error="error")
+    @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:
-        """Least film along the path."""
-        return float(self.minimum_thickness.min())
+        """Least film along the path, between the films as well."""
+        return self._least[0]
+
+    @property
+    def least_film_error(self) -> float | None:
+        """Relative error of the least film and film ratio: of the films and of their steps; None by formula."""
+        value, off = self._least
+        return None if self.error is None else float(np.hypot(self.error, off / value))
+
+    @described("1", error="least_film_error")
+    def least_film_ratio(self) -> float | None:
+        """Least film ratio Lambda along the path, between the films as well; None for smooth flanks."""
+        return None if self.film_ratio is None else least_of(self.film_ratio, self.load)[0]
+
+    @cached_property
+    def _least(self) -> tuple[float, float]:
+        return least_of(self.minimum_thickness, self.load)
 
     @described("Pa", shown="GPa")
     def greatest_pressure(self) -> float:

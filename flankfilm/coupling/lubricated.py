@@ -75,10 +75,15 @@ class LubricatedCycle(MeshCycle):
         others = {name: one.against(reference, bore_inertia) for name, one in self.otherwise.items()}
         return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
 
-    @described("m", shown="um")
+    @described("m", shown="um", error="thinnest_film_error")
     def thinnest_film(self) -> float:
-        """Least film of all pairs and positions."""
-        return float(np.nanmin(self.least_film))
+        """Least film of all pairs along the path."""
+        return self.film.least_film
+
+    @property
+    def thinnest_film_error(self) -> float | None:
+        """Relative error of the least film; None by formula."""
+        return self.film.least_film_error
 
     @described("1", shown="%")
     def secant_stiffness_change(self) -> float:

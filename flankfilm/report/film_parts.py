@@ -121,7 +121,8 @@ def _ends(curve: Array) -> tuple[float, float]:
 def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
     stage = cycle.film
-    note = f"error {percent(stage.error)}" if stage.error is not None else "by formula; model error unknown"
+    off = stage.least_film_error
+    note = f"error {percent(off)}" if off is not None else "by formula; model error unknown"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
     shown = [
@@ -133,5 +134,5 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
         shown.append(Headline("starved film over flooded", f"{stage.starvation.min():.3g}", supply))
     if stage.film_ratio is not None and stage.asperity_share is not None:
         share = f"asperities carry up to {percent(stage.asperity_share.max())}"
-        shown.append(Headline("least film ratio Lambda", f"{stage.film_ratio.min():.3g}", share))
+        shown.append(Headline("least film ratio Lambda", f"{stage.least_film_ratio:.3g}", f"{note}; {share}"))
     return shown

@@ -290,7 +290,7 @@ OUTPUTS: Mapping[str, Output] = dict(
             Figure("1", "least over central film of the contact at C"),
             lambda film: film.minimum_thickness / film.central_thickness,
         ),
-        _film("film_ratio", np.min, said="least {} along the path; nan if smooth"),
+        _film("least_film_ratio", name="film_ratio", said="{}; nan if smooth"),
         _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
         _film("starvation", np.min, said="least {} along the path; nan if flooded"),
         _output(
