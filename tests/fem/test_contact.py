@@ -149,7 +149,7 @@ def test_tip_relief_is_a_gap():
     assert b.gaps[3, 0] == pytest.approx(float(wanted), rel=1e-12)
 
 
-def test_film_is_in_series_with_each_pair_before_sharing(article_pair, article_bodies, path_only):
+def test_film_is_in_series_with_each_pair_before_sharing(article_pair):
     """A film as a linear spring of k_f: each pair's compliance grows by 1/k_f, its separation cancels out."""
     k_film = 2e9
 
@@ -157,7 +157,11 @@ def test_film_is_in_series_with_each_pair_before_sharing(article_pair, article_b
         def __call__(self, rho1, forces):
             return 30e-6 - forces / k_film, np.full_like(forces, -1 / k_film)
 
-    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False, film=Spring())
+    loose = article_pair.with_backlash(200e-6)  # with none such films would press the back flanks as well
+    bodies = fem.compliance(loose)
+    path_only, cycle = (
+        fem.mesh_cycle(loose, 600.0, 40, bodies, beyond_path=False, film=film) for film in (None, Spring())
+    )
     row = int(np.flatnonzero((path_only.forces > 0).sum(axis=1) == 1)[3])
     assert 1 / cycle.stiffness[row] == pytest.approx(1 / path_only.stiffness[row] + 1 / k_film, rel=1e-9)
     more = cycle.transmission_error[row] - path_only.transmission_error[row]
@@ -184,7 +188,7 @@ def test_all_faults_at_once(article_pair, article_bodies):
     with pytest.raises(InputError) as caught:
         fem.mesh_cycle(other, float("inf"), 0, article_bodies)
     assert {fault.where for fault in caught.value.faults} == {"torque", "positions", "compliance"}
-    for torque in (0.0, -5.0, float("nan")):
+    for torque in (0.0, float("nan")):  # back flanks bear under a negative one
         with pytest.raises(InputError, match="torque"):
             fem.mesh_cycle(article_pair, torque, 40, article_bodies)
 
