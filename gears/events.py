@@ -32,6 +32,9 @@ HALVINGS = 1
 LOOKS = 4
 """Most divisions of an arc where a switch may turn for a moment."""
 
+ALIKE = 1e-6
+"""Width of the bracket in which an event of slightly different gears is left [base pitches]: they give an estimate."""
+
 SHORTEST = 1e-8
 """Arcs shorter than this are one event [base pitches]."""
 
@@ -172,7 +175,7 @@ class _Search:
                 if len(turns) != 1 or not np.all(np.isfinite(reserve)):
                     return None
                 brackets.append(Bracket(switch, place, reserve, int(turns[0])))
-            for (number, _), end in zip(known, self._located(brackets), strict=True):
+            for (number, _), end in zip(known, self._located(brackets, ALIKE), strict=True):
                 ends[number] = end
         pieces = [Piece.between(*both) for both in pairwise(ends)]
         degrees = [arc.values.shape[1] - 1 for arc in division.arcs.arcs]
@@ -224,9 +227,9 @@ class _Search:
         arc = piece.arc()
         return bool(np.all(arc.tail * min(1.0, 4.0 * arc.width) <= self.tolerance * size))
 
-    def _located(self, brackets: list[Bracket]) -> list[End]:
-        """Events in brackets, all at once."""
-        while wide := [one for one in brackets if one.width > LOCATED]:
+    def _located(self, brackets: list[Bracket], width: float = LOCATED) -> list[End]:
+        """Events in brackets, all at once, to a width [base pitches]."""
+        while wide := [one for one in brackets if one.width > width]:
             asked = [one.asked() for one in wide]
             found, start = self.ask(np.concatenate(asked)).reserve, 0
             for one, places in zip(wide, asked, strict=True):

@@ -1,0 +1,162 @@
+"""Reported against true errors of every figure of a mesh cycle, over random pairs.
+
+Pairs of `tests/hard/random_pairs.py` (8 to 200 teeth, thick and thin rims, shifts, racks, tips), some of plastic, some
+with tip relief, friction, or held to the path, under full to light load. True: one refinement more, and a hundredth
+of the tolerance; what is left of the mesh's error makes true errors smaller by about a tenth. Prints a line for each
+pair, and for each figure the quantiles of the ratio, with the part of the pairs between 0.5 and 5. True errors below a
+hundredth of the tolerance, that of the reference, count as that. Run from the root with
+``PYTHONPATH=. python tests/validation/studies/figure_errors.py [pairs] [seed]``.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import warnings
+from collections import defaultdict
+from dataclasses import replace
+
+import numpy as np
+
+import fem
+from base import InputError
+from fem.fillet_influence import fillets
+from fem.tooth_root import root_stress
+from gears import Material, TipRelief
+from gears.mesh_figures import MeshArcs
+from tests.hard.random_pairs import random_pair
+
+STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
+
+LINE_LOAD, SOFT = 440e3, 0.015
+"""Greatest load [N per m of face], and the part of it that a plastic gear bears."""
+
+TOLERANCE, FLOOR = 1e-3, 1e-5
+
+ORDERS = np.array([1, 2, 3])
+
+FIGURES = {
+    "mean, tangent": lambda found: found.mean("stiffness"),
+    "mean, secant": lambda found: found.mean("secant_stiffness"),
+    "transmission error, peak to peak": lambda found: found.range("transmission_error"),
+    "least tangent": lambda found: found.extreme("stiffness", greatest=False),
+    "greatest tangent": lambda found: found.extreme("stiffness", greatest=True),
+    "least secant": lambda found: found.extreme("secant_stiffness", greatest=False),
+    "greatest secant": lambda found: found.extreme("secant_stiffness", greatest=True),
+    "greatest load share": lambda found: found.greatest_share(),
+}
+
+CURVES = {"tangent": "stiffness", "secant": "secant_stiffness", "transmission error": "transmission_error"}
+
+
+def drawn(rng: np.random.Generator):
+    """A pair, its torque, and how it is set up."""
+    while True:
+        pair, chance = random_pair(rng), rng.random(9)
+        if pair is None:
+            continue
+        gears = [pair.pinion, pair.wheel]
+        if chance[0] < 0.4:
+            form = "linear" if chance[3] < 0.5 else "parabolic"
+            relief = TipRelief(5e-6 + 2.5e-5 * chance[1], (0.25 + 0.5 * chance[2]) * pair.module, form)
+            gears = [replace(gear, tip_relief=relief) for gear in gears]
+        soft = chance[4] < 0.25
+        material = ((STEEL, PLASTIC) if chance[5] < 0.5 else PLASTIC) if soft else STEEL
+        try:
+            pair = replace(pair, pinion=gears[0], wheel=gears[1], material=material)
+        except InputError:
+            continue
+        load = LINE_LOAD * (1.0, 0.1, 0.02)[int(3 * chance[6])] * (SOFT if soft else 1.0)
+        options = {"friction": 0.08 if chance[7] < 0.2 else 0.0, "beyond_path": bool(chance[8] < 0.8)}
+        return pair, float(load * pair.face_width * pair.base_radii[0]), options
+
+
+def solved(pair, torque, options, bodies, tolerance):
+    """Cycle under the torque or, where teeth cannot bear it, a part of it; its arcs, on the finer mesh alone."""
+    for _ in range(3):
+        cycle = fem.mesh_cycle(pair, torque, 8, bodies, tolerance=tolerance, **options)
+        if cycle.converged:
+            return cycle
+        torque *= 0.2
+    return None
+
+
+def ratios(usual: MeshArcs, best: MeshArcs) -> dict[str, float]:
+    """Reported over true errors by figure."""
+    found = {}
+    for name, figure in FIGURES.items():
+        ours, true = figure(usual), figure(best).value
+        assert ours.error is not None
+        found[name] = ours.error / max(abs(ours.value - true), FLOOR * abs(true))
+    for title, name in CURVES.items():
+        relative = name != "transmission_error"
+        ours, error = usual.amplitudes(name, ORDERS, over_mean=relative)
+        true, _ = best.amplitudes(name, ORDERS, over_mean=relative)
+        # over the mean, or the range, of which harmonics are parts
+        size = 1.0 if relative else best.range(name).value
+        assert error is not None
+        for order, ratio in zip(ORDERS, error / np.maximum(np.abs(ours - true), FLOOR * size), strict=True):
+            found[f"harmonic {order}, {title}"] = float(ratio)
+    return found
+
+
+def root_ratios(pair, usual, best) -> dict[str, float]:
+    """Reported over true errors of the greatest root stresses by instants and forces: the fillets are the same."""
+    roots = fillets(pair, 0.02)
+    first, second = (root_stress(pair, cycle, roots) for cycle in (usual, best))
+    found = {}
+    for gear in ("pinion", "wheel"):
+        ours, true = (getattr(one, gear).greatest_tension_Pa for one in (first, second))
+        reported = first.error - roots.error
+        found[f"root tension, {gear}"] = reported / max(abs(ours / true - 1), FLOOR)
+    return found
+
+
+def main(count: int, seed: int) -> None:
+    found = defaultdict(list)
+    for number in range(count):
+        pair, torque, options = drawn(np.random.default_rng([seed, number]))
+        began = time.process_time()
+        bodies = fem.compliance(pair, TOLERANCE, tip_edges=True)
+        usual = solved(pair, torque, options, bodies, TOLERANCE)
+        who = f"{number} z {pair.pinion.teeth}/{pair.wheel.teeth}"
+        if usual is None:
+            print(f"{who}: no solution", flush=True)
+            continue
+        middle = time.process_time()
+        finer = fem.compliance(
+            pair, 1e-5, sizes=bodies.sizes, refinements=bodies.refinements + 1, tip_edges=True
+        )
+        best = fem.mesh_cycle(pair, usual.torque, 8, finer, tolerance=0.01 * TOLERANCE, **options)
+        assert usual.arcs is not None
+        assert best.problem is not None
+        reference = MeshArcs(best.problem.divided(), None, 1.0, 0.0)
+        here = ratios(usual.arcs, reference)
+        if not options["friction"] and pair.contact_ratio < 2:
+            best.__dict__["_found"] = reference
+            here |= root_ratios(pair, usual, best)
+        for name, ratio in here.items():
+            found[name].append(ratio)
+        least, most = min(here, key=here.get), max(here, key=here.get)
+        seconds = f"{middle - began:.1f} and {time.process_time() - middle:.1f} s"
+        print(
+            f"{who}, {usual.torque:.3g} N m: least {here[least]:.2g} ({least}), most {here[most]:.3g} ({most}); "
+            f"{seconds}",
+            flush=True,
+        )
+        if number % 5 == 4 or number == count - 1:
+            show(found)
+
+
+def show(found) -> None:
+    """Quantiles of the ratios by figure."""
+    print(f"{'reported over true error':34} pairs   0, 5, 50, 95, 100 %                       0.5 to 5")
+    for name, values in found.items():
+        columns = " ".join(f"{v:8.2f}" for v in np.percentile(values, [0, 5, 50, 95, 100]))
+        inside = np.mean([0.5 <= value <= 5 for value in values])
+        print(f"{name:34} {len(values):5} {columns} {100 * inside:8.0f} %", flush=True)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore")
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 40, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
