@@ -21,6 +21,7 @@ from fem.fillet_influence import FilletInfluence, Fillets
 from fem.fillet_influence import fillets as _fillets
 from fem.setting import Setting
 from gears.arcs import FORCE, Arcs
+from gears.mesh_figures import MeshArcs
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -53,6 +54,9 @@ class RootPeak:
     )
     along_Pa: Array = quantity("Pa", "stress along that fillet at that instant", "sample", shown="MPa")
     sampling: float = quantity("1", "estimated relative error by what is greater between the instants")
+    forces: float = quantity(
+        "1", "estimated relative error by the forces, from those of the mesh before the last refinement"
+    )
 
 
 @record
@@ -227,18 +231,16 @@ def root_stress(
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = watch.seconds
     pinion, wheel = (
-        _gear_stress(pair, cycle, arcs.arcs, influence, gear)
+        _gear_stress(pair, cycle, arcs, influence, gear)
         for gear, influence in enumerate((roots.pinion, roots.wheel))
     )
-    sampling = max(
-        peak.sampling for one in (pinion, wheel) for peak in (one.greatest_tension, one.greatest_compression)
-    )
+    peaks = [peak for one in (pinion, wheel) for peak in (one.greatest_tension, one.greatest_compression)]
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
     cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
         pinion,
         wheel,
-        roots.error + cycle.error + sampling,
+        roots.error + max(peak.forces + peak.sampling for peak in peaks),
         cost,
         roots.converged and cycle.converged,
         roots.message,
@@ -246,22 +248,18 @@ def root_stress(
 
 
 def _gear_stress(
-    pair: GearPair, cycle: MeshCycle, arcs: Arcs, influence: FilletInfluence, gear: int
+    pair: GearPair, cycle: MeshCycle, found: MeshArcs, influence: FilletInfluence, gear: int
 ) -> GearRootStress:
     """Stress at the cycle's positions, and the greatest at all nodes of its arcs."""
     offsets = cycle.pair_offset
     teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
     forces = _Forces(offsets, teeth, pair.face_width, gear)
     total = forces.stress(influence, cycle.forces, cycle.flank_rho[gear])
-    nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
-    assert len(nodes) == len(arcs.arcs)  # of finite elements
-    every = np.concatenate(nodes)
-    at_nodes = forces.stress(influence, every[..., FORCE], every[..., FORCE + 1 + gear])
+    at_nodes = forces.at_nodes(influence, found.arcs)
+    before = at_nodes if found.before is None else forces.at_nodes(influence, found.before)
     low, high = at_nodes.min(axis=(0, 1)), at_nodes.max(axis=(0, 1))
-    position = _positions(cycle, arcs)
-    tension, compression = (
-        _peak(arcs, position, influence, teeth, at_nodes, side) for side in (LOADED, OTHER)
-    )
+    nodes = _Nodes(found.arcs, _positions(cycle, found.arcs), teeth, at_nodes, before, found.gain)
+    tension, compression = (_peak(nodes, influence, side) for side in (LOADED, OTHER))
     return GearRootStress(
         influence.line,
         influence.law,
@@ -295,6 +293,25 @@ class _Forces:
                 total[rows, i] += line_load * influence.stress(turn * int(tooth - offset), rho[rows, column])
         return total
 
+    def at_nodes(self, influence: FilletInfluence, arcs: Arcs) -> Array:
+        """Stress at all nodes of arcs, one after the other."""
+        nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
+        assert len(nodes) == len(arcs.arcs)  # of finite elements
+        every = np.concatenate(nodes)
+        return self.stress(influence, every[..., FORCE], every[..., FORCE + 1 + self.gear])
+
+
+@record
+class _Nodes:
+    """Stress at all nodes of a cycle's arcs (n, teeth, 2, samples), and with the forces of the mesh before."""
+
+    arcs: Arcs
+    position: Array
+    teeth: Integers
+    stress: Array
+    before: Array
+    gain: float
+
 
 def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
     """Positions of the loaded flanks at all nodes of the arcs, as `MeshCycle.loaded_position`."""
@@ -307,28 +324,28 @@ def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
     return np.concatenate(found)
 
 
-def _peak(
-    arcs: Arcs, position: Array, influence: FilletInfluence, teeth: Integers, stress: Array, side: int
-) -> RootPeak:
-    """Greatest stress on one side of all teeth (nodes, teeth, 2, samples), and what is missed between the nodes."""
+def _peak(nodes: _Nodes, influence: FilletInfluence, side: int) -> RootPeak:
+    """Greatest stress on one side of all teeth, and what is missed between the nodes."""
     line, law, sign = influence.line, influence.law, 1.0 if side == LOADED else -1.0
-    most, arc = _extreme(line.arc, sign * stress[:, :, side])
-    ends = np.cumsum([len(one.position) for one in arcs.arcs])[:-1]
+    most, arc = _extreme(line.arc, sign * nodes.stress[:, :, side])
+    coarse, _ = _extreme(line.arc, sign * nodes.before[:, :, side])
+    ends = np.cumsum([len(one.position) for one in nodes.arcs.arcs])[:-1]
     row, column = np.unravel_index(np.argmax(most), most.shape)
     value, place = float(most[row, column]), float(arc[row, column])
-    greatest, error = arcs.with_curves("tooth", np.split(most, ends)).greatest_of_all()
+    greatest, error = nodes.arcs.with_curves("tooth", np.split(most, ends)).greatest_of_all()
     nu = law.nu if law.plane == "strain" else 0.0
     point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
     return RootPeak(
         sign * value,
         float(np.sqrt(1 - nu + nu**2)) * value,
-        int(teeth[column]),
-        float(position[row] + teeth[column]),
+        int(nodes.teeth[column]),
+        float(nodes.position[row] + nodes.teeth[column]),
         place,
         float(np.interp(place, line.arc, line.tangent_angle)),
         point * MIRROR if side == LOADED else point,
-        stress[row, column, side],
+        nodes.stress[row, column, side],
         (greatest + error) / value - 1.0,
+        abs(float(coarse.max()) / value - 1.0) / nodes.gain,
     )
 
 

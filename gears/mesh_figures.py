@@ -114,7 +114,8 @@ class MeshArcs:
             others = arcs.shares()
             return value if others is None else others.greatest_of_all()[0]
 
-        return self._estimate(value, error, greatest)
+        # what all pairs have alike changes no share
+        return self._estimate(value, error, greatest, alike=False)
 
     def harmonics(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
         """Complex amplitudes of harmonics of the mesh frequency, and their errors, in the curve's unit."""
@@ -156,12 +157,15 @@ class MeshArcs:
             rest = np.hypot(rest, share * np.abs(value - figure(arcs)))
         return value, change, rest
 
-    def _estimate(self, value: float, sampling: float, figure: Callable[[Arcs], float]) -> Estimate:
+    def _estimate(
+        self, value: float, sampling: float, figure: Callable[[Arcs], float], alike: bool = True
+    ) -> Estimate:
         if self.other is None:
             return Estimate(value, None)
+        other = self.other * value if alike else 0.0
         mesh = 0.0 if self.before is None else abs(value - figure(self.before)) / self.gain
         varied = (share * abs(value - figure(arcs)) for arcs, share in self.varied)
-        return Estimate(value, hypot(sampling, mesh, self.other * value, *varied))
+        return Estimate(value, hypot(sampling, mesh, other, *varied))
 
 
 class MeshFigures(ABC):

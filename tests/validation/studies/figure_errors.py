@@ -3,8 +3,8 @@
 Pairs of `tests/hard/random_pairs.py` (8 to 200 teeth, thick and thin rims, shifts, racks, tips), some of plastic, some
 with tip relief, friction, or held to the path, under full to light load. True: one refinement more, and a hundredth
 of the tolerance; what is left of the mesh's error makes true errors smaller by about a tenth. Prints a line for each
-pair, and for each figure the quantiles of the ratio, with the part of the pairs between 0.5 and 5. True errors below a
-hundredth of the tolerance, that of the reference, count as that. Run from the root with
+pair, and for each figure the quantiles of the ratio, with the part of the pairs between 0.5 and 5. Errors below a
+thousandth of the tolerance, what the reference's arcs may leave out, count as that. Run from the root with
 ``PYTHONPATH=. python tests/validation/studies/figure_errors.py [pairs] [seed]``.
 """
 
@@ -14,15 +14,16 @@ import sys
 import time
 import warnings
 from collections import defaultdict
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 import fem
-from base import InputError
+from base import InputError, SolverError
 from fem.fillet_influence import fillets
 from fem.tooth_root import root_stress
-from gears import Material, TipRelief
+from gears import LoadSharingError, Material, TipRelief
 from gears.mesh_figures import MeshArcs
 from tests.hard.random_pairs import random_pair
 
@@ -31,7 +32,7 @@ STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
 LINE_LOAD, SOFT = 440e3, 0.015
 """Greatest load [N per m of face], and the part of it that a plastic gear bears."""
 
-TOLERANCE, FLOOR = 1e-3, 1e-5
+TOLERANCE, FLOOR = 1e-3, 1e-6
 
 ORDERS = np.array([1, 2, 3])
 
@@ -55,7 +56,9 @@ def drawn(rng: np.random.Generator):
         pair, chance = random_pair(rng), rng.random(9)
         if pair is None:
             continue
-        gears = [pair.pinion, pair.wheel]
+        # backlash, so that one side of the teeth bears alone
+        play = 0.03 * pair.module
+        gears = [replace(gear, thickness_allowance=play) for gear in (pair.pinion, pair.wheel)]
         if chance[0] < 0.4:
             form = "linear" if chance[3] < 0.5 else "parabolic"
             relief = TipRelief(5e-6 + 2.5e-5 * chance[1], (0.25 + 0.5 * chance[2]) * pair.module, form)
@@ -74,9 +77,10 @@ def drawn(rng: np.random.Generator):
 def solved(pair, torque, options, bodies, tolerance):
     """Cycle under the torque or, where teeth cannot bear it, a part of it; its arcs, on the finer mesh alone."""
     for _ in range(3):
-        cycle = fem.mesh_cycle(pair, torque, 8, bodies, tolerance=tolerance, **options)
-        if cycle.converged:
-            return cycle
+        with suppress(SolverError, LoadSharingError):
+            cycle = fem.mesh_cycle(pair, torque, 8, bodies, tolerance=tolerance, **options)
+            if cycle.converged and cycle.arcs is not None:
+                return cycle
         torque *= 0.2
     return None
 
@@ -87,7 +91,7 @@ def ratios(usual: MeshArcs, best: MeshArcs) -> dict[str, float]:
     for name, figure in FIGURES.items():
         ours, true = figure(usual), figure(best).value
         assert ours.error is not None
-        found[name] = ours.error / max(abs(ours.value - true), FLOOR * abs(true))
+        found[name] = _ratio(ours.error, ours.value - true, abs(true))
     for title, name in CURVES.items():
         relative = name != "transmission_error"
         ours, error = usual.amplitudes(name, ORDERS, over_mean=relative)
@@ -95,9 +99,15 @@ def ratios(usual: MeshArcs, best: MeshArcs) -> dict[str, float]:
         # over the mean, or the range, of which harmonics are parts
         size = 1.0 if relative else best.range(name).value
         assert error is not None
-        for order, ratio in zip(ORDERS, error / np.maximum(np.abs(ours - true), FLOOR * size), strict=True):
-            found[f"harmonic {order}, {title}"] = float(ratio)
+        for place, order in enumerate(ORDERS):
+            ratio = _ratio(float(error[place]), float(ours[place] - true[place]), size)
+            found[f"harmonic {order}, {title}"] = ratio
     return found
+
+
+def _ratio(reported: float, true: float, size: float) -> float:
+    """Reported over true error of a figure, of which a size is given."""
+    return max(reported, FLOOR * size) / max(abs(true), FLOOR * size)
 
 
 def root_ratios(pair, usual, best) -> dict[str, float]:
@@ -108,7 +118,7 @@ def root_ratios(pair, usual, best) -> dict[str, float]:
     for gear in ("pinion", "wheel"):
         ours, true = (getattr(one, gear).greatest_tension_Pa for one in (first, second))
         reported = first.error - roots.error
-        found[f"root tension, {gear}"] = reported / max(abs(ours / true - 1), FLOOR)
+        found[f"root tension, {gear}"] = _ratio(reported, ours / true - 1, 1.0)
     return found
 
 
@@ -134,7 +144,8 @@ def main(count: int, seed: int) -> None:
         here = ratios(usual.arcs, reference)
         if not options["friction"] and pair.contact_ratio < 2:
             best.__dict__["_found"] = reference
-            here |= root_ratios(pair, usual, best)
+            with suppress(InputError):  # some fillets fold the elements of so coarse a mesh
+                here |= root_ratios(pair, usual, best)
         for name, ratio in here.items():
             found[name].append(ratio)
         least, most = min(here, key=here.get), max(here, key=here.get)
