@@ -43,20 +43,46 @@ class Flanks:
         Coefficient of friction by which the forces are tilted.
     base_pitch_difference : float
         Base pitch of the pinion less that of the wheel, by unequal temperatures [m].
-    moving_contact : bool
-        Whether contacts on the path move under load.
+    moving_contact : bool, optional
+        Whether contacts on the path move under load; unless given those of plastics do (`contacts_move`).
     """
 
     beyond_path: bool = True
     deviations: tuple[gears.GearDeviations | None, gears.GearDeviations | None] | None = None
     tip_rounding: tuple[float, float] = (0.0, 0.0)
     friction: float = 0.0
-    moving_contact: bool = True
+    moving_contact: bool | None = None
     base_pitch_difference: float = 0.0
 
 
 PLAIN_FLANKS = Flanks()
-"""Sharp edges without deviations or friction; they may touch outside the path, and contacts move under load."""
+"""Sharp edges without deviations or friction; they may touch outside the path."""
+
+COMPLIANT = 30e9
+"""Young's modulus below which contacts move unless it is said [Pa]: plastics, not metals."""
+
+
+def contacts_move(pair: gears.GearPair, asked: bool | None) -> bool:
+    """Whether contacts on the path move under load.
+
+    With metals their motion changes the stiffness by 0.1 %, no more than the law of the material leaves open, and what
+    corners of the tips do just inside the path counts for more, which only contacts that stay have; with a plastic
+    gear it is 1 to 5 %.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    asked : bool or None
+        What was asked for; None decides by the softer material.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> contacts_move(pair, None), contacts_move(pair, True)
+    (False, True)
+    """
+    return min(one.youngs_modulus for one in pair.material) < COMPLIANT if asked is None else asked
 
 
 class TeethOptions(TypedDict, total=False):
@@ -127,7 +153,9 @@ class LoadedTeeth:
     @property
     def setting(self) -> dict[str, Any]:
         """What `fem.mesh_cycle` takes beside pair, torque and positions."""
-        return {"compliance": self.compliance, "reference": self.reference, **vars(self.flanks)}
+        moves = contacts_move(self.pair, self.flanks.moving_contact)
+        given = {**vars(self.flanks), "moving_contact": moves}
+        return {"compliance": self.compliance, "reference": self.reference, **given}
 
     @property
     def force(self) -> float:

@@ -81,10 +81,10 @@ class StiffnessSection(Section):
     contact_beyond_path: bool = key(
         "whether loaded teeth may touch outside A..E with their tip edges", True, shown=True
     )
-    moving_contact: bool = key(
-        "whether contacts of coupled finite elements move along the flanks under load; matters with plastics",
-        True,
-        shown=True,
+    moving_contact: bool | None = key(
+        "whether contacts of coupled finite elements move along the flanks under load; those of plastics if left out",
+        None,
+        such_as=True,
     )
     mean_N_per_m: float | None = key(
         "mean of a given stiffness; 1 if left out", None, limit=Limit(1.0, 1e15, "N/m"), such_as=7.6e8

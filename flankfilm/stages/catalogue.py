@@ -20,6 +20,7 @@ from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, ti
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
+from flankfilm.coupling.loaded_teeth import contacts_move
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
@@ -105,7 +106,7 @@ def BODIES(run: Engine) -> fem.Compliance:
             plane=scene.stiffness.plane,
             supports=supports(scene),
             tip_edges=scene.stiffness.contact_beyond_path,
-            motion=scene.stiffness.moving_contact,
+            motion=contacts_move(pair, scene.stiffness.moving_contact),
             kept=run.parts,
         )
     return believed(found, "tooth compliance")

@@ -167,20 +167,21 @@ def test_speeds_need_scales_and_one_range():
             ff.jump_speeds(motion, **ranges)
 
 
-def test_contacts_move_unless_they_are_told_to_stay():
+def test_contacts_of_plastics_move_unless_they_are_told_to_stay():
     """With a plastic wheel it counts; scene, plain call and finite elements mean the same."""
     text = HEAD.replace("WANTS", '"stiffness"') + ARTICLE.replace(
         "pinion_torque_Nm = 600", "pinion_torque_Nm = 50"
     )
     plastic = text.replace("[material]", "[material.pinion]", 1) + (
-        "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n"
-        "[stiffness]\nmodel = 'fem'\nmoving_contact = MOVES\n"
+        "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n[stiffness]\nmodel = 'fem'\n# MOVES\n"
     )
     cycles = {}
     for moves in (True, False):
-        run = Engine(ff.parse_scene(plastic.replace("MOVES", str(moves).lower())), Cache(None))
+        run = Engine(
+            ff.parse_scene(plastic.replace("# MOVES", "" if moves else "moving_contact = false")), Cache(None)
+        )
         cycles[moves] = cycle = run[DRY_CYCLE]
-        flanks = Flanks(moving_contact=moves)
+        flanks = Flanks() if moves else Flanks(moving_contact=False)
         plain = ff.mesh_cycle(gear_pair(run.scene), 50.0, tolerance=0.01, flanks=flanks)
         np.testing.assert_allclose(plain.stiffness, cycle.stiffness, rtol=1e-12)
         assert cycle.contact is not None
