@@ -82,7 +82,7 @@ def contacts_move(pair: gears.GearPair, asked: bool | None) -> bool:
     >>> contacts_move(pair, None), contacts_move(pair, True)
     (False, True)
     """
-    return min(one.youngs_modulus for one in pair.material) < COMPLIANT if asked is None else asked
+    return min(one.youngs_modulus for one in pair.materials) < COMPLIANT if asked is None else asked
 
 
 class TeethOptions(TypedDict, total=False):
