@@ -149,8 +149,7 @@ class ContactProblem:
             rho1 = np.where(where.touchable & ~where.edge, where.rho[0], np.nan)
             shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
             added = film_yielding(self.film, rho1, turned / found.kappa, shares)
-            # the film's part counts in proportion to the whole transmission error
-            secant = secant * moved / (moved + added)
+            secant = size / (size / secant + added) if size else secant
         if self.given.back:
             moved = -(self.given.pair.backlash + moved)
         lost = found.lever_loss(0)

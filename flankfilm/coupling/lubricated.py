@@ -293,9 +293,9 @@ class _Run:
         varied = (*own, (law.every_second(), BETWEEN))
         cycle = self.teeth.cycle(self.dry.position.size, law, tolerance, varied)
         if self.teeth.pairs == "coupled":
-            moved = self.teeth.lag(cycle.transmission_error)
             yields = film_yielding(law, cycle.rho1, cycle.forces, cycle.load_share)
-            cycle = replace(cycle, secant_stiffness=cycle.secant_stiffness * moved / (moved + yields))
+            force = self.teeth.force
+            cycle = replace(cycle, secant_stiffness=force / (force / cycle.secant_stiffness + yields))
         return replace(cycle, label=label)
 
     def otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
