@@ -146,7 +146,7 @@ def test_leaning_kernel_against_plain_finite_elements(article_pair):
     """A strip pulled obliquely on the whole annulus with fine elements at the tip, no singularity taken out."""
     profile = article_pair.teeth_profiles[1]
     fine = mesh_sector(profile, Sizes(flank=0.03), refinements=1)
-    gear, solve = whole_annulus(profile, mesh_sector(profile, refinements=1), {0: fine})
+    gear, solve = whole_annulus(mesh_sector(profile, refinements=1), {0: fine})
     edges, arcs = gear.nodes[0][fine.facets["flank_left"]], fine.parameters["flank_left"]
     end = profile.flank_rho[1] ** 2 / (2 * profile.base_radius)
     distance = end - arcs.mean(axis=1)
