@@ -209,7 +209,7 @@ def root_stress(
     >>> cycle = mesh_cycle(pair, 600.0, positions=8, compliance=compliance(pair, tolerance=0.05))
     >>> found = root_stress(pair, cycle, tolerance=0.1)
     >>> round(found.pinion_tension_Pa / 1e6, -1)
-    400.0
+    470.0
     """
     found = Faults()
     if fillets is not None and fillets.pair != pair:

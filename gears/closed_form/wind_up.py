@@ -105,7 +105,7 @@ def body_wind_up(zones: Sequence[Zone], base_radius: float, shear_modulus: float
     --------
     >>> from gears.blank import Zone
     >>> body_wind_up((Zone(30e-3, 33.5e-3, 1.0), Zone(16.75e-3, 30e-3, 0.3)), 33.83e-3, shear_modulus=79.2e9)
-    9.702...e-12
+    9.656...e-12
     """
     return sum(
         ring_wind_up(zone.outer, zone.inner, base_radius, shear_modulus) / zone.thickness for zone in zones

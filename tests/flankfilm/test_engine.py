@@ -113,7 +113,7 @@ def test_warnings_are_gathered_once_each():
 
 def test_each_stage_comes_after_what_it_needs_and_has_a_name_of_its_own():
     stages = [stage for stage in vars(catalogue).values() if isinstance(stage, Stage)]
-    assert len({stage.name for stage in stages}) == len(stages) == 21
+    assert len({stage.name for stage in stages}) == len(stages) == 22
     for number, stage in enumerate(stages):
         assert set(stage.needs) <= set(stages[:number])
 
@@ -146,7 +146,9 @@ def test_the_film_law_meets_value_and_slope_and_stays_positive():
     assert law(between, force)[1] == pytest.approx(apart, rel=1e-6)
     same = np.full((1, 4), 700.0)
     ends = law(at_films[:, :2], same[:, :2])[0][0]
-    weighted = [0.75 * ends[0] + 0.25 * ends[1], 0.5 * ends.sum(), ends[0], ends[1]]
+    # beyond the first and the last film the law goes on by half a step and no more
+    before, after = 1.5 * ends[0] - 0.5 * ends[1], 1.5 * ends[1] - 0.5 * ends[0]
+    weighted = [0.75 * ends[0] + 0.25 * ends[1], 0.5 * ends.sum(), before, after]
     assert law(between, same)[0][0] == pytest.approx(weighted, rel=1e-12)
     assert np.all(np.isfinite(law(between, np.zeros((1, 4)))[0]))
 
