@@ -15,8 +15,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 
-ENDS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
-"""Signals that ask for an end, beside Ctrl-C."""
+ENDS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""Signals that ask for an end; the first is Ctrl-C."""
+
+AGAIN = 3.0
+"""Seconds after which an end is asked for once more: what is raised within a destructor or a callback is lost."""
 
 LOOK = 0.5
 """Seconds between two looks whether a parent is still there."""
@@ -64,6 +67,14 @@ def answering_signals() -> Iterator[None]:
         return
 
     def end(number: int, _frame: object) -> None:
+        if hasattr(signal, "setitimer"):
+            signal.signal(signal.SIGALRM, lambda *_: stop(number))
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        stop(number)
+
+    def stop(number: int) -> None:
+        if number == signal.SIGINT:
+            raise KeyboardInterrupt
         raise Ended(number)
 
     # a signal that is ignored, as under nohup, stays so
@@ -73,6 +84,8 @@ def answering_signals() -> Iterator[None]:
     try:
         yield
     finally:
+        if hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         for one, handler in before.items():
             signal.signal(one, handler if handler is not None else signal.SIG_DFL)
 

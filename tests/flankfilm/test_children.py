@@ -108,6 +108,27 @@ def test_a_signal_becomes_an_exception_and_then_what_it_was():
     assert signal.getsignal(signal.SIGTERM) is before
 
 
+def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
+    """What is raised in a destructor is ignored there, with a note, and nothing would end."""
+
+    class Swallows:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
+    monkeypatch.setattr("sys.unraisablehook", lambda note: None)
+
+    def work() -> None:
+        with answering_signals():
+            Swallows()
+            time.sleep(5.0)
+
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert time.monotonic() - began < 3.0
+
+
 def test_a_child_ends_with_its_parent(tmp_path):
     """A command that watches its parent, whose parent is killed."""
     child = "from flankfilm.children import end_with_parent; import time; end_with_parent(); time.sleep(60)"
