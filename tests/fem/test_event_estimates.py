@@ -9,6 +9,9 @@ import fem
 from gears import Gear, GearPair, Material, TipRelief
 from meshes import Sizes
 
+ROUNDING = 1e-7
+"""Differences of figures below which they say nothing."""
+
 STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
 
 
@@ -43,7 +46,8 @@ def test_reported_errors_are_those_of_a_much_finer_mesh():
         best = fem.mesh_cycle(pair, torque, 8, fine, tolerance=1e-5, **options)
         for name, error in usual.errors.items():
             true = abs(getattr(usual, name) / getattr(best, name) - 1)
-            ratios.setdefault(name, []).append(error / true)
+            if true > ROUNDING:  # a pair that bears alone has all of the load on every mesh
+                ratios.setdefault(name, []).append(error / true)
     for name, found in ratios.items():
         assert min(found) > 0.5, (name, found)
         if name.startswith("mean") or name.endswith("range"):
