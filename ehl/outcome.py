@@ -16,21 +16,8 @@ from ehl.response import slopes
 from ehl.run import DRY, Run
 from ehl.supply import OilLayer
 
-_GRID_FACTOR = (
-    0.4,
-    0.55,
-)  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
-_STIFFENING = (
-    10.0,
-    15.0,
-)  # L between which the order falls from 2 to 1.5: of 600 random films 4 were off by up to
-# 1.29 times what the first factor says, all with L > 15
+_GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
-
-
-def grid_factor(level: Level) -> float:
-    """Error of a grid over its difference from the grid of half as many nodes."""
-    return float(np.interp(level.contact.moes_L, _STIFFENING, _GRID_FACTOR))
 
 
 def film_error(coarse: Level, fine: Level) -> float:
@@ -46,7 +33,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     names = ("central_thickness", "minimum_thickness", "separation")
     changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
-    return grid_factor(fine) * (profile + math.fsum(changes))
+    return _GRID_FACTOR * (profile + math.fsum(changes))
 
 
 def spike_error(coarse: Level, fine: Level) -> float:
@@ -66,7 +53,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     lost = _SEPARATION_LOSS * inlet
     change = before.separation / shown.separation - 1.0
-    off = grid_factor(fine) * abs(change) + lost
+    off = _GRID_FACTOR * abs(change) + lost
     steeper = slope_before.separation / slope.separation - 1.0
     errors = FilmErrors(
         film=error,
@@ -75,7 +62,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + lost,
         inlet=inlet,
         separation_shift=math.copysign(off, change),
-        slope_shift=grid_factor(fine) * steeper,
+        slope_shift=_GRID_FACTOR * steeper,
     )
     groups = fine.groups
     message = "converged"
