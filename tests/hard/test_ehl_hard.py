@@ -183,8 +183,8 @@ def test_random_contacts():
     films, beyond, above_half = check_random_contacts(2000, 200, 1025)
     # 99.9 % are expected; four more failures of the first start are chance
     assert sum(f.cost.counts["restarts"] == 0 for f in films) >= 1994
-    # an estimate, no bound: 4 of 600 films, all of L > 15, were beyond it, by up to 1.29 times; with as many a chance of
-    # 4e-4 has more than 6 of 200
+    # an estimate, no bound: 4 of 600 films, all of L > 15, were beyond it, by up to 1.29 times; more than 6 of 200 have
+    # a chance of 4e-4
     assert beyond <= 6
     assert above_half <= 1
 
