@@ -231,9 +231,11 @@ def _check(given: Setting, torque: Array, compliance: Compliance | None, referen
         found.number("torque", one, TORQUE)
     if compliance is not None and compliance.pair != given.pair:
         found.add("compliance", "of another pair", "must be of this pair", "compute it anew")
+    if not np.isfinite(given.base_pitch_difference):
+        found.add("base_pitch_difference", given.base_pitch_difference, "must be finite", "give metres")
     given.check(found)
     found.raise_if_any()
-    if np.any(torque == 0.0):
+    if np.any(torque == 0.0):  # needs a setting without faults
         play = float(np.max(contact_candidates(given).back_gap))
         if play >= 0.0:
             allowed = (
@@ -241,8 +243,6 @@ def _check(given: Setting, torque: Array, compliance: Compliance | None, referen
             )
             remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
             found.add("torque", "0", allowed, remedy)
-    if not np.isfinite(given.base_pitch_difference):
-        found.add("base_pitch_difference", given.base_pitch_difference, "must be finite", "give metres")
     found.raise_if_any()
 
 
