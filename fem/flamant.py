@@ -166,13 +166,7 @@ def hertz_stress(points: Array, centre: Array, inward: Array, half_width: float,
     sigma_x = -peak / a * (m * (1 + share) - 2 * z)
     sigma_z = -peak / a * m * (1 - share)
     tau = -peak / a * n * (m**2 - z**2) / total
-    side = np.array([-inward[1], inward[0]])
-    tensor: Array = (
-        np.multiply.outer(sigma_x, np.outer(side, side))
-        + np.multiply.outer(sigma_z, np.outer(inward, inward))
-        + np.multiply.outer(tau, np.outer(side, inward) + np.outer(inward, side))
-    )
-    return tensor
+    return _in_plane(sigma_x, sigma_z, tau, inward)
 
 
 def strips_stress(points: Array, centre: Array, inward: Array, strips: Array) -> Array:
@@ -201,10 +195,15 @@ def strips_stress(points: Array, centre: Array, inward: Array, strips: Array) ->
         sigma_x -= part * (turn + sines)
         sigma_z -= part * (turn - sines)
         tau += part * (np.cos(2 * first) - np.cos(2 * second))
+    return _in_plane(sigma_x, sigma_z, tau, inward)
+
+
+def _in_plane(along: Array, normal: Array, shear: Array, inward: Array) -> Array:
+    """Stresses (n, 2, 2) of components along a half-plane's edge and its normal into the body."""
     side = np.array([-inward[1], inward[0]])
     tensor: Array = (
-        np.multiply.outer(sigma_x, np.outer(side, side))
-        + np.multiply.outer(sigma_z, np.outer(inward, inward))
-        + np.multiply.outer(tau, np.outer(side, inward) + np.outer(inward, side))
+        np.multiply.outer(along, np.outer(side, side))
+        + np.multiply.outer(normal, np.outer(inward, inward))
+        + np.multiply.outer(shear, np.outer(side, inward) + np.outer(inward, side))
     )
     return tensor

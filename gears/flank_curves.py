@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Self, TypeVar
@@ -29,7 +30,7 @@ def check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
 
 
 @dataclass(frozen=True)
-class FlankCurve:
+class FlankCurve(ABC):
     """What curves over a flank have in common; a kind of curve names its values.
 
     ``smooth``: the monotone piecewise cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980,
@@ -43,14 +44,14 @@ class FlankCurve:
     rho: tuple[float, ...]  # m
 
     @property
+    @abstractmethod
     def values(self) -> tuple[float, ...]:
         """Values at the points [m]."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def form(self) -> str:
         """What is between the points."""
-        raise NotImplementedError
 
     def __repr__(self) -> str:
         """One line: how many points, and where."""

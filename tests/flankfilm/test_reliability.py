@@ -194,7 +194,7 @@ class TestManifest:
         assert "notes.txt" in summary(found)[-1]
         assert (folder / "notes.txt").read_text() == "mine"
 
-    @pytest.mark.parametrize("name", ["../mine", "/tmp/mine", "link/mine", "files.json", "a\0b"])
+    @pytest.mark.parametrize("name", ["../mine", "/mine", "link/mine", "files.json", "a\0b"])
     def test_a_changed_list_removes_nothing_outside(self, folder, name):
         mine, other = folder.parent / "mine", folder.parent / "elsewhere"
         mine.write_text("mine")
