@@ -1,6 +1,7 @@
 from .arrays import Array as Array
 from .arrays import Booleans as Booleans
 from .arrays import Integers as Integers
+from .compiled import heard_compiling as heard_compiling
 from .compiled import hide_compilation as hide_compilation
 from .cost import Cost as Cost
 from .cost import Stopwatch as Stopwatch
@@ -9,9 +10,12 @@ from .faults import Fault as Fault
 from .faults import FlankfilmError as FlankfilmError
 from .faults import FlankfilmWarning as FlankfilmWarning
 from .faults import InputError as InputError
+from .faults import PartWarning as PartWarning
 from .faults import RangeWarning as RangeWarning
 from .faults import SolverError as SolverError
 from .faults import printable as printable
+from .faults import rounded_down as rounded_down
+from .faults import rounded_up as rounded_up
 from .faults import shorten as shorten
 from .files import replacing as replacing
 from .files import sweep_temporaries as sweep_temporaries

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
 from base.cost import ASIDE, unclocked
+
+_HEARERS: list[Callable[[], None]] = []
+"""Called when a function is compiled."""
 
 
 @cache
@@ -35,4 +40,41 @@ def hide_compilation() -> None:
         def on_end(self, _event: Any) -> None:
             ASIDE.close()
 
+    class Herald(event.Listener):  # type: ignore[misc,unused-ignore]
+        """Says that a function is compiled, which takes seconds, rather than loaded."""
+
+        def on_start(self, _event: Any) -> None:
+            for hearer in tuple(_HEARERS):
+                hearer()
+
+        def on_end(self, _event: Any) -> None:
+            pass
+
     event.register("numba:compiler_lock", Listener())
+    event.register("numba:compile", Herald())
+
+
+@contextmanager
+def heard_compiling(hearer: Callable[[], None]) -> Iterator[None]:
+    """Call `hearer` whenever a function is compiled inside; what was kept by an earlier process is only loaded.
+
+    Parameters
+    ----------
+    hearer : callable
+        Without arguments.
+
+    Examples
+    --------
+    >>> hide_compilation()
+    >>> from numba import njit
+    >>> heard = []
+    >>> with heard_compiling(lambda: heard.append("compiling")):
+    ...     two = njit(lambda x: x + 1.0)(1.0)
+    >>> heard
+    ['compiling']
+    """
+    _HEARERS.append(hearer)
+    try:
+        yield
+    finally:
+        _HEARERS.remove(hearer)

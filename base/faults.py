@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import decimal
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,6 +88,10 @@ class RangeWarning(FlankfilmWarning):
     """A model used outside the range for which it was derived or fitted, or a result to be read with care."""
 
 
+class PartWarning(FlankfilmWarning):
+    """A part of what was asked for could not be computed; the others are there."""
+
+
 def printable(text: object) -> str:
     r"""Text for one line of a terminal: control characters, which could draw or hide things there, are spelt out.
 
@@ -96,6 +101,33 @@ def printable(text: object) -> str:
     'red\\x1b[31m'
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in str(text))
+
+
+def rounded_down(value: float, digits: int = 6) -> str:
+    """Text of an upper bound, so rounded that the number which is read keeps it.
+
+    Examples
+    --------
+    >>> rounded_down(0.0334567891), rounded_down(-1.23456, digits=3)
+    ('0.0334567', '-1.24')
+    """
+    return _rounded(value, digits, decimal.ROUND_FLOOR)
+
+
+def rounded_up(value: float, digits: int = 6) -> str:
+    """Text of a lower bound, or of what is to be added, so rounded that the number which is read is enough.
+
+    Examples
+    --------
+    >>> rounded_up(0.0334567891), rounded_up(1.0281, digits=4)
+    ('0.0334568', '1.029')
+    """
+    return _rounded(value, digits, decimal.ROUND_CEILING)
+
+
+def _rounded(value: float, digits: int, towards: str) -> str:
+    context = decimal.Context(prec=digits, rounding=towards)
+    return f"{float(context.create_decimal(repr(float(value)))):.{digits}g}"
 
 
 def shorten(value: object, limit: int = 60) -> str:

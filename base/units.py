@@ -17,6 +17,8 @@ FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "N/mm": 1e3,
     "N/(mm um)": 1e9,
     "MPa": 1e6,
+    "Pa^0.5": 1.0,
+    "MPa^0.5": 1e3,
     "GPa": 1e9,
     "1/GPa": 1e-9,
     "mm2/s": 1e-6,

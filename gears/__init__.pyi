@@ -14,6 +14,8 @@ from .heat import WarmPair as WarmPair
 from .heat import warm_pair as warm_pair
 from .hertz import half_width as half_width
 from .hertz import peak_pressure as peak_pressure
+from .inspection import Dimensions as Dimensions
+from .inspection import dimensions as dimensions
 from .load_sharing import LoadShare as LoadShare
 from .load_sharing import independent_pairs as independent_pairs
 from .load_sharing import share_load as share_load
@@ -22,6 +24,9 @@ from .material import Material as Material
 from .material import reduced_modulus as reduced_modulus
 from .meshing import MeshingCheck as MeshingCheck
 from .meshing import check_meshing as check_meshing
+from .named_materials import MATERIALS as MATERIALS
+from .named_materials import NamedMaterial as NamedMaterial
+from .named_materials import named_material as named_material
 from .pair import GearPair as GearPair
 from .path import PathOfContact as PathOfContact
 from .path import PathPoints as PathPoints

@@ -4,40 +4,25 @@ Between two events every curve of a mesh cycle is smooth, and a polynomial throu
 converges geometrically with its degree (L. N. Trefethen, Approximation Theory and Approximation Practice, 2013,
 doi:10.1137/1.9781611975949). Where a contact begins its stiffness starts as the inverse of a logarithm, which no
 polynomial follows; the nodes of such an arc crowd towards that end, as the cubes of Chebyshev points, so that what is
-left there has no weight. Each figure is computed twice: from all nodes of every arc and from every other one (as
-quadrature by C. W. Clenshaw and A. R. Curtis estimates itself, Numer. Math. 2, 1960, doi:10.1007/BF01386223). Their
-difference, times what coefficients have fallen by since the middle of the series, is the error that is left. It is
-taken arc by arc, as if the arcs' errors were independent.
+left there has little weight. What a series of degree n leaves out is estimated in ``gears.arc_series`` and goes through
+each figure, arc by arc, as if the arcs' errors were independent.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, Integers, part, quantity, record
+from gears.arc_series import ceiling, gauss, greatest_of, left_out, lobatto, to_series
 
-__all__ = ["FORCE", "SHARE", "Arc", "Arcs", "graded", "lobatto"]
+__all__ = ["FORCE", "SHARE", "Arc", "Arcs", "graded"]
 
 SHARE, FORCE = 0, 1
 """Kinds of `Arc.pairs`; the curvature radii follow them."""
-
-
-def lobatto(degree: int) -> Array:
-    """Chebyshev points of a degree from -1 to 1, both ends included (degree + 1,)."""
-    return np.asarray(-np.cos(np.pi * np.arange(degree + 1) / degree))
-
-
-@lru_cache(maxsize=16)
-def _to_series(degree: int) -> Array:
-    """Matrix from values at Chebyshev points to Chebyshev coefficients."""
-    matrix = np.linalg.inv(chebyshev.chebvander(lobatto(degree), degree))
-    matrix.setflags(write=False)
-    return np.asarray(matrix)
 
 
 def graded(unit: Array, towards: int) -> tuple[Array, Array]:
@@ -79,6 +64,11 @@ class Arc:
         return self.high - self.low
 
     @property
+    def crowded(self) -> bool:
+        """Whether its points crowd towards an end."""
+        return self.towards != 0
+
+    @property
     def position(self) -> Array:
         """Places of the values, base pitches."""
         return self.place(lobatto(self.values.shape[1] - 1))
@@ -102,40 +92,13 @@ class Arc:
     @property
     def series(self) -> Array:
         """Chebyshev coefficients of all curves (curves, degree + 1)."""
-        return np.asarray(self.values @ _to_series(self.values.shape[1] - 1).T)
+        return np.asarray(self.values @ to_series(self.values.shape[1] - 1).T)
 
     @property
     def tail(self) -> Array:
         """Largest of the last quarter of coefficients of every curve (curves,)."""
         series = self.series
         return np.asarray(np.max(np.abs(series[:, -max(2, series.shape[1] // 4) :]), axis=1))
-
-
-def _half(values: Array) -> Array:
-    """Series (n + 1,) through every other of n + 1 values at Chebyshev points, n even; zeros follow it."""
-    short = np.zeros(len(values))
-    some = values[::2]
-    short[: len(some)] = _to_series(len(some) - 1) @ some
-    return short
-
-
-def _left(series: Array) -> float:
-    """Error of a series over its difference from one of half the degree: what coefficients have fallen by, twice."""
-    degree = len(series) - 1
-    block, size = max(2, degree // 4), np.abs(series)
-    middle = degree // 2 + 1
-    after, before = float(np.max(size[-block:])), float(np.max(size[max(1, middle - block) : middle]))
-    return min(2.0 * after / before, 1.0) if before > 0.0 else 1.0
-
-
-@record
-class _Series:
-    """A curve on an arc: its series, that of half the degree, and the part of their difference that is left."""
-
-    arc: Arc
-    whole: Array
-    short: Array
-    left: float
 
 
 @record
@@ -151,13 +114,10 @@ class Arcs:
         """Where arcs meet, and both ends of all (arcs + 1,)."""
         return np.array([*(arc.low for arc in self.arcs), self.arcs[-1].high])
 
-    def _series(self, name: str) -> list[_Series]:
-        """Series of a curve on all arcs."""
-        row, found = self.names.index(name), []
-        for arc in self.arcs:
-            whole = arc.series[row]
-            found.append(_Series(arc, whole, _half(arc.values[row]), _left(whole)))
-        return found
+    def _series(self, name: str) -> list[tuple[Arc, Array]]:
+        """Arcs with the series of a curve."""
+        row = self.names.index(name)
+        return [(arc, to_series(arc.values.shape[1] - 1) @ arc.values[row]) for arc in self.arcs]
 
     def with_curves(self, prefix: str, values: Sequence[Array]) -> Arcs:
         """Arcs with other curves: their values at the nodes of every arc, (nodes, curves)."""
@@ -192,16 +152,16 @@ class Arcs:
         which = np.clip(np.searchsorted(starts, within, side="left" if before else "right") - 1, 0, None)
         found, every = np.empty(within.shape), self._series(name)
         for number in np.unique(which):
-            here, one = which == number, every[number]
-            found[here] = chebyshev.chebval(one.arc.unit(within[here]), one.whole)
+            here, (arc, series) = which == number, every[number]
+            found[here] = chebyshev.chebval(arc.unit(within[here]), series)
         return found
 
     def on_each(self, name: str, count: int) -> Array:
         """Values of a curve at so many equally spaced points of every arc, ends included, one after the other."""
         part = np.linspace(0.0, 1.0, count)
         values = [
-            chebyshev.chebval(one.arc.unit(one.arc.low + one.arc.width * part), one.whole)
-            for one in self._series(name)
+            chebyshev.chebval(arc.unit(arc.low + arc.width * part), series)
+            for arc, series in self._series(name)
         ]
         return np.asarray(np.concatenate(values))
 
@@ -214,17 +174,17 @@ class Arcs:
     ) -> tuple[float, float]:
         """Mean of a power of a curve, and its error by sampling; arguments as of `mean`."""
         total = square = width = 0.0
-        for one in self._series(name):
-            middle = (one.arc.low + 0.5 * one.arc.width) % 1.0
+        for arc, series in self._series(name):
+            middle = (arc.low + 0.5 * arc.width) % 1.0
             if between is not None and not between[0] < middle < between[1]:
                 continue
-            width += one.arc.width
-            t, weight = _gauss(power * len(one.whole) // 2 + 2)
-            weight = weight * one.arc.weight(t)
-            first, second = (
-                float(weight @ chebyshev.chebval(t, series) ** power) for series in (one.whole, one.short)
-            )
-            total, square = total + first, square + (one.left * (first - second)) ** 2
+            width += arc.width
+            degree = len(series) - 1
+            t, weight = gauss((power + 1) * degree // 2 + 3)
+            weight, values = weight * arc.weight(t), chebyshev.chebval(t, series)
+            total += float(weight @ values**power)
+            off = left_out(series, t, power * weight * values ** (power - 1), arc.crowded)
+            square += float(off @ off)
         return (total / width, square**0.5 / width) if width > 0.0 else (float("nan"), float("nan"))
 
     def extremes(self, name: str) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -237,9 +197,18 @@ class Arcs:
 
     def _greatest(self, name: str, sign: float) -> tuple[float, float]:
         """Greatest value of sign times a curve, times sign, and its error."""
-        found = [_greatest_of(sign * one.whole, sign * one.short, one.left) for one in self._series(name)]
-        greatest = max(value for value, _ in found)
-        above, below = (max(value + side * error for value, error in found) for side in (1.0, -1.0))
+        series = [(sign * one, arc.crowded) for arc, one in self._series(name)]
+        ceilings = [ceiling(one) for one, _ in series]
+        greatest = above = below = -np.inf
+        for number in np.argsort(ceilings)[::-1]:
+            if ceilings[number] < below:
+                break
+            value, error = greatest_of(*series[number])
+            greatest, above, below = (
+                max(greatest, value),
+                max(above, value + error),
+                max(below, value - error),
+            )
         return float(sign * greatest), max(above - greatest, greatest - below)
 
     def harmonics(self, name: str, orders: Sequence[int] | Integers) -> tuple[Array, Array]:
@@ -256,44 +225,30 @@ class Arcs:
         c, error : (orders,) arrays
             Complex, and real.
         """
+        found, parts = self.harmonics_and_parts(name, orders)
+        return found, np.linalg.norm(parts, axis=1)
+
+    def harmonics_and_parts(self, name: str, orders: Sequence[int] | Integers) -> tuple[Array, Array]:
+        """Complex amplitudes, and their errors by sampling part by part: an arc's has the phase of its place.
+
+        Parameters
+        ----------
+        name, orders
+            As of `harmonics`.
+
+        Returns
+        -------
+        c, parts : (orders,) and (orders, parts) arrays
+            Complex; the parts of the errors but for their signs.
+        """
         order = np.asarray(orders, dtype=float)
-        total, square = np.zeros(len(order), dtype=complex), np.zeros(len(order))
-        for one in self._series(name):
+        total, parts = np.zeros(len(order), dtype=complex), []
+        for arc, series in self._series(name):
             # nodes for the polynomial, and for the waves of the highest order over the arc
-            waves = np.pi * float(order.max(initial=0.0)) * one.arc.width
-            crowded = 1 if one.arc.towards == 0 else 3
-            t, weight = _gauss(len(one.whole) + 12 + int(np.ceil(crowded * waves)))
-            weight = weight * one.arc.weight(t) * 2 / self.pitches
-            wave = np.exp(-2j * np.pi * order[:, None] * one.arc.place(t)) * weight
-            first, second = (wave @ chebyshev.chebval(t, series) for series in (one.whole, one.short))
-            total, square = total + first, square + np.abs(one.left * (first - second)) ** 2
-        return total, np.sqrt(square)
-
-
-@lru_cache(maxsize=64)
-def _gauss(count: int) -> tuple[Array, Array]:
-    """Gauss's nodes and weights."""
-    t, weight = np.polynomial.legendre.leggauss(count)
-    return np.asarray(t), np.asarray(weight)
-
-
-def _greatest_of(series: Array, short: Array, left: float) -> tuple[float, float]:
-    """Greatest value of a Chebyshev series between -1 and 1, and its error; 0 at an end.
-
-    The error is what the series of half the degree differs by there times `left`, and no more than thrice what the
-    greatest value exceeds those at the nodes by: these are exact, and a series may wave between them.
-    """
-    nodes = chebyshev.chebval(lobatto(len(series) - 1), series)
-    ends = float(max(nodes[0], nodes[-1]))
-    slope = np.trim_zeros(chebyshev.chebder(series), "b")
-    if len(slope) < 2:
-        return ends, 0.0
-    roots = chebyshev.chebroots(slope)
-    real = roots.real[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) < 1.0)]
-    values = chebyshev.chebval(real, series)
-    if values.size == 0 or values.max() <= ends:
-        return ends, 0.0
-    place = real[int(np.argmax(values))]
-    # the difference may vanish there by chance; the last coefficients do not both
-    off = max(left * abs(float(chebyshev.chebval(place, series - short))), float(np.max(np.abs(series[-2:]))))
-    return float(values.max()), min(off, 3.0 * max(float(values.max() - nodes.max()), 0.0))
+            waves = np.pi * float(order.max(initial=0.0)) * arc.width
+            t, weight = gauss(len(series) + 12 + int(np.ceil((3 if arc.crowded else 1) * waves)))
+            weight = weight * arc.weight(t) * 2 / self.pitches
+            wave = np.exp(-2j * np.pi * order[:, None] * arc.place(t)) * weight
+            total += wave @ chebyshev.chebval(t, series)
+            parts.append(left_out(series, t, wave, arc.crowded))
+        return total, np.concatenate(parts, axis=1)

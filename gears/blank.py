@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base import Fault, Faults, Limit
+from base import Fault, Faults, Limit, rounded_down, rounded_up
 
 LIMITS = {
     "rim_thickness": Limit.above(0.0, 1e4, "m", "give the rim's thickness below the root circle in metres"),
@@ -92,11 +92,18 @@ class Blank:
         below = "bore" if self.hub_radius is None else "hub"
         least, most = THINNEST_RIM * module, root - LOWEST_WEB * module
         if self.hub_radius is not None and not bore <= self.hub_radius <= most - least:
-            allowed = f"must be {bore:.6g} m to {most - least:.6g} m"
+            allowed = f"must be {rounded_up(bore)} m to {rounded_down(most - least)} m"
             remedy = "the hub lies outside the bore, and leaves half a module of rim and a quarter of web"
             found.add(f"{where}.hub_radius", f"{self.hub_radius:g}", allowed, remedy)
+        elif least > most - inside:
+            remedy = (
+                f"half a module of rim and a quarter of web do not fit above the {below}: give a smaller one"
+            )
+            found.add(
+                f"{where}.rim_thickness", f"{self.rim_thickness:g}", f"must leave the {below} room", remedy
+            )
         elif not least <= self.rim_thickness <= most - inside:
-            allowed = f"must be {least:.6g} m to {most - inside:.6g} m"
+            allowed = f"must be {rounded_up(least)} m to {rounded_down(most - inside)} m"
             remedy = f"half a module carries the teeth, and a quarter is left for the web above the {below}"
             found.add(f"{where}.rim_thickness", f"{self.rim_thickness:g}", allowed, remedy)
         if self.web_offset != 0.0:
@@ -107,7 +114,7 @@ class Blank:
             found.add(f"{where}.web_offset", f"{self.web_offset:g}", "must be 0 m", remedy)
         least = THINNEST_WEB * (face_width or 0.0)
         if face_width is not None and not least <= self.web_thickness <= face_width:
-            allowed = f"must be {least:.6g} m to {face_width:.6g} m"
+            allowed = f"must be {rounded_up(least)} m to {rounded_down(face_width)} m"
             remedy = (
                 "the web is at most as wide as the face; on a thinner one the rim bends across its width, "
             )

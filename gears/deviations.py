@@ -134,6 +134,11 @@ class GearDeviations:
         return self.pitch is None and not isinstance(self.profile, tuple) and not isinstance(self.wear, tuple)
 
     @cached_property
+    def profiles_alike(self) -> bool:
+        """Whether all teeth have the same flanks."""
+        return all(len(set(_listed(some))) <= 1 for some in (self.profile, self.wear))
+
+    @cached_property
     def mean(self) -> GearDeviations:
         """Curves that stand for all teeth, without pitch deviations."""
         return replace(self, profile=_mean(self.profile), pitch=None, wear=_mean(self.wear))
@@ -143,6 +148,16 @@ class GearDeviations:
         found = []
         for given in (self.profile, self.wear):
             points = np.unique([rho for curve in _listed(given) for rho in curve.rho])
+            found.append(points if len(points) <= most else points[:0])
+        return np.concatenate(found)
+
+    def kinks(self, most: int) -> Array:
+        """Curvature radii of the points of profiles and wear that straight lines join, each where at most so many."""
+        found = [np.zeros(0)]
+        for given in (self.profile, self.wear):
+            points = np.unique(
+                [rho for curve in _listed(given) if curve.form == "linear" for rho in curve.rho]
+            )
             found.append(points if len(points) <= most else points[:0])
         return np.concatenate(found)
 

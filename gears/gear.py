@@ -20,6 +20,7 @@ LIMITS = {
         0.0, 1e4, "m", "give the radius of the bore in metres, or None for half the root radius"
     ),
     "tip_alteration": Limit(-1.0, 1.0, "modules", "change the tip less"),
+    "generating_shift": Limit(-0.8, 1.5, "modules", "give the shift at which the tool cuts the gear"),
     "thickness_allowance": Limit(0.0, 1.0, "m", "give the arc by which the tooth is thinned, in metres"),
     "tip_chamfer": Limit(0.0, 1.0, "m", "give the radial height of the chamfer in metres"),
 }
@@ -73,6 +74,10 @@ class Gear:
         Radial height of a chamfer of 45 deg at the tip edges [m].
     blank : Blank or None
         Rim, web and hub; None is a disc as wide as the face.
+    generating_shift : float or None
+        x_E [modules], at which the tool cuts flank and fillet where that is not `profile_shift`: a tooth thinner than
+        nominal by 2 (x - x_E) m tan alpha at the reference circle, with a deeper root. The tip circle and the centre
+        distance of no backlash stay those of `profile_shift`. None cuts at `profile_shift`.
 
     Examples
     --------
@@ -88,6 +93,12 @@ class Gear:
     tip_relief: TipRelief | None = None
     tip_chamfer: float = 0.0  # radial height, m
     blank: Blank | None = None
+    generating_shift: float | None = None  # x_E, modules
+
+    @property
+    def cut_shift(self) -> float:
+        """Shift at which the tool cuts the gear, x_E or x [modules]."""
+        return self.profile_shift if self.generating_shift is None else self.generating_shift
 
     def __repr__(self) -> str:
         """Teeth, and what differs from the defaults."""

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from base import Array, Booleans, Faults, Limit, part, quantity, record
+from base import Array, Booleans, Faults, Limit, part, quantity, record, rounded_down, rounded_up
 from gears.bisection import bisect
 from gears.errors import GeometryError
 from gears.gear import Gear
@@ -36,6 +36,9 @@ __all__ = ["Heat", "WarmPair", "warm_pair"]
 
 ROOM = 293.15
 """Temperature at which gears are measured [K]; ISO 1."""
+
+WITHIN = 1e-3
+"""Distance from a bound at which a temperature is surely accepted [K]."""
 
 TEMPERATURE = Limit(150.0, 700.0, "K", "give the temperature in kelvins")
 
@@ -225,12 +228,16 @@ def _eaten(pair: GearPair, heat: Heat, backlash: float, least: float) -> Geometr
         return np.array([left < least if housing else left > least])
 
     bound = float(bisect(short, np.array([low]), np.array([high]))[0])
-    allowed = f"must be at {'least' if housing else 'most'} {bound:.6g} K"
+    allowed = f"must be at least {rounded_up(bound + WITHIN)} K"
+    if not housing:
+        allowed = f"must be at most {rounded_down(bound - WITHIN)} K"
+    if not low + WITHIN < bound < high - WITHIN:
+        allowed = "must leave some backlash, which no temperature of this part alone does"
     said = f"{1e6 * backlash:.4g} um" if math.isfinite(backlash) else "nothing"
     remedy = (
         f"heat leaves {said} of a backlash of {1e6 * pair.backlash:.4g} um: give more backlash or a longer "
     )
     remedy += "centre distance"
-    if not pair.tight:
+    if not pair.tight and backlash >= -TIGHTEST * pair.module:
         remedy += ", or let both sides of the teeth bear: tight = true"
     return GeometryError.at(f"heat.{key}", f"{given:g}", allowed, remedy)

@@ -1,9 +1,10 @@
 """Figures of a mesh cycle that no choice of positions decides: means, extremes and harmonics, each with its error.
 
 All follow from the smooth arcs between the cycle's events. The error of a figure is that of its arcs' series and, by
-finite elements, that of fits along the flanks and of the mesh: the figure is computed once more from the mesh before
-the last refinement, with events of its own. What films may err by changes it likewise: it is computed once more with
-films so changed. These parts have nothing to do with each other and are added as squares.
+finite elements, that of the mesh and of fits along the flanks: the figure is computed once more from gears on the mesh
+before the last refinement whose fits are off by as much more, with events of its own. What films may err by changes it
+likewise: it is computed once more with films so changed. These parts have nothing to do with each other and are added
+as squares. A part of a harmonic's error is complex, with the phase of what causes it.
 """
 
 from __future__ import annotations
@@ -35,9 +36,10 @@ SHOWN = 24
 """Points of an arc in pictures."""
 
 UNLIKE = 0.2
-"""Part of what a refinement changes that may be missed in any direction of the complex plane.
+"""Part of a change across a harmonic, in the complex plane, that may lie along it.
 
-A mesh's error falls with the order 3 to 4, by 7 to 15, not everywhere alike.
+A mesh's error falls with the order 3 to 4, by 7 to 15, not everywhere alike, and what an arc leaves out is not all at
+one place.
 """
 
 
@@ -119,43 +121,50 @@ class MeshArcs:
 
     def harmonics(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
         """Complex amplitudes of harmonics of the mesh frequency, and their errors, in the curve's unit."""
-        value, change, rest = self._harmonics(name, orders, False)
-        return value, None if rest is None else np.hypot(np.abs(change), rest)
+        value, changes = self._harmonics(name, orders, False)
+        return value, None if changes is None else np.linalg.norm(changes, axis=1)
 
     def over_mean(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
         """Complex amplitudes of harmonics over the mean, and their errors.
 
         What changes the mean and all harmonics alike is no error of their ratio.
         """
-        value, change, rest = self._harmonics(name, orders, True)
-        return value, None if rest is None else np.hypot(np.abs(change), rest)
+        value, changes = self._harmonics(name, orders, True)
+        return value, None if changes is None else np.linalg.norm(changes, axis=1)
 
     def amplitudes(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
-        """Sizes of `harmonics`, or `over_mean`, and their errors: a mesh that only turns a phase changes no size."""
-        value, change, rest = self._harmonics(name, orders, over_mean)
+        """Sizes of `harmonics`, or `over_mean`, and their errors: what only turns a phase changes no size."""
+        value, changes = self._harmonics(name, orders, over_mean)
         size = np.abs(value)
-        if rest is None:
+        if changes is None:
             return size, None
-        mesh = np.hypot(np.abs(value + change) - size, UNLIKE * np.abs(change))
-        return size, np.hypot(mesh, rest)
+        either = np.abs(value[:, None] + np.stack([changes, -changes]))
+        sizes = np.max(np.abs(either - size[:, None]), axis=0)
+        phase = np.divide(value, size, out=np.ones_like(value), where=size > 0.0)
+        across = np.abs(np.imag(changes * np.conj(phase)[:, None]))
+        return size, np.linalg.norm(np.hypot(sizes, UNLIKE * across), axis=1)
 
-    def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array, Array | None]:
-        """Complex amplitudes, what a much finer mesh would change of them, and other errors if known."""
+    def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
+        """Complex amplitudes, and what each part of their errors changes (orders, parts); None where one is unknown.
+
+        Parts are what a much finer mesh would change, arcs leave out, and other models change.
+        """
 
         def figure(arcs: Arcs) -> Array:
             return arcs.harmonics(name, orders)[0] / (arcs.mean(name)[0] if over_mean else 1.0)
 
-        value, off = figure(self.arcs), self.arcs.harmonics(name, orders)[1]
+        value, off = self.arcs.harmonics_and_parts(name, orders)
+        parts = [off]
         if over_mean:
             mean, less = self.arcs.mean(name)
-            off = np.hypot(off, np.abs(value) * less) / mean
-        change = np.zeros_like(value) if self.before is None else (value - figure(self.before)) / self.gain
+            value = value / mean
+            parts = [off / mean, (value * less / mean)[:, None]]
         if self.other is None:
-            return value, change, None
-        rest = np.hypot(off, self.other * np.abs(value))
-        for arcs, share in self.varied:
-            rest = np.hypot(rest, share * np.abs(value - figure(arcs)))
-        return value, change, rest
+            return value, None
+        parts.append(self.other * value[:, None])
+        before = () if self.before is None else ((self.before, 1.0 / self.gain),)
+        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
+        return value, np.concatenate(parts, axis=1)
 
     def _estimate(
         self, value: float, sampling: float, figure: Callable[[Arcs], float], alike: bool = True

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from base import Faults, Limit, view
 from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
-from gears.guards import Findings, check_gear, check_mesh
+from gears.guards import Findings, check_gear, check_mesh, unrounded_distance
 from gears.material import Material
 from gears.pair_geometry import PairGeometry
 from gears.placement import Placement, place
@@ -33,7 +33,8 @@ class GearPair(PairGeometry):
 
     Without `centre_distance` the gears mesh at the working pressure angle for which nominal teeth have no
     backlash, inv alpha_w = 2 (x1 + x2) / (z1 + z2) tan alpha + inv alpha; with it, cos alpha_w =
-    (r_b1 + r_b2) / a and the backlash follows. The path of contact ends where the involutes end (tip circle
+    (r_b1 + r_b2) / a and the backlash follows. A centre distance that is short of that of no backlash by at most
+    0.002 modules, as rounded data are, is taken for it. The path of contact ends where the involutes end (tip circle
     or start of the chamfer). Symbols of ISO 21771.
 
     Parameters
@@ -49,7 +50,7 @@ class GearPair(PairGeometry):
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
     centre_distance : float or None
-        a [m].
+        a [m]; longer than was given where a rounded one was taken for that of no backlash.
     tight : bool
         Whether teeth may be thicker than their gaps, by up to a tenth of the module: flanks on both sides then bear
         (``fem.mesh_cycle``). Otherwise such a pair is refused, since it jams.
@@ -64,7 +65,8 @@ class GearPair(PairGeometry):
     Warns
     -----
     GeometryWarning
-        Top land thinner than 0.2 modules; rim thinner than half the tooth depth.
+        Top land thinner than 0.2 modules; rim thinner than half the tooth depth; a centre distance that is short by
+        rounding, with the one that is used.
 
     Examples
     --------
@@ -88,6 +90,8 @@ class GearPair(PairGeometry):
                 if not any(where.startswith(name) for where in wrong):
                     check_gear(found, name, gear, self.module, self.rack, width)
         if not found.found:
+            if (distance := unrounded_distance(found, self)) is not None:
+                object.__setattr__(self, "centre_distance", distance)
             check_mesh(found, self)
         found.raise_if_any()
         for message in found.warnings:
@@ -128,17 +132,19 @@ class GearPair(PairGeometry):
         Parameters
         ----------
         normal_backlash : float
-            j_bn [m]; at least what the centre distance gives by itself.
+            j_bn [m]; at least what the centre distance and the generating shifts give by themselves.
 
         Returns
         -------
         GearPair
             The same pair with new thickness allowances (those it had are replaced).
         """
-        least = self._nominal_backlash
+        least = self._least_backlash
         with Faults(GeometryError) as found:
             if found.number("backlash", normal_backlash, BACKLASH) < least:
-                allowed = f"must be at least {least:.6g} m, which the centre distance gives"
+                cut = any(gear.generating_shift is not None for gear in (self.pinion, self.wheel))
+                given = "centre distance and generating shifts give" if cut else "centre distance gives"
+                allowed = f"must be at least {least:.6g} m, which the {given}"
                 remedy = "ask for more, or reduce the centre distance"
                 found.add("backlash", normal_backlash, allowed, remedy)
         allowance = 0.5 * (normal_backlash - least) / math.cos(self.rack.alpha)

@@ -146,14 +146,31 @@ class PairGeometry:
     def backlash(self) -> float:
         """Normal backlash, along the line of action.
 
-        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha.
+        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha, with
+        the shifts at which the gears are cut.
         """
+        return self._least_backlash + self._allowed_backlash
+
+    @property
+    def _allowed_backlash(self) -> float:
+        """Normal backlash by the thickness allowances [m]."""
         thinning = self.pinion.thickness_allowance + self.wheel.thickness_allowance
-        return self._nominal_backlash + thinning * math.cos(self.rack.alpha)
+        return thinning * math.cos(self.rack.alpha)
+
+    @property
+    def _cut_backlash(self) -> float:
+        """Normal backlash by the generating shifts [m]."""
+        thinner = sum(gear.profile_shift - gear.cut_shift for gear in (self.pinion, self.wheel))
+        return 2.0 * self.module * thinner * math.sin(self.rack.alpha)
+
+    @property
+    def _least_backlash(self) -> float:
+        """Normal backlash of the pair without thickness allowances [m]."""
+        return self._nominal_backlash + self._cut_backlash
 
     @property
     def _nominal_backlash(self) -> float:
-        """Normal backlash of the pair without thickness allowances [m]."""
+        """Normal backlash of nominal teeth at the given centre distance [m]."""
         if self.centre_distance is None:
             return 0.0
         tangent = math.tan(self.rack.alpha)
@@ -168,8 +185,7 @@ class PairGeometry:
         inv alpha_w grows by (j - j_0)/(2 (r_b1 + r_b2)) from that of no backlash.
         """
         bases = sum(self.base_radii)
-        thinning = self.pinion.thickness_allowance + self.wheel.thickness_allowance
-        more = (backlash - thinning * math.cos(self.rack.alpha)) / (2.0 * bases)
+        more = (backlash - self._allowed_backlash - self._cut_backlash) / (2.0 * bases)
         involute = max(self._working_involute + more, 1e-300)
         return bases * math.hypot(1.0, tangent_from_involute(involute))
 

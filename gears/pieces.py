@@ -8,7 +8,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, quantity, record
-from gears.arcs import Arc, graded, lobatto
+from gears.arc_series import lobatto
+from gears.arcs import Arc, graded
 
 BESIDE = 1e-11
 """Distance from a corner of the geometry at which curves are sampled on either side [base pitches]."""

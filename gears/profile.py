@@ -267,7 +267,8 @@ def generate(
     """Generate the tooth that the rack cuts.
 
     The thickness allowance displaces each generating flank sideways by half its amount: flank and fillet turn
-    towards the centre line of the tooth by A / (2 r), root and tip circles stay.
+    towards the centre line of the tooth by A / (2 r), root and tip circles stay. A generating shift moves the rack,
+    so flank, fillet and root circle; the tip circle stays.
 
     Parameters
     ----------
@@ -288,7 +289,7 @@ def generate(
     """
     radius = 0.5 * gear.teeth * module
     base = radius * math.cos(rack.alpha)
-    shift, tangent = gear.profile_shift, math.tan(rack.alpha)
+    shift, tangent = gear.cut_shift, math.tan(rack.alpha)
     thinning = 0.5 * gear.thickness_allowance / radius
     half = (0.5 * math.pi + 2.0 * shift * tangent) / gear.teeth - thinning
     base_half_angle = half + float(involute_function(tangent))
@@ -301,7 +302,7 @@ def generate(
         return None
     end, rho_form, undercut = meeting
     root = radius - depth - arc
-    tip = radius + module * (rack.h_aP + shift + gear.tip_alteration)
+    tip = radius + module * (rack.h_aP + gear.profile_shift + gear.tip_alteration)
     flank_end = tip - gear.tip_chamfer
     return ToothProfile(
         teeth=int(gear.teeth),

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from base import Fault, Faults, Limit
+from gears.errors import GeometryError
 
 LIMITS = {
     "h_aP": Limit.above(0.0, 3.0, "modules", "ISO 53 profile A has 1.0"),
@@ -16,6 +17,9 @@ LIMITS = {
     ),
 }
 """What the numbers of a basic rack may be."""
+
+NO_PROTUBERANCE = "must be 0: fillets are those of a tool with straight flanks, without protuberance"
+"""What holds of a tool's protuberance."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,45 @@ class BasicRack:
     h_fP: float = 1.25  # dedendum, modules
     rho_fP: float = 0.38  # fillet radius, modules
     alpha: float = math.radians(20.0)  # pressure angle, rad
+
+    @classmethod
+    def of_tool(
+        cls,
+        h_aP0: float,
+        rho_aP0: float,
+        h_aP: float = 1.0,
+        alpha: float = math.radians(20.0),
+        protuberance: float = 0.0,
+    ) -> BasicRack:
+        """Rack that a rack-shaped tool cuts, by the tool's data as drawings and calculation programs have them.
+
+        Parameters
+        ----------
+        h_aP0 : float
+            Addendum of the tool, the dedendum of the gears [modules].
+        rho_aP0 : float
+            Radius of the tool's tip [modules].
+        h_aP : float
+            Addendum of the gears [modules].
+        alpha : float
+            Pressure angle [rad].
+        protuberance : float
+            Of the tool [modules]; only 0 is accepted, since the fillet is that of a tool with straight flanks.
+
+        Raises
+        ------
+        GeometryError
+            Of a tool with protuberance.
+
+        Examples
+        --------
+        >>> BasicRack.of_tool(h_aP0=1.39, rho_aP0=0.25).h_fP
+        1.39
+        """
+        if protuberance != 0.0:
+            remedy = "leave it out: root stress and the start of the flank are then those of a plain tool"
+            raise GeometryError.at("protuberance", protuberance, NO_PROTUBERANCE, remedy)
+        return cls(h_aP, h_aP0, rho_aP0, alpha)
 
     @property
     def largest_fillet_radius(self) -> float:

@@ -27,6 +27,9 @@ _LIMITS = dict.fromkeys(("flank", "fillet", "root", "top", "corner", "rim", "gro
 }
 
 
+OFF_MIDDLE, HALVINGS = 0.1, 40
+
+
 @dataclass(frozen=True)
 class Sizes:
     """Wished lengths of element edges, in modules, and how fast they may grow.
@@ -90,6 +93,32 @@ class Curve:
     end: float
     at: Callable[[Array], Array]
     size: Callable[[Array], Array]
+
+    def middles(self, ends: Array) -> Array:
+        """Parameters in the middle of pieces, given those of their ends (n, 2).
+
+        The mean of both, unless that is off the middle by more than `OFF_MIDDLE` of the chord, as where a fillet's
+        parameter runs unevenly: a node a quarter of an edge off its middle folds the element. Then it is as far from
+        either end.
+        """
+        low, high = np.array(ends, dtype=float).T
+        first, last = self.at(low), self.at(high)
+
+        def farther(middle: Array) -> Array:
+            """How far a point is beyond the middle of the chord, along it and over it."""
+            off = self.at(middle) - 0.5 * (first + last)
+            chord = last - first
+            return np.asarray(np.sum(off * chord, axis=1) / np.sum(chord * chord, axis=1))
+
+        found = 0.5 * (low + high)
+        uneven = np.abs(farther(found)) > OFF_MIDDLE
+        if not uneven.any():
+            return np.asarray(found)
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            beyond = farther(middle) > 0.0
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+        return np.asarray(np.where(uneven, 0.5 * (low + high), found))
 
     def scaled(self, factor: float) -> Curve:
         """Curve of a gear that is larger by a factor; a parameter that is a length grows with it."""

@@ -250,7 +250,7 @@ def _second_order(
     curves: Mapping[str, Curve],
     gear: tuple[int, float, float, Steps],
 ) -> SectorMesh:
-    """Mid-side nodes: half-way on inner edges, at the mean parameter on the curves."""
+    """Mid-side nodes: half-way on inner edges, in the middle of the piece on the curves."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     keys = edges[:, 0] * len(corners) + edges[:, 1]
     unique, inverse = np.unique(keys, return_inverse=True)
@@ -263,7 +263,7 @@ def _second_order(
         if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
             allowed = "must keep every edge of the outline"
             raise InputError.at(name, "edges lost", allowed, "use smaller elements")
-        points[len(corners) + found] = curves[name].at(t.mean(axis=1))
+        points[len(corners) + found] = curves[name].at(curves[name].middles(t))
         facets[name] = np.column_stack([nodes, len(corners) + found])
         parameters[name] = t
     six = np.concatenate([triangles, len(corners) + inverse.reshape(-1, 3)], axis=1)
@@ -312,7 +312,7 @@ def refined(mesh: SectorMesh) -> SectorMesh:
     for name, facets in mesh.facets.items():
         first, last, middle = facets.T
         t = mesh.parameters[name]
-        half = t.mean(axis=1)
+        half = mesh.curves[name].middles(t)
         nodes = np.stack([first, middle, middle, last], axis=1).reshape(-1, 2)
         ends[name] = (nodes, np.stack([t[:, 0], half, half, t[:, 1]], axis=1).reshape(-1, 2))
     gear = mesh.teeth, mesh.module, mesh.base_radius, mesh.steps

@@ -1,5 +1,7 @@
 from .cantilever import potential_energy as potential_energy
 from .contact import hertz as hertz
+from .contact_stress import Iso6336ContactStress as Iso6336ContactStress
+from .contact_stress import iso6336_2 as iso6336_2
 from .dynamic_factor import Iso6336DynamicFactor as Iso6336DynamicFactor
 from .dynamic_factor import iso6336_dynamic as iso6336_dynamic
 from .half_plane import weber_banaschek as weber_banaschek

@@ -80,7 +80,8 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
         Y_B = 1.6 ln(2.242 h_t/s_R) for a rim s_R below 1.2 tooth depths h_t, else 1; s_R is that of the blank, and
         reaches from the root circle to the bore in a disc
 
-    A thickness allowance A is taken into the geometry: E + A/(2 m), and the tooth's half angle less A/(2 r).
+    A thickness allowance A is taken into the geometry: E + A/(2 m), and the tooth's half angle less A/(2 r). x is the
+    shift at which the gear is cut.
 
     Parameters
     ----------
@@ -131,7 +132,7 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     for name, profile, gear, rho in zip(
         ("pinion", "wheel"), pair.teeth_profiles, (pair.pinion, pair.wheel), outer, strict=True
     ):
-        section = root_section(name, profile, pair.rack, gear.profile_shift, min(rho, profile.flank_rho[1]))
+        section = root_section(name, profile, pair.rack, gear.cut_shift, min(rho, profile.flank_rho[1]))
         sections.append(section)
         rims.append(_rim_factor(name, profile))
         outside += _outside(name, profile, section)
@@ -147,11 +148,11 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
 
 
 def root_section(
-    name: str, profile: ToothProfile, rack: BasicRack, profile_shift: float, rho_load: float
+    name: str, profile: ToothProfile, rack: BasicRack, cut_shift: float, rho_load: float
 ) -> RootSection:
     """Critical section and factors of one gear for a load at curvature radius `rho_load` [m]."""
     z, m = profile.teeth, profile.module
-    rho, x = rack.fillet_radius, profile_shift
+    rho, x = rack.fillet_radius, cut_shift
     nominal = (0.5 * math.pi + 2.0 * x * math.tan(rack.alpha)) / z + _inv(math.tan(rack.alpha))
     thinning = nominal - profile.base_half_angle  # A/(2 r)
     E = rack.tip_centre_offset + 0.5 * z * thinning

@@ -57,7 +57,8 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     q' = 0.04723 + 0.15551/z1 + 0.25791/z2 - 0.00635 x1 - 0.11654 x1/z1 - 0.00193 x2 - 0.24188 x2/z2
     + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B E/E_steel with C_R of the
     weaker blank (`blank_factor`) and C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha)];
-    c_gamma = c' (0.75 epsilon_alpha + 0.25).
+    c_gamma = c' (0.75 epsilon_alpha + 0.25). A gear that is cut at a generating shift x_E has the dedendum
+    h_fP + x - x_E, and C_B is the mean of both gears'.
 
     Parameters
     ----------
@@ -96,7 +97,8 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
     C_R = min(blank_factor(profile) for profile in pair.teeth_profiles)
     angle = math.degrees(pair.rack.alpha)
-    C_B = (1.0 + 0.5 * (1.2 - pair.rack.h_fP)) * (1.0 - 0.02 * (20.0 - angle))
+    deeper = 0.5 * sum(gear.profile_shift - gear.cut_shift for gear in (first, second))
+    C_B = (1.0 + 0.5 * (1.2 - pair.rack.h_fP - deeper)) * (1.0 - 0.02 * (20.0 - angle))
     E1, E2 = (material.youngs_modulus for material in pair.materials)
     c_prime = CORRECTION * C_R * C_B / q * (2.0 * E1 * E2 / (E1 + E2) / _STEEL)
     if force is not None:

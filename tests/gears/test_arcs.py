@@ -6,8 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from numpy.polynomial import chebyshev
 
-from gears.arcs import Arc, Arcs, lobatto
+from gears.arc_series import lobatto
+from gears.arcs import Arc, Arcs, graded
 from gears.events import Sampled, arcs_alike, arcs_between_events
 
 STEP, BACK, CUSP = 0.137, 0.62, 0.41
@@ -144,3 +146,43 @@ def test_arcs_converge_geometrically_and_their_estimate_is_above_the_error():
         (_, _), (most, off) = arcs.extremes("k")
         assert abs(most - 1.0) < off + 1e-12
         before = error + 1e-13
+
+
+@pytest.mark.parametrize("power", [2.0, 3.0])
+def test_what_series_leave_out_is_what_coefficients_beyond_them_change(power):
+    """Means and harmonics of curves whose coefficients fall by a power, with signs that follow no law."""
+    rng, parts = np.random.default_rng(3), []
+    for degree in (8, 16, 32):
+        for _ in range(20):
+            series = rng.normal(size=513) * np.arange(1, 514.0) ** -power
+            short, best = (
+                Arcs(("k",), (Arc(0.2, 0.9, chebyshev.chebval(lobatto(n), series)[None]),), 1)
+                for n in (degree, 512)
+            )
+            (mean, off), (value, error) = short.mean("k"), short.harmonics("k", [1, 2, 3])
+            true = np.append(value - best.harmonics("k", [1, 2, 3])[0], mean - best.mean("k")[0])
+            parts.append(np.abs(true) / np.append(error, off))
+    # of a normal distribution 0.67 of the deviation is the median, 1.64 the 90th percentile
+    assert 0.3 < np.median(parts) < 1.2
+    assert 0.8 < np.percentile(parts, 90) < 3.0
+
+
+@pytest.mark.parametrize("degree", [8, 16, 32])
+def test_where_a_contact_begins_the_estimate_is_above_the_error_and_below_that_of_half_the_degree(degree):
+    def arcs(degree):
+        place = graded(lobatto(degree), -1)[0]
+        # the inverse of the logarithm of what it bears
+        return Arcs(("k",), (Arc(0.2, 0.3, 1.0 / (8.0 - np.log(place + 1e-300))[None], -1),), 1)
+
+    best = arcs(512).mean("k")[0]
+    (mean, error), half = arcs(degree).mean("k"), arcs(degree // 2).mean("k")[0]
+    assert abs(mean - best) < error < abs(half - best)
+
+
+def test_the_error_of_an_arc_has_the_phase_of_its_place():
+    """On a short arc it moves all harmonics by the same size, and along the phase of its middle alone."""
+    arc = Arc(0.3, 0.31, np.abs(lobatto(8) - 0.3)[None])
+    parts = Arcs(("k",), (arc,), 1).harmonics_and_parts("k", [1, 2])[1]
+    largest = parts[:, np.argmax(np.abs(parts[0]))]
+    phases = np.angle(largest * np.exp(2j * np.pi * np.array([1, 2]) * 0.305)) % np.pi
+    assert np.minimum(phases, np.pi - phases) == pytest.approx(0.0, abs=0.07)

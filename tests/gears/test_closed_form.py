@@ -65,7 +65,13 @@ def test_ishikawa_parts_are_the_beam_integrals_of_rectangle_and_taper(article_pa
         assert parts["shear"][i] == pytest.approx(shear, rel=1e-10)
 
 
-@pytest.mark.parametrize("gear", [Gear(36), Gear(17), Gear(12, -0.2), Gear(200, 0.4)])
+@pytest.mark.parametrize(
+    "gear",
+    [
+        Gear(17),
+        *(pytest.param(one, marks=pytest.mark.slow) for one in (Gear(36), Gear(12, -0.2), Gear(200, 0.4))),
+    ],
+)
 def test_integrals_over_the_true_profile(gear):
     """The quadrature in the curves' parameters against one in the height, by the tooth's boundary."""
     pair = GearPair(Gear(60), Gear(61), 2e-3, 0.02)

@@ -9,6 +9,7 @@ import pytest
 
 from base import InputError
 from gears.closed_form import iso6336, iso6336_dynamic
+from gears.closed_form.dynamic_factor import _constants
 
 FORCE, MASS = 17_000.0, 0.4
 
@@ -32,6 +33,23 @@ def test_each_range_by_hand(article_pair):
     assert pytest.approx(ratios, rel=1e-12) == found.N
     assert found.K_v == pytest.approx([1.0, below, main, 0.5 * (main + above), above], rel=1e-12)
     assert found.N_S == 0.85
+
+
+def test_constants_of_high_contact_ratios_by_hand():
+    """Table of ISO 6336-1: at 2.2 0.57/1.9, 0.096/0.64, 0.46/0.76, 0.12/0.46 and sin 36 degrees."""
+    found = (0.32, 0.3, 0.15, 0.605263158, 0.47, 0.260869565, 0.875 + 0.125 * 0.587785252)
+    assert _constants(2.2) == pytest.approx(found, rel=1e-8)
+    assert _constants(2.7)[6] == pytest.approx(1.0, rel=1e-12)
+    assert _constants(2.7)[2:4] == pytest.approx((0.096 / 1.14, 0.435 / 1.26), rel=1e-12)
+    assert _constants(1.2)[6] == pytest.approx(0.75, rel=1e-12)
+    assert _constants(2.0)[:6] == (0.32, 0.34, 0.23, 0.90, 0.47, 0.47)
+
+
+def test_without_deviations_the_stiffness_alone_excites(article_pair):
+    """B_p = B_f = 0 and B_k = 1, at half the resonance and at it."""
+    speeds = iso6336_dynamic(article_pair, FORCE, MASS, 1.0).resonance_speed * np.array([0.5, 1.0])
+    found = iso6336_dynamic(article_pair, FORCE, MASS, speeds)
+    assert found.K_v == pytest.approx([1.0 + 0.5 * 0.23, 1.90], rel=1e-12)
 
 
 def test_main_resonance_joins_what_lies_above(article_pair):

@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import math
 import pickle
+import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gears import BasicRack, Gear, GearPair, GeometryError, GeometryWarning, Material, TipRelief
+from gears import (
+    BasicRack,
+    Gear,
+    GearPair,
+    GeometryError,
+    GeometryWarning,
+    Heat,
+    Material,
+    TipRelief,
+    closed_form,
+    warm_pair,
+)
 
 
 def faults(pinion=None, wheel=None, module=2e-3, face_width=20e-3, **more):
@@ -154,6 +167,55 @@ def test_nominal_centre_distance_does_not_jam_by_rounding():
             abs(GearPair(Gear(z1), Gear(77), 2.5e-3, 0.02, centre_distance=(z1 + 77) * 1.25e-3).backlash)
             < 1e-15
         )
+
+
+CATALOGUE = {
+    "FZG type C": ((16, 24), (0.182, 0.172), 4.5e-3, 91.5e-3, 91.503304e-3),
+    "18/36": ((18, 36), (0.3890, 0.5039), 21e-3, 584e-3, 584.000537e-3),
+}
+"""Teeth, shifts, module and centre distance as catalogues print them; the one of no backlash."""
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_centre_distance_rounded_short_is_that_of_no_backlash(name):
+    """One branch of rounding: every figure is that of the pair without a given distance."""
+    teeth, shifts, module, given, exact = CATALOGUE[name]
+    gears = [Gear(z, x) for z, x in zip(teeth, shifts, strict=True)]
+    with pytest.warns(
+        GeometryWarning, match=rf"centre_distance: {1e3 * given:g} mm is .* {1e3 * exact:.9g} mm"
+    ):
+        pair = GearPair(*gears, module, 10 * module, centre_distance=given)
+    plain = GearPair(*gears, module, 10 * module)
+    assert pair.working_centre_distance == pytest.approx(exact, rel=1e-8)
+    assert abs(pair.backlash) < 1e-12 * module
+    assert pair.contact_ratio == pytest.approx(plain.contact_ratio, rel=1e-12)
+    found, expected = (closed_form.iso6336_3(one, 1e4).stresses for one in (pair, plain))
+    assert found == pytest.approx(expected, rel=1e-12)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert replace(pair, face_width=module).centre_distance == pair.centre_distance  # said once
+    assert pair.with_backlash(50e-6).backlash == pytest.approx(50e-6, rel=1e-12)
+
+
+def test_only_the_last_digit_is_forgiven():
+    teeth, shifts, module, given, exact = CATALOGUE["FZG type C"]
+    gears = [Gear(z, x) for z, x in zip(teeth, shifts, strict=True)]
+    with pytest.warns(GeometryWarning, match="centre_distance"):
+        GearPair(*gears, module, 14e-3, centre_distance=exact - 0.00199 * module)
+    with pytest.raises(GeometryError, match="The teeth jam"):
+        GearPair(*gears, module, 14e-3, centre_distance=exact - 0.00201 * module)
+    as_given = GearPair(*gears, module, 14e-3, centre_distance=given, tight=True)
+    assert as_given.working_centre_distance == given
+    assert as_given.backlash < -2e-6
+    # what thins the teeth counts: with it the distance is long enough
+    thinned = [replace(gear, thickness_allowance=5e-6) for gear in gears]
+    assert GearPair(*thinned, module, 14e-3, centre_distance=given).working_centre_distance == given
+
+
+def test_heat_that_eats_the_last_micrometre_is_no_rounding():
+    pair = GearPair(Gear(30), Gear(40), 2e-3, 0.02)
+    with pytest.raises(GeometryError, match=r"Heat leaves -\d"):
+        warm_pair(pair, Heat(pinion_temperature=294.15))
 
 
 def test_no_line_of_action():

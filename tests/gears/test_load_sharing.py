@@ -236,5 +236,7 @@ def test_independent_pairs_share_in_proportion():
     assert np.allclose(share.stiffness, [6e8, 5e8])
     film = independent_pairs(600.0, k, np.array([[4e8, np.inf], [5e8, 1.0]]))
     assert np.allclose(film.stiffness, [4e8, 2.5e8])
+    broken = independent_pairs(600.0, k[0], np.array([0.0, np.inf]))  # a film that bears nothing
+    assert np.allclose(broken.forces, [0, 600])
     with pytest.raises(LoadSharingError):
         independent_pairs(600.0, [[0.0, 0.0]])
