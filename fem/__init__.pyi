@@ -3,10 +3,10 @@ from .contact import mesh_cycle as mesh_cycle
 from .contact_candidates import unloaded_transmission_error as unloaded_transmission_error
 from .cycle import MeshCycle as MeshCycle
 from .export import write_mesh as write_mesh
-from .fillet_influence import Fillets as Fillets
-from .fillet_influence import fillets as fillets
 from .local_law import Film as Film
 from .pair_compliance import compliance as compliance
+from .pair_fillets import Fillets as Fillets
+from .pair_fillets import fillets as fillets
 from .single_pair import single_pair_stiffness as single_pair_stiffness
 from .solved_gear import Kept as Kept
 from .solved_gear import forget_gears as forget_gears

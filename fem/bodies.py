@@ -21,7 +21,7 @@ from fem.local_law import HertzApproach
 from fem.ring import Ring
 from fem.solved_gear import Gears
 from fem.support import FIXED, Support, held_profiles
-from fem.tip_strips import RESOLVED, TipStrips
+from fem.tip_strips import TipStrips
 from fem.torsion import step_wind_up
 
 if TYPE_CHECKING:
@@ -55,6 +55,9 @@ class Compliance:
     left_out: frozenset[str] = part("names of what was left out", default=frozenset())
     tip_strips: tuple[TipStrips, TipStrips] | None = part(
         "tip edges of both gears; None before contact outside the path has asked for them", default=None
+    )
+    tip_strips_before: tuple[TipStrips, TipStrips] | None = part(
+        "the same on the mesh before the last refinement; None before errors have asked for it", default=None
     )
     flank_motions: tuple[FlankMotion, FlankMotion] | None = part(
         "how the flanks of both gears move; None before contacts that move have asked for it", default=None
@@ -91,15 +94,27 @@ class Compliance:
     def _tips_before(self) -> tuple[TipStrips, TipStrips]:
         """Tip edges whose difference from these, over the gain of the mesh, is their error.
 
-        Elements at the corner that resolve the strips leave no error to speak of. Longer ones gain less by a
-        refinement than ``gain``, so that the difference from the mesh before is exaggerated.
+        Far from the corner over the length of the element there they are those of the mesh before: loads on the flank
+        and on the edge are the same tooth's, and what is wrong of both evens out where the load goes from one to the
+        other. Nearer, a refinement gains less than ``gain``, and the difference is enlarged by as much.
         """
         edge = self.sizes.corner * 0.5**self.refinements * self.pair.module
-        if edge <= RESOLVED * self.pair.module:
-            return self.tips
         first, second = (
             fine.towards(before, edge, self.gain)
-            for fine, before in zip(self.tips, self.tips_of(Gears(), before=True), strict=True)
+            for fine, before in zip(
+                self.tips, self.tip_strips_before or self.tips_of(Gears(), before=True), strict=True
+            )
+        )
+        return first, second
+
+    @cached_property
+    def _flanks_before(self) -> tuple[GearCompliance, GearCompliance] | None:
+        """Flanks whose difference from these, over the gain of the mesh, is the error of mesh and fit."""
+        if self.before is None:
+            return None
+        first, second = (
+            before.off_by(fine, self.gain)
+            for fine, before in zip((self.pinion, self.wheel), self.before, strict=True)
         )
         return first, second
 
@@ -151,13 +166,13 @@ class Compliance:
 
     @property
     def coarser(self) -> Compliance | None:
-        """The same gears on the mesh before the last refinement; tip edges that it resolves keep their strips.
+        """The same gears, off by their errors times the gain of the last refinement; None where these are unknown.
 
-        Motion and back flanks stay as they are.
+        By the mesh they differ as the one before that refinement does. Motion and back flanks stay as they are.
         """
-        if self.before is None:
+        if self._flanks_before is None:
             return None
-        pinion, wheel = self.before
+        pinion, wheel = self._flanks_before
         tips, motions, backs = (
             self.__dict__.get(found, given)  # whatever has been solved until now
             for found, given in (
@@ -342,16 +357,29 @@ class Compliance:
             matrix[..., behind, ahead] = matrix[..., ahead, behind] = cross
         return matrix
 
-    def hertz(self, rho1: Array) -> HertzApproach:
-        """Local indentation of pairs at rho1 [m] as a function of their forces."""
+    def hertz(self, rho1: Array, curvature: Array | float = 1.0, lever: Array | float = 1.0) -> HertzApproach:
+        """Local indentation of pairs at rho1 [m] as a function of their forces.
+
+        Parameters
+        ----------
+        rho1 : array
+            [m]
+        curvature : array or float
+            Of relieved flanks over that of the involutes.
+        lever : array or float
+            Lever kappa of the normal about the pinion's axis over its base radius, where forces are kappa F and
+            the indentation is what turns the pinion.
+        """
         path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
         width = self.pair.face_width
         first, second = self.pinion.law, self.wheel.law
         reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
-        half_width = hertz_half_width(1.0 / width, path.radius, reduced)  # of 1 N
+        half_width = hertz_half_width(
+            1.0 / (width * lever), path.radius / curvature, reduced
+        )  # of kappa F = 1 N
         length = self.pair.module
         constant = (
             hertz_indentation(half_width, first, length) + hertz_indentation(half_width, second, length)
         ) / width
         per_log = (1 / first.plane_modulus + 1 / second.plane_modulus) / (np.pi * width)
-        return HertzApproach(constant, per_log)
+        return HertzApproach(constant / lever**2, per_log / np.square(lever))

@@ -19,7 +19,7 @@ from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
-from fem.moving_contact import LoadedContacts
+from fem.model_error import LoadedContacts
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, held_turns
 from fem.setting import Deviations, Setting
@@ -270,7 +270,7 @@ def _result(
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
     rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
-    lost = contact.lever_loss(number)
+    lost = [one.reshape(2, -1, pairs) for one in contact.lever_loss(number)]
     large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
@@ -282,7 +282,7 @@ def _result(
         force=force,
         position=where.position,
         pair_offset=where.offset,
-        rho1=np.tile(np.where(on_path, where.rho[0], np.nan), (given.pitches, 1)),
+        rho1=np.tile(np.where(on_path, where.place, np.nan), (given.pitches, 1)),
         edge=edge,
         flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
         forces=forces,
@@ -299,7 +299,8 @@ def _result(
         beyond_path=given.beyond_path,
         error=bodies.error,
         moving_contact=given.moving_contact,
-        lever_loss=lost if isinstance(lost, float) else lost.reshape(-1, pairs),
+        lever_loss=lost[0],
+        further_lever_loss=lost[1],
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
@@ -309,7 +310,7 @@ def _result(
         friction=float(given.friction),
         supports=supports,
         reference=held,
-        loaded=None if refusal else LoadedContacts(bodies, where, turned, approach, given.moving_contact),
+        loaded=None if refusal else LoadedContacts(given, bodies, where, turned, approach, force),
         problem=None
         if refusal
         else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),

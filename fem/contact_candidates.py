@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Faults, Integers, record
+from fem.relieved_flanks import gentle, touch
 from fem.setting import Deviations, Setting
 from fem.tip_contact import nearest_gap
 from fem.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
@@ -36,14 +37,18 @@ class ContactCandidates:
     rho : (2, n_1, pairs) array
         Curvature radii where pinion and wheel are touched [m].
     touchable, edge : (n_1, pairs) boolean arrays
-        Candidates, and those outside the path.
+        Candidates, and those of a tip edge: outside the path, or where relief lets a corner be nearest.
+    curvature : (n_1, pairs) array
+        Of relieved flanks over that of the involutes, R/R'.
+    lacking : (n_1, pairs) array
+        Part of the gap by what the gears' flanks lack, but for that of single teeth [m].
     lever : (2, n, pairs) array
         Lever of the normal about the axes, over the base radii.
     tangent_arm : (2, n, pairs) array
         Distance from the foot of each axis on the normal to the contact [m], rho on the path.
     leaning : (2, n_1, pairs) array
-        Angle from the normal of pinion's and wheel's flank to the force [rad], away from the tip; not zero at the
-        gear's own tip edge alone.
+        Angle from the normal of pinion's and wheel's involute to the force [rad], away from the tip; not zero at the
+        gear's own tip edge and where it is relieved.
     gap : (pitches, n_1, pairs) array
         Unloaded gaps [m], inf where not touchable.
     teeth : (2, n, pairs) array of int
@@ -62,6 +67,8 @@ class ContactCandidates:
     rho: Array
     touchable: Booleans
     edge: Booleans
+    curvature: Array
+    lacking: Array
     lever: Array
     tangent_arm: Array
     leaning: Array
@@ -100,20 +107,28 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     place = np.where(touchable, place, middle)
     rho = np.stack([place, line - place])
     lever, arm, leaning = np.ones_like(rho), rho.copy(), np.zeros_like(rho)
-    gap = np.where(touchable, 0.0, np.inf)
+    gap, curvature = np.where(touchable, 0.0, np.inf), np.ones_like(place)
     chamfered = np.zeros_like(edge)
-    removed = given.removed
-    if removed is not None:
+    if given.removed is not None and gentle(given):
+        near = touch(given, place[touchable], given.removed)
+        beyond = np.zeros_like(touchable)
+        beyond[touchable] = near.beyond
+        edge = (beyond if given.beyond_path else beyond & outside) & touchable
+        gap[touchable], curvature[touchable] = near.gap, near.curvature
+        rho[:, touchable], lever[:, touchable], arm[:, touchable] = near.rho, near.lever, near.rho
+        leaning[:, touchable] = near.leaning
+    elif given.removed is not None:
         on_path = touchable & ~edge
-        gap[on_path] = removed[0](rho[0][on_path]) + removed[1](rho[1][on_path])
+        gap[on_path] = given.removed[0](rho[0][on_path]) + given.removed[1](rho[1][on_path])
     other_place = pair.points.A + given.mirror * pitch - (place - pair.points.A)
     for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
         if chosen.any():
             at = _edges(given, corner, place[chosen])
             rho[1 - corner][chosen], rho[corner][chosen] = at.where, given.rounds[corner].rho
-            lever[corner][chosen], arm[corner][chosen], arm[1 - corner][chosen] = at.lever, at.arm, at.where
-            leaning[corner][chosen], gap[chosen] = at.leaning, at.gap
-            chamfered[chosen] = at.chamfered
+            lever[corner][chosen], lever[1 - corner][chosen] = at.lever, 1.0
+            arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.where
+            leaning[corner][chosen], leaning[1 - corner][chosen], gap[chosen] = at.leaning, 0.0, at.gap
+            chamfered[chosen], curvature[chosen] = at.chamfered, 1.0
     missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
     touchable, edge = touchable & ~missed, edge & ~missed
     # (pitches, positions, pairs): every position in every pitch, or each in its own
@@ -136,6 +151,8 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
         rho=rho,
         touchable=touchable,
         edge=edge,
+        curvature=curvature,
+        lacking=gap,
         lever=np.tile(lever, tiles),
         tangent_arm=np.tile(np.where(touchable, arm, np.nan), tiles),
         leaning=leaning,

@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, Integers
+from base import Array, Booleans, Integers, record
 from fem.flamant import hertz_half_width
 from fem.local_law import CutOff
+from fem.relieved_flanks import gentle
 from fem.tip_contact import rounded_law, strip_law
 from fem.tip_strips import RATIO
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from fem.bodies import Compliance
     from fem.contact_candidates import ContactCandidates
     from fem.setting import Setting
+    from fem.tip_contact import Removed
     from fem.tip_geometry import TipRound
 
 __all__ = ["cut_off", "cut_offs"]
@@ -44,6 +46,9 @@ FADE = (1.0, 3.0)
 FAR = (0.06, 0.16)
 """Distances [modules] between which it fades out in any case: strips about contacts farther in are too few."""
 
+STEEPEST = 3.0
+"""Greatest slope by the force's logarithm, over the correction itself, where relieved flanks come to a corner."""
+
 FIRST, LAST = 4, 0.8
 """Strip, counted from the corner, at which the least contact joins, and the part of the greatest force."""
 
@@ -55,13 +60,19 @@ BELOW, ABOVE = 16, 32
 
 
 def cut_offs(
-    given: Setting, bodies: Compliance, where: ContactCandidates, force: float
+    given: Setting,
+    bodies: Compliance,
+    where: ContactCandidates,
+    force: float,
+    slid: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[CutOff, ...]:
     """Corrections of all contacts on the path that may reach a corner under up to some force [N].
 
-    Flanks without relief or deviations alone: others open gradually.
+    Wavy flanks, and teeth that differ, have those of involutes.
+
+    ``slid`` by pinion and wheel, as for ``cut_off``.
     """
-    if not given.beyond_path or given.removed is not None:
+    if not given.beyond_path:
         return ()
     pair, found = bodies.pair, []
     widest = hertz_half_width(
@@ -72,12 +83,43 @@ def cut_offs(
         distance = (given.rounds[corner].rho ** 2 - where.rho[corner] ** 2) / (2 * gear.base_radius)
         at = where.touchable & ~where.edge & (distance < reach)
         if at.any():
-            found.append(cut_off(bodies, corner, where.place[at], at, given.rounds[corner]))
+            known = given.removed if gentle(given) else None
+            relieved = None if known is None else _Relieved.of(known, where, corner, at)
+            law = where.place[at], at, given.rounds[corner], relieved, slid[corner]
+            found.append(cut_off(bodies, corner, *law))
     return tuple(found)
 
 
+@record
+class _Relieved:
+    """Contacts (n,) of flanks with relief or deviations: what these lack, and where and how the contacts lie."""
+
+    removed: tuple[Removed, Removed]
+    rho: Array
+    curvature: Array
+    lacking: Array
+    kappa: Array
+    leaning: Array
+
+    @classmethod
+    def of(
+        cls, removed: tuple[Removed, Removed], where: ContactCandidates, corner: int, at: Booleans
+    ) -> _Relieved:
+        """Contacts near one gear's corner."""
+        first = where.lever[0, : len(at)]
+        of_corner = where.rho[corner][at], where.curvature[at], where.lacking[at], first[at]
+        return cls(removed, *of_corner, where.leaning[corner][at])
+
+
 def cut_off(
-    bodies: Compliance, corner: int, rho1: Array, at: Booleans, rounding: TipRound | None = None
+    bodies: Compliance,
+    corner: int,
+    rho1: Array,
+    at: Booleans,
+    rounding: TipRound | None = None,
+    relieved: _Relieved | None = None,
+    slid: float = 0.0,
+    turned: int = 0,
 ) -> CutOff:
     """Correction of the flank's law for contacts on the path near one gear's corner.
 
@@ -92,33 +134,76 @@ def cut_off(
         Which contacts these are, n of them.
     rounding : TipRound, optional
         Of the corner; distances are then those from its start. Sharp unless given.
+    relieved : _Relieved, optional
+        Where the flanks touch if they are no true involutes.
+    slid : float
+        Energy over the force cubed [m/N^2] by which strips have contacts slide on the corner's tooth: it is given back,
+        since contacts that move have it in their own law (``fem.moving_contact``).
+    turned : {0, 1}
+        As for ``edge_laws``.
     """
     pair, width, line = bodies.pair, bodies.pair.face_width, bodies.pair.line_of_action
     gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
-    rho = rho1 if corner == 0 else line - rho1
+    place = rho1 if corner == 0 else line - rho1
+    one = np.ones_like(rho1)
+    removed, rho, curvature, lacking, kappa, lean = (
+        (None, place, one, 0.0 * one, one, 0.0 * one)
+        if relieved is None
+        else (
+            relieved.removed,
+            relieved.rho,
+            relieved.curvature,
+            relieved.lacking,
+            relieved.kappa,
+            relieved.leaning,
+        )
+    )
     round_end = gear.rho_end if rounding is None else rounding.rho
     distance = np.maximum(round_end**2 - rho**2, 0.0) / (2 * gear.base_radius)
-    of_one = hertz_half_width(1 / width, rho * (line - rho) / line, _reduced(bodies))
+    radius = place * (line - place) / (line * curvature)
+    of_one = hertz_half_width(1 / (width * kappa), radius, _reduced(bodies))
     law: Callable[[Array], tuple[Array, Array]]
+    tips = pair, bodies.tips[corner], corner, rho1, other.law
     if rounding is None or rounding.radius == 0.0:
-        force, approach = strip_law(pair, bodies.tips[corner], corner, rho1, other.law)
-        least, law = force[:, FIRST], partial(_between, force, approach)
+        force, approach = strip_law(*tips, removed, turned)
+        least, law = force[:, FIRST], partial(_between, force, approach - lacking[:, None])
     else:
-        force, approach = rounded_law(pair, bodies.tips[corner], corner, rho1, other.law, rounding)
-        least, law = np.nanmin(np.where(force > 0.0, force, np.nan), axis=1), partial(_along, force, approach)
+        force, approach = rounded_law(*tips, rounding, removed, turned)
+        least = np.nanmin(np.where(force > 0.0, force, np.nan), axis=1)
+        law = partial(_along, force, approach - lacking[:, None])
+    if removed is not None:  # whose gap may be least a little inside the corner, where few strips would pull
+        least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * force[:, -1])
-    flank, own = bodies.hertz(rho1), (gear.own(rho) - gear.hub_windup) / width
+    flank, own = bodies.hertz(rho1, curvature, kappa), (gear.own(rho) - gear.hub_windup) / (width * kappa**2)
+    further = _leaning(bodies, corner, distance, rho, lean) / (width * kappa**2)
     fade = 1.0 - _rise(distance / pair.module, *FAR)[0]
     below = 2 * np.log(np.geomspace(1 / (JOIN * FADE[1]), 1.0, BELOW + 1)[:-1]) + np.zeros((len(rho1), 1))
     above = np.linspace(0.0, 1.0, ABOVE) * np.log(force[:, -1:] / comes[:, None])
-    start = np.log(comes)[:, None]
+    start, per_log = np.log(comes)[:, None], np.reshape(flank.per_log + 0.0 * rho1, (-1, 1))
     whole, steepness = law(comes[:, None] * np.exp(above))
-    away = whole - (flank.constant + own)[:, None] + flank.per_log * (start + above)
-    slope = steepness - whole + flank.per_log
-    quotient, slope = _completed(np.concatenate([below, above], axis=1), away, slope)
-    return CutOff(
-        at, start + np.concatenate([below, above], axis=1), fade[:, None] * quotient, fade[:, None] * slope
+    away = whole - (flank.constant + own + further)[:, None] + per_log * (start + above)
+    slope = steepness - whole + per_log
+    logs = np.concatenate([below, above], axis=1)
+    if removed is not None:  # the gap and the law by strips differ by nanometres, which few forces would tell
+        most = STEEPEST * np.abs(away[:, 0])
+        slope[:, 0] = np.clip(slope[:, 0], -most, most)
+    quotient, slope = _completed(logs, away, slope, 3 * slid * np.exp(start + logs))
+    quotient = quotient + further[:, None]
+    return CutOff(at, start + logs, fade[:, None] * quotient, fade[:, None] * slope)
+
+
+def _leaning(bodies: Compliance, corner: int, distance: Array, rho: Array, lean: Array) -> Array:
+    """What a gear yields more along a normal that leans from its involute's own [m per N/m], its turn left out."""
+    gear, strips = (bodies.pinion, bodies.wheel)[corner], bodies.tips[corner]
+    if not np.any(lean):
+        return np.zeros_like(rho)
+    cos, sin = np.cos(lean), np.sin(lean)
+    along = np.interp(
+        np.log(np.maximum(distance, strips.distance[0])), np.log(strips.distance), np.diag(strips.mixed)
     )
+    lever = cos - sin * rho / gear.base_radius
+    own = (cos**2 - 1) * gear.own(rho) - 2 * sin * cos * along
+    return np.asarray(own - gear.hub_windup * (lever**2 - 1))
 
 
 def _reduced(bodies: Compliance) -> float:
@@ -172,12 +257,15 @@ def _scaled_cubic(cubic: Array, strips: Integers, t: Array) -> tuple[Array, Arra
     return value * size, (slope + 2 * np.log(RATIO) * value) * size
 
 
-def _completed(log_part: Array, quotient: Array, slope: Array) -> tuple[Array, Array]:
-    """Correction over force and its slope by ln F, with that of contacts that do not come to the corner."""
+def _completed(log_part: Array, quotient: Array, slope: Array, slid: Array) -> tuple[Array, Array]:
+    """Correction over force and its slope by ln F, with that of contacts that do not come to the corner.
+
+    All but contacts far from it are given back what strips slide, over the force.
+    """
     at, rises, part = quotient[:, :1], slope[:, :1], np.exp(log_part[:, :BELOW])
     first, second = (2 * at - rises) * part, (rises - at) * part**2
-    whole = np.concatenate([first + second, quotient], axis=1)
-    slopes = np.concatenate([first + 2 * second, slope], axis=1)
+    whole = np.concatenate([first + second, quotient], axis=1) + slid
+    slopes = np.concatenate([first + 2 * second, slope], axis=1) + slid
     apart = np.exp(-0.5 * log_part) / JOIN  # distance over half-width
     gone, going = _rise(apart, *FADE)
     return whole * (1 - gone), slopes * (1 - gone) + 0.5 * apart * going * whole

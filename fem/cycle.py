@@ -24,7 +24,7 @@ from base import (
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
-from fem.moving_contact import LoadedContacts
+from fem.model_error import LoadedContacts
 from fem.opposite_flanks import OppositeFlanks
 from fem.references import check_reference, turns
 from fem.setting import Setting
@@ -119,10 +119,11 @@ class MeshCycle(MeshFigures):
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
     moving_contact: bool = part("whether contacts on the path move under load", default=False)
     lever_loss: Array | float = part(
-        "part of the pinion's base radius by which the tilt of a loaded flank shortens the lever of each force, half "
-        "as much as a further load does; zero where contacts stay",
+        "parts of the base radii by which the levers of each force are shorter where contacts move: by the tilt of "
+        "loaded flanks, and by the pinion's corner that moves with D",
         default=0.0,
     )
+    further_lever_loss: Array | float = part("the same of further forces", default=0.0)
     supports: tuple[Support, Support] = part(
         "how the bores are held, of what the compliance counts", default=(FIXED, FIXED)
     )
@@ -202,10 +203,12 @@ class MeshCycle(MeshFigures):
     def _moments(self) -> tuple[Array, Array]:
         """Net normal force by its levers about both gears, and its slope by D (2, n)."""
         lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
-        lost = np.where(self.forces > 0, self.lever_loss, 0.0)
         sums = [
-            np.sum((lever - part * lost) * one, axis=-1)
-            for part, one in ((1, self.forces), (2, self.pair_stiffness))
+            np.sum((lever - np.where(self.forces > 0, lost, 0.0)) * one, axis=-1)
+            for lost, one in (
+                (self.lever_loss, self.forces),
+                (self.further_lever_loss, self.pair_stiffness),
+            )
         ]
         if self.opposite is not None:
             other = self.opposite

@@ -1,13 +1,16 @@
-"""Laws of a pair's tip edges, kept by place: pitches, torques and both meshes of an estimate ask for the same ones."""
+"""Laws of a pair's tip edges, kept by place: pitches and torques ask for the same ones, on each mesh of an estimate."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans, Integers, record
 from fem.local_law import Table
+from fem.place_surface import PlaceSurface, place_surface, slid
 from fem.tip_contact import edge_laws
 
 if TYPE_CHECKING:
@@ -43,15 +46,22 @@ class _Laws:
     approach: Array
     largest: Array
 
+    def _nearest(self, key: Array) -> Integers:
+        """Laws whose places are nearest; there is at least one."""
+        after = np.clip(np.searchsorted(self.key, key), 1, max(len(self.key) - 1, 1))
+        before, after = after - 1, np.minimum(after, len(self.key) - 1)
+        return np.where(key - self.key[before] <= self.key[after] - key, before, after)
+
     def has(self, key: Array) -> Booleans:
-        """Whether the law of each place is here."""
-        at = np.minimum(np.searchsorted(self.key, key), len(self.key) - 1)
-        found: Booleans = self.key[at] == key if len(self.key) else np.zeros(len(key), dtype=bool)
+        """Whether the law of each place is here, or of one that rounding has put beside it."""
+        if not len(self.key):
+            return np.zeros(len(key), dtype=bool)
+        found: Booleans = np.abs(self.key[self._nearest(key)] - key) <= 1.0
         return found
 
     def rows(self, key: Array) -> _Laws:
         """Laws of places that are here."""
-        return self._part(np.searchsorted(self.key, key))
+        return self._part(self._nearest(key))
 
     def joined(self, other: _Laws) -> _Laws:
         """These and others."""
@@ -75,23 +85,36 @@ class EdgeTables:
     given : Setting
         At any positions: what counts is how the gears are set up.
     bodies : Compliance
-        On any of its meshes that share the answer of the tips.
+        On any of its meshes that share the answer of the tips; others have tables of their own (`serving`).
     """
 
     def __init__(self, given: Setting, bodies: Compliance) -> None:
         self.given, self.bodies = given, bodies
         self._kept: dict[int, _Laws] = {}
+        self._other: EdgeTables | None = None
 
-    def serves(self, bodies: Compliance) -> bool:
-        """Whether laws of these bodies, on whichever mesh, are the ones that are kept here."""
+    def serving(self, bodies: Compliance) -> EdgeTables:
+        """Tables of the same pair with the tips of other bodies: these, or others that are kept here as well."""
         strips = bodies.tip_strips
-        return bodies is self.bodies or strips is None or strips is self.bodies.tips
+        if bodies is self.bodies or strips is None or strips is self.bodies.tips:
+            return self
+        if self._other is None or self._other.bodies.tip_strips is not strips:
+            self._other = EdgeTables(self.given, bodies)
+        return self._other
 
-    def at(self, where: ContactCandidates) -> tuple[Table | None, Array]:
-        """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N]."""
+    def at(
+        self, where: ContactCandidates, slid: tuple[float, float] = (0.0, 0.0)
+    ) -> tuple[Table | None, Array]:
+        """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N].
+
+        What strips ``slid`` on pinion and wheel is given back (``fem.cut_off``).
+        """
         if not where.edge.any():
             return None, np.zeros(0)
-        found = [(chosen, self._laws(corner, where.place[chosen])) for corner, chosen in where.corners()]
+        found = [
+            (chosen, self._laws(corner, where.place[chosen], slid[corner]))
+            for corner, chosen in where.corners()
+        ]
         points = max(laws.force.shape[1] for _, laws in found)
         order = np.argsort(np.concatenate([np.flatnonzero(chosen) for chosen, _ in found]))
         force, approach = (
@@ -100,8 +123,25 @@ class EdgeTables:
         )
         return Table.through(force, approach), np.concatenate([laws.largest for _, laws in found])[order]
 
-    def _laws(self, corner: int, place: Array) -> _Laws:
+    @cached_property
+    def slid(self) -> tuple[float, float]:
+        """What strips slide on the teeth of pinion and wheel, for contacts that move."""
+        return slid(self.bodies)
+
+    @cached_property
+    def surfaces(self) -> tuple[PlaceSurface, PlaceSurface]:
+        """Laws beside the corners of pinion and wheel over place and force, for contacts that move."""
+        first, second = (
+            place_surface(self.given, self.bodies, corner, self.slid[corner]) for corner in (0, 1)
+        )
+        return first, second
+
+    def _laws(self, corner: int, place: Array, slid: float) -> _Laws:
         """Laws of one gear's tip at places (n,) [m]; those that are known are not computed again."""
+        found = self._held(corner, place)
+        return found if slid == 0.0 else replace(found, approach=found.approach + 3 * slid * found.force**2)
+
+    def _held(self, corner: int, place: Array) -> _Laws:
         key = np.round(place / (APART * self.given.pair.base_pitch))
         known = self._kept.get(corner)
         if known is None or len(known.key) > MOST:
@@ -113,6 +153,8 @@ class EdgeTables:
 
     def _computed(self, corner: int, key: Array, place: Array) -> _Laws:
         key, first = np.unique(key, return_index=True)
+        apart = np.diff(key, prepend=-np.inf) > 1.0  # what rounding has parted is one place
+        key, first = key[apart], first[apart]
         given, bodies = self.given, self.bodies
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
         tips = bodies.tips[corner]

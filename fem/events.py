@@ -10,6 +10,7 @@ from base import Array, SolverError
 from fem.bodies import Compliance
 from fem.edge_tables import EdgeTables
 from fem.local_law import Film, film_yielding
+from fem.relieved_flanks import ends_of_flanks, starts_of_relief
 from fem.setting import Setting
 from fem.sharing import Solution, solve
 from gears.arcs import Arcs
@@ -76,11 +77,12 @@ class ContactProblem:
         base.SolverError
             A contact somewhere on them has no solution.
         """
-        before, fine = self.bodies.coarser, self.divided()
+        fine = self.divided()
+        before = self.bodies.coarser  # with the tips that have been asked for
         coarse = None if before is None else self._alike(before, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
-        return MeshArcs(fine, coarse, self.bodies.gain, self.bodies.fit_error, varied)
+        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""
@@ -88,7 +90,7 @@ class ContactProblem:
 
     def _sampler(self, bodies: Compliance) -> Sampler:
         known = self.tables
-        tables = known if known is not None and known.serves(bodies) else EdgeTables(self.given, bodies)
+        tables = EdgeTables(self.given, bodies) if known is None else known.serving(bodies)
 
         def sample(position: Array) -> Sampled:
             found = solve(self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables)
@@ -124,6 +126,8 @@ class ContactProblem:
             if first > 0.0:
                 steps = first * GRADING ** np.arange(3)
                 places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
+        if self.given.removed is not None:
+            places += [*ends_of_flanks(self.given), *starts_of_relief(self.given)]
         if self.given.moving_contact:  # beyond these ends the flanks' motion stays the same
             pinion, wheel = bodies.motions
             places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]
@@ -146,21 +150,18 @@ class ContactProblem:
         moved, tangent = share.transmission_error[0, 0] + found.touch[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
-            rho1 = np.where(where.touchable & ~where.edge, where.rho[0], np.nan)
+            rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
             shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
             added = film_yielding(self.film, rho1, turned / found.kappa, shares)
             secant = size / (size / secant + added) if size else secant
         if self.given.back:
             moved = -(self.given.pair.backlash + moved)
-        lost = found.lever_loss(0)
-        lost = lost if isinstance(lost, float) else lost[0]
+        lost, further = (one[:, 0] for one in found.lever_loss(0))
         other = found.opposite
         moments = found.moments(turned, None if other is None else other.forces[0, 0], lost)
         moments = moments / size if size else np.zeros_like(moments)
         slopes = found.moments(
-            share.pair_stiffness[0, 0],
-            None if other is None else other.pair_stiffness[0, 0],
-            2 * lost,
+            share.pair_stiffness[0, 0], None if other is None else other.pair_stiffness[0, 0], further
         )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn)

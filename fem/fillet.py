@@ -161,7 +161,9 @@ def fillet_stress_matrix(
         if name not in mesh.facets:
             continue
         ends = mesh.parameters[name]
-        place = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * GAUSS
+        # as the element's own coordinate runs, through the parameter of its middle
+        bend = 4 * mesh.curves[name].middles(ends)[:, None] - 2 * ends.sum(axis=1, keepdims=True)
+        place = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * GAUSS + bend * GAUSS * (1 - GAUSS)
         if name.startswith("root"):
             arcs.append(profile.root_radius * (0.5 * profile.pitch_angle - place))
         else:

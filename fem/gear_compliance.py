@@ -14,6 +14,7 @@ the rest is fitted by Chebyshev polynomials in the curvature radius rho.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,7 +42,11 @@ __all__ = [
 CORNER_CLEARANCE = 0.01
 """Loads nearer to the tip corner than this (in modules of rho) are placed at this distance."""
 
-CROSS_DEGREE = 12
+CROSS_DEGREE, CROSS_SHARE = 12, 5
+"""Least degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
+
+PLACES = 65
+"""Places along the flank at which the size of what a fit leaves out is looked at."""
 
 
 @record
@@ -67,8 +72,8 @@ class GearCompliance:
         For the same tooth's corner along its tangent: coefficients over the load's rho.
     hub_windup : float
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
-    fit_error : float
-        What the series leave out, estimated from the decay of their coefficients [m per N/m].
+    own_error, cross_error : float
+        What these series leave out: by the decay of the coefficients, and at the samples [m per N/m].
     """
 
     rho_range: tuple[float, float]
@@ -81,7 +86,13 @@ class GearCompliance:
     cross_series: Mapping[int, Array]
     corner_series: Mapping[int, Array]
     hub_windup: float
-    fit_error: float
+    own_error: float
+    cross_error: float
+
+    @property
+    def fit_error(self) -> float:
+        """What the series leave out at most [m per N/m]."""
+        return max(self.own_error, self.cross_error)
 
     def scaled(self, module: float, law: PlaneElasticity) -> GearCompliance:
         """Give a gear in modules and E* its size [m] and modulus."""
@@ -98,7 +109,32 @@ class GearCompliance:
             {tooth: series / modulus for tooth, series in self.cross_series.items()},
             {tooth: series / modulus for tooth, series in self.corner_series.items()},
             self.hub_windup / modulus,
-            self.fit_error / modulus,
+            self.own_error / modulus,
+            self.cross_error / modulus,
+        )
+
+    def off_by(self, other: GearCompliance, times: float) -> GearCompliance:
+        """Series that are off by some times what those of another mesh, fitted alike, leave out.
+
+        A fit's remainder waves about zero faster than any of its terms, and is largest where these are: its shape is
+        that of the upper half of the degrees, its size what the series leave out.
+
+        Parameters
+        ----------
+        other : GearCompliance
+            The same gear on another mesh.
+        times : float
+        """
+        unit = np.linspace(-1.0, 1.0, PLACES)
+        own = _upper(other.own_series)
+        own = own * _over(other.own_error, np.abs(chebyshev.chebval(unit, own)))
+        cross = {tooth: _upper(series) for tooth, series in other.cross_series.items()}
+        sizes = [np.abs(chebyshev.chebgrid2d(unit, unit, series)).max() for series in cross.values()]
+        part = times * _over(other.cross_error, np.array(sizes, ndmin=1))
+        return replace(
+            self,
+            own_series=self.own_series + times * own,
+            cross_series={tooth: self.cross_series[tooth] + part * series for tooth, series in cross.items()},
         )
 
     def _unit(self, rho: Array) -> Array:
@@ -118,6 +154,17 @@ class GearCompliance:
         rho = np.clip(rho, low, high)
         slope = chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series)) * 2 / (high - low)
         return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
+
+    def own_bend(self, rho: Array) -> Array:
+        """Differentiate ``own_slope`` by rho [1/m per N/m]; places beyond the range are moved to its end."""
+        low, high = self.rho_range
+        rho = np.clip(rho, low, high)
+        bend = (
+            chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series, 2))
+            * (2 / (high - low)) ** 2
+        )
+        away = self.rho_end**2 - rho**2
+        return np.asarray(bend - self.logarithm * (2 / away + (2 * rho / away) ** 2))
 
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
         """Displacement along the inward normal of another tooth by a load on tooth 0.
@@ -287,7 +334,8 @@ def gear_compliance(
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
     smooth = samples.own - logarithm * np.log(away / profile.module)
     own = np.asarray(np.linalg.solve(chebyshev.chebvander(unit, len(rho) - 1), smooth), dtype=float)
-    basis = chebyshev.chebvander(unit, min(CROSS_DEGREE, len(rho) - 1))
+    degree = max(CROSS_DEGREE, CROSS_SHARE * len(rho) // 8)
+    basis = chebyshev.chebvander(unit, min(degree, len(rho) - 1))
     fit = np.linalg.pinv(basis)
     cross = fit @ samples.cross @ fit.T
     remainder = float(np.max(np.abs(basis @ cross @ basis.T - samples.cross)))
@@ -302,8 +350,21 @@ def gear_compliance(
         {tooth + 1: series for tooth, series in enumerate(cross)},
         {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
         hub_windup(profile, ring.law),
-        max(_tail(own), remainder),
+        _tail(own),
+        remainder,
     )
+
+
+def _upper(series: Array) -> Array:
+    """Upper half of the degrees of a series of one or two places."""
+    degree = np.max(np.indices(series.shape), axis=0)
+    return np.where(2 * degree > len(series), series, 0.0)
+
+
+def _over(size: float, values: Array) -> float:
+    """Size over the greatest of some values; 0 where there are none."""
+    greatest = float(np.max(values, initial=0.0))
+    return size / greatest if greatest > 0.0 else 0.0
 
 
 def _tail(series: Array) -> float:

@@ -75,13 +75,15 @@ def loaded_flanks(
     _leave_out_corner(bodies, matrix, where)
     matrix /= kappa[..., :, None] * kappa[..., None, :]
     on_path = where.touchable & ~where.edge
-    middle = given.pair.points.A + 0.5 * (given.pair.points.E - given.pair.points.A)
+    ends = float(given.pair.points.A), float(given.pair.points.E)
+    middle = ends[0] + 0.5 * (ends[1] - ends[0])
     if (overlap := -float(np.min(where.back_gap))) > 0.0:  # presses both sides without a torque
         force += overlap / float(bodies.own(np.array([middle]))[0])
     # contacts that move have a law of their own near the corner
     near = () if given.moving_contact else cut_offs(given, bodies, where, force)
-    laws = PairLaws(bodies.hertz(np.where(on_path, rho1, middle)), where.edge, table, near)
-    oil = None if film is None else FilmLaw(film, np.where(on_path, rho1, np.nan))
+    place = np.where(on_path, where.place, middle)
+    laws = PairLaws(bodies.hertz(place, where.curvature, kappa), where.edge, table, near)
+    oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(place, *ends), np.nan))
     return LoadedFlanks(where, kappa, matrix, laws, oil, _levers(given, where) / kappa, largest)
 
 

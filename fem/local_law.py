@@ -24,12 +24,12 @@ class HertzApproach:
     ----------
     constant : (..., pairs) array
         [m/N]
-    per_log : float
+    per_log : (..., pairs) array or float
         [m/N]
     """
 
     constant: Array
-    per_log: float
+    per_log: Array | float
 
     def approach(self, force: Array) -> Array:
         """Indentation of both flanks together [m] under forces [N]; zero without force."""
@@ -87,8 +87,8 @@ class Table:
 class CutOff:
     """What a near tip corner adds to the flank's law of some contacts, over the force (``fem.cut_off``).
 
-    Cubic between its points in the force's logarithm; zero below the first one, and in proportion to the
-    force beyond the last, which strips do not cover.
+    Cubic between its points in the force's logarithm; in proportion to the force below the first one, where it is
+    zero for true involutes, and beyond the last, which strips do not cover.
 
     Attributes
     ----------
@@ -118,8 +118,7 @@ class CutOff:
         quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t)
         slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
         slope = np.where(log < self.log_force[:, -1], slope, 0.0)
-        inside = log > self.log_force[:, 0]
-        return np.where(inside, force * quotient, 0.0), np.where(inside, quotient + slope, 0.0)
+        return force * quotient, quotient + np.where(log > self.log_force[:, 0], slope, 0.0)
 
 
 @record

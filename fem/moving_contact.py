@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     from fem.contact_candidates import ContactCandidates
     from fem.elasticity import PlaneElasticity
     from fem.local_law import PairLaws
+    from fem.moving_corners import MovedFlanks
     from gears import LoadShare
     from gears.load_sharing import DeflectionLaw
 
-__all__ = ["ContactMoves", "LoadedContacts", "contact_moves", "model_error", "moved_places", "moved_share"]
+__all__ = ["ContactMoves", "contact_moves", "model_error", "moved_places", "moved_share"]
 
 ITERATIONS = 100
 CLOSE = 1e-11
@@ -74,10 +75,15 @@ class ContactMoves:
         return np.asarray((self.roll @ force[..., None])[..., 0])
 
 
-def contact_moves(bodies: Compliance, where: ContactCandidates) -> ContactMoves:
-    """Moves of the contacts of a pair at all positions."""
+def contact_moves(bodies: Compliance, where: ContactCandidates, corners: bool = False) -> ContactMoves:
+    """Moves of the contacts of a pair at all positions.
+
+    With ``corners`` those of tip edges too, with energies of the flanks' ends, and B' without the flanks' own part
+    (``fem.moving_corners``).
+    """
     pair, width = bodies.pair, bodies.pair.face_width
-    on_path = where.touchable & ~where.edge
+    flat = where.touchable & ~where.edge
+    on_path = where.touchable if corners else flat
     gears, radii = (bodies.pinion, bodies.wheel), pair.base_radii
     rho = np.where(on_path, where.rho, 0.5 * pair.line_of_action)
     motions = bodies.motions
@@ -108,7 +114,7 @@ def contact_moves(bodies: Compliance, where: ContactCandidates) -> ContactMoves:
     hertz = -sum(1 / law.plane_modulus for law in laws) / np.pi * rho[1] / (rho[0] * (rho[0] + rho[1]))
     count, pinion = on_path.shape[-1], bodies.pinion
     for i in range(count):
-        roll[..., i, i] = pinion.own_slope(rho[0][..., i]) + hertz[..., i]
+        roll[..., i, i] = hertz[..., i] + (0.0 if corners else pinion.own_slope(rho[0][..., i]))
         for j in range(i + 1, min(count, i + bodies.reach + 1)):
             slope = pinion.cross_slope(j - i, rho[0][..., i], rho[0][..., j])
             roll[..., i, j] = roll[..., j, i] = slope
@@ -117,7 +123,7 @@ def contact_moves(bodies: Compliance, where: ContactCandidates) -> ContactMoves:
         roll,
         np.where(on_path, cubic, 0.0) / width**2,
         np.where(on_path, local, 0.0) / width**1.5,
-        np.where(on_path, shift, 0.0) / width,
+        np.where(flat, shift, 0.0) / width,
     )
 
 
@@ -135,8 +141,11 @@ def moved_share(
     film: DeflectionLaw | None,
     levers: Array,
     moves: ContactMoves,
+    own: MovedFlanks | None = None,
 ) -> LoadShare | None:
     """Solve with moving contacts, from the solution without; arguments as for ``share_load``.
+
+    With what the pinion's own flanks and corners yield (``fem.moving_corners``).
 
     Returns
     -------
@@ -150,10 +159,16 @@ def moved_share(
     active, loads, approach = share.forces > 0, share.forces, share.transmission_error
     for iteration in range(1, ITERATIONS + 1):
         residual, jacobian, reach = _linearised(bulk, laws, film, clear, moves, loads, approach)
+        carried, stiff = np.sum((levers - 0.5 * (1 - reach)) * loads, axis=-1), 0.0
+        if own is not None:
+            more = own.pushed(loads, approach)
+            residual, reach = residual + more.approach, reach - more.less
+            jacobian = jacobian + more.slope[..., None] * np.eye(loads.shape[-1])
+            carried = carried - np.sum(np.where(active, more.push, 0.0), axis=-1)
+            stiff = np.sum(np.where(active, more.stiff, 0.0), axis=-1)
         arms = levers - (1 - reach)
-        carried = np.sum((levers - 0.5 * (1 - reach)) * loads, axis=-1)
         unit, response = _solved(jacobian, reach, residual, active)
-        tangent = np.sum(arms * unit, axis=-1)
+        tangent = np.sum(arms * unit, axis=-1) - stiff
         lift = (whole - carried + np.sum(arms * response, axis=-1)) / tangent
         step = np.where(active, unit * lift[..., None] - response, 0.0)
         moved = loads + step
@@ -163,6 +178,8 @@ def moved_share(
         # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it
         unloaded = (bulk @ kept[..., None])[..., 0] + at_zero
         unloaded += approach[..., None] * (moves.rolled(kept) - 1)
+        if own is not None:
+            unloaded += own.opened(approach)
         released = negative & (unloaded >= 0)
         taken = touchable & ~active & (unloaded < -ROUNDING * np.abs(approach)[..., None])
         settled = np.all(np.abs(step) <= CLOSE * whole[..., None])
@@ -222,7 +239,9 @@ def moved_places(moves: ContactMoves, force: Array, approach: Array) -> Array:
     return np.stack([roll + moves.shift[0] * force, moves.shift[1] * force])
 
 
-def model_error(moves: ContactMoves, force: Array, approach: Array, moving: bool) -> float:
+def model_error(
+    moves: ContactMoves, force: Array, approach: Array, moving: bool, changed: Array | float = 0.0
+) -> float:
     """Estimate what the model of the contacts leaves out, relative to the deflection, greatest over the positions.
 
     What Hencky's law would change, plus the square of what the moving contact changes to the first order; plus
@@ -237,37 +256,12 @@ def model_error(moves: ContactMoves, force: Array, approach: Array, moving: bool
         Deflection D [m].
     moving : bool
         Whether the contacts move in the solution.
+    changed : (...) array, optional
+        Part of D by which solutions with and without motion differ, where that is known.
     """
     part = force / force.sum(axis=-1, keepdims=True)
     turn = np.sum(part * moves.rolled(force), axis=-1)
     thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=-1) / approach for k in (0, 1))
-    change = np.abs(1.5 * turn - thrust)
+    change = np.maximum(np.abs(1.5 * turn - thrust), changed)
     whole = np.abs(law) + change**2 + (0.0 if moving else change)
     return float(np.max(whole))
-
-
-@record
-class LoadedContacts:
-    """What the model error of a mesh cycle is found from when it is first asked for: it needs third-order energies.
-
-    Attributes
-    ----------
-    bodies : Compliance
-    where : ContactCandidates
-    force : (..., pairs) array
-        Forces times their levers over the base radius [N].
-    approach : (...) array
-        Deflection [m].
-    moving : bool
-        Whether the contacts move.
-    """
-
-    bodies: Compliance
-    where: ContactCandidates
-    force: Array
-    approach: Array
-    moving: bool
-
-    def model_error(self) -> float:
-        """Estimate what the model of the contacts leaves out, as `model_error`."""
-        return model_error(contact_moves(self.bodies, self.where), self.force, self.approach, self.moving)

@@ -136,7 +136,7 @@ def compliance(
             break
         sizes, level = finer
     converged = bool(error <= tolerance) or refinements is not None
-    message = f"mesh refined {level} times, error {error:.1e}"
+    message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
     if not converged:
         message = (
             f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
@@ -159,12 +159,12 @@ def compliance(
         gain=2**ORDER - 1,
         before=(first.before, second.before),
     )
-    tips = bodies.tips_of(gears) if tip_edges else None
+    tips, coarse_tips = (bodies.tips_of(gears, before) if tip_edges else None for before in (False, True))
     motions = bodies.motions_of(gears) if motion else None
     parts = sum(gears.costs, Cost(0.0)).parts
     counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}
     cost = Cost(watch.seconds, first.unknowns + second.unknowns, parts=parts, counts=counts)
-    return replace(bodies, tip_strips=tips, flank_motions=motions, cost=cost)
+    return replace(bodies, tip_strips=tips, tip_strips_before=coarse_tips, flank_motions=motions, cost=cost)
 
 
 def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Faults, Integers, Limit
+from base import Array, Faults, Integers, Limit, rounded_down
 from fem.tip_contact import Removed
 from fem.tip_geometry import TipRound, chamfer_length, tip_round
 
@@ -143,7 +143,7 @@ class Setting:
             length = chamfer_length(profile)
             room = min(LARGEST_ROUND * profile.module, length if length > 0 else land)
             if one.start > room:
-                most = f"must be at most {room * one.radius / one.start:.3g} m"
+                most = f"must be at most {rounded_down(room * one.radius / one.start, 3)} m"
                 found.add(f"tip_rounding[{k}]", f"{one.radius:g} m", most, "round the tip less")
                 fits = False
         start, end = self.ends
@@ -180,6 +180,17 @@ class Setting:
         """Whether the flanks are true involutes at equal pitches."""
         plain = all(some is None or some.every_tooth_alike for some in self._by_gear)
         return plain and self.removed is None and not self.base_pitch_difference
+
+    @property
+    def teeth_alike(self) -> bool:
+        """Whether all teeth of a gear have one profile."""
+        return all(some is None or some.profiles_alike for some in self._by_gear)
+
+    def kinks(self, gear: int) -> Array:
+        """Curvature radii at which the slope of what a gear's flank lacks changes at once."""
+        profile, some = self.pair.teeth_profiles[gear], self._by_gear[gear]
+        relief = [] if profile.tip_relief is None else [profile.flank_rho[1] - profile.tip_relief.length]
+        return np.concatenate([relief, [] if some is None else some.kinks(MOST_POINTS)])
 
     @property
     def corners(self) -> Array:

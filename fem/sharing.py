@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,16 +15,50 @@ from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.local_law import Film
 from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share
+from fem.moving_corners import MovedFlanks, moved_flanks
 from fem.opposite_flanks import OppositeShare, share_with_opposite
 from fem.setting import Setting
 
 if TYPE_CHECKING:
     from gears import GearPair, LoadShare
 
-__all__ = ["Solution", "solve"]
+__all__ = ["Solution", "one_sided", "solve"]
 
 FAR_TOO_DEEP = 0.25
 """Deflection in modules above which no law of contact holds, and the other side is not looked at."""
+
+
+@record
+class MovedShare:
+    """What contacts that move with corners were solved with."""
+
+    own: MovedFlanks
+    flanks: LoadedFlanks
+    given: Setting
+
+    def edge_rho(self, approach: Array) -> Array:
+        """Places of tip edges (2, pitches, positions, pairs) [m]."""
+        return self.own.edge_rho(self.flanks, self.given, approach)
+
+    def lever_losses(self, found: Solution, both: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Parts of the base radii (2, torques, ...) by which levers are shorter, with what the pinion's flanks add."""
+        half, whole = both
+        force, approach, slope = (
+            found.share.forces,
+            found.share.transmission_error,
+            found.share.pair_stiffness,
+        )
+        bears = (force > 0.0) & (slope != 0.0)
+        size, per_turn = np.where(bears, force, 1.0), np.where(bears, slope, 1.0)
+        turned = found.where.lever[0, : self.given.positions] / found.kappa - 1.0
+        parts = self.own.rolled(force, approach), self.own.cornered(force, approach)
+        for gears, one in zip(((0, 1), (0,)), parts, strict=True):
+            for gear in gears:
+                half[gear] += np.where(bears, one.push / size, 0.0)
+                whole[gear] += np.where(bears, one.less + one.stiff / per_turn, 0.0)
+        half[0] += turned
+        whole[0] += turned
+        return half, whole
 
 
 @record
@@ -46,6 +81,7 @@ class Solution:
     moves: ContactMoves | None
     settled: bool
     opposite: OppositeShare | None = None
+    moved: MovedShare | None = None
 
     @property
     def touch(self) -> Array:
@@ -57,7 +93,7 @@ class Solution:
         moved = self.share.transmission_error[number]
         return np.asarray(moved if self.opposite is None else moved - self.opposite.rest)
 
-    def moments(self, loaded: Array, other: Array | None, lost: Array | float = 0.0) -> Array:
+    def moments(self, loaded: Array, other: Array | None, lost: Array) -> Array:
         """Sums of forces kappa F, or of their slopes, by their levers about pinion and wheel (2, positions).
 
         Parameters
@@ -66,7 +102,7 @@ class Solution:
             Of the loaded flanks.
         other : (positions, pairs) array or None
             Of those on the other side, which turn the gears the other way.
-        lost : (positions, pairs) array
+        lost : (2, positions, pairs) array
             Part of the loaded flanks' levers that contacts which move lose.
         """
         found = _levered(self.where, self.kappa, loaded, lost)
@@ -74,13 +110,27 @@ class Solution:
             found = found - _levered(self.opposite.where, self.opposite.kappa, other)
         return found
 
-    def lever_loss(self, number: int) -> Array | float:
-        """Part of the base radius by which tilted flanks shorten levers (pitches, positions, pairs); 0 if they stay."""
-        return 0.0 if self.moves is None else 0.5 * self.moves.rolled(self.share.forces[number])
+    @cached_property
+    def _lever_losses(self) -> tuple[Array, Array]:
+        force = self.share.forces
+        if self.moves is None:
+            return np.zeros((2, *force.shape)), np.zeros((2, *force.shape))
+        tilted = self.moves.rolled(force)
+        both = 0.5 * np.stack([tilted, tilted]), np.stack([tilted, tilted])
+        return both if self.moved is None else self.moved.lever_losses(self, both)
+
+    def lever_loss(self, number: int) -> tuple[Array, Array]:
+        """Parts of both base radii by which levers of forces, and of further ones, are shorter.
+
+        (2, pitches, positions, pairs) each, nothing for contacts that stay: half of what tilted flanks take from
+        further forces, and what the pinion's corner gains by the turn D.
+        """
+        first, second = self._lever_losses
+        return first[:, number], second[:, number]
 
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
-        return np.asarray(self.share.forces[number] * (self.levers - self.lever_loss(number)))
+        return np.asarray(self.share.forces[number] * (self.levers - self.lever_loss(number)[0][0]))
 
     def flank_rho(self, pair: GearPair, number: int) -> Array:
         """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m], untouched ones too."""
@@ -88,7 +138,10 @@ class Solution:
         rho = np.repeat(self.where.rho[:, None], len(share.forces[number]), axis=1)
         if self.moves is None:
             return rho
-        rho = rho + moved_places(self.moves, share.forces[number], share.transmission_error[number])
+        force, approach = share.forces[number], share.transmission_error[number]
+        rho = rho + np.where(self.where.edge, 0.0, moved_places(self.moves, force, approach))
+        if self.moved is not None:
+            rho = np.where(self.where.edge, self.moved.edge_rho(approach), rho)
         ends = [profile.flank_rho for profile in pair.teeth_profiles]
         return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
 
@@ -136,7 +189,7 @@ def solve(
     # without a torque overlap alone says how far contacts reach
     for reach in REACHES if np.all(force) else REACHES[-1:]:
         flanks = loaded_flanks(given, bodies, film, reach, most, tables)
-        found = _one_sided(given, bodies, force, flanks) if np.all(force) else None
+        found = one_sided(given, bodies, force, flanks, tables) if np.all(force) else None
         if found is None or np.max(found.closing + found.touch) <= flanks.where.reach_gap:
             break
     if found is None or given.both or _near(flanks, found, given.pair.tight):
@@ -159,16 +212,23 @@ def _near(flanks: LoadedFlanks, found: Solution, tight: bool) -> bool:
     return bool(np.any(flanks.where.back_gap < reached + 3.0 * film))
 
 
-def _one_sided(given: Setting, bodies: Compliance, force: Array, flanks: LoadedFlanks) -> Solution:
+def one_sided(
+    given: Setting, bodies: Compliance, force: Array, flanks: LoadedFlanks, tables: EdgeTables
+) -> Solution:
     """Solution with the loaded flanks alone."""
     from gears.load_sharing import share_load
 
     where, matrix, laws, oil = flanks.where, flanks.matrix, flanks.laws, flanks.oil
     whole, gaps = force[:, None, None], where.gap - where.gap.min(axis=-1, keepdims=True)
     share = share_load(whole, matrix, laws, gaps, oil, flanks.levers if given.friction else None)
-    moves, settled = contact_moves(bodies, where) if given.moving_contact else None, True
-    if moves is not None:
-        moved = moved_share(share, whole, matrix, laws, gaps, oil, flanks.levers, moves)
+    moves, settled, own, levers, kappa = None, True, None, flanks.levers, flanks.kappa
+    if given.moving_contact:
+        moves = contact_moves(bodies, where, given.beyond_path)
+        if given.beyond_path:
+            own = moved_flanks(given, bodies, flanks, float(np.max(force)), tables)
+            matrix, laws, gaps = own.matrix, own.laws, own.gaps
+            levers, kappa = own.levers, np.ones_like(kappa) if own.surfaces else kappa
+        moved = moved_share(share, whole, matrix, laws, gaps, oil, levers, moves, own)
         settled = moved is not None
         share = share if moved is None else moved
     propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
@@ -176,8 +236,14 @@ def _one_sided(given: Setting, bodies: Compliance, force: Array, flanks: LoadedF
     left = bent - propped - share.transmission_error[..., None]
     if moves is not None:
         left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
+    if own is not None:
+        left = left + own.pushed(share.forces, share.transmission_error).approach
     closing = share.transmission_error - bodies.turning * whole
-    return Solution(where, share, flanks.kappa, flanks.levers, flanks.largest, closing, left, moves, settled)
+    moved_by = None if own is None else MovedShare(own, flanks, given)
+    levers = levers if own is None else flanks.levers * flanks.kappa / kappa
+    return Solution(
+        where, share, kappa, levers, flanks.largest, closing, left, moves, settled, moved=moved_by
+    )
 
 
 def _two_sided(

@@ -12,7 +12,15 @@ import numpy as np
 from base import Array, Integers
 from fem.elasticity import PlaneElasticity
 
-__all__ = ["by_the_far_end", "flat_kernel", "flat_kernels", "from_the_corner", "from_the_nearest", "smoothed"]
+__all__ = [
+    "by_the_far_end",
+    "closings",
+    "flat_kernel",
+    "flat_kernels",
+    "from_the_corner",
+    "from_the_nearest",
+    "smoothed",
+]
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
@@ -113,7 +121,7 @@ def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, 
     order of their closing; what it leaves of levers and gaps in the rows of open strips is how fast these near
     the other body, and how far away they would be without any approach.
     """
-    force, approach, _ = _closings(kernel, gaps, levers)
+    force, approach, _ = closings(kernel, gaps, levers)
     return force, approach
 
 
@@ -127,7 +135,7 @@ def by_the_far_end(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Ar
     force, approach : (contacts, strips) arrays
         Line loads [N/m] and approach [m] at which each strip closes; nan for strips that close otherwise.
     """
-    force, approach, strip = _closings(kernel, gaps, levers)
+    force, approach, strip = closings(kernel, gaps, levers)
     before = np.maximum.accumulate(strip, axis=1)[:, :-1]
     point = np.zeros(strip.shape, dtype=bool)
     point[:, 0], point[:, 1:] = True, strip[:, 1:] == before + 1
@@ -137,8 +145,8 @@ def by_the_far_end(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Ar
     return found[0], found[1]
 
 
-def _closings(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array, Integers]:
-    """Line loads and approach when strips close, and which (contacts, strips)."""
+def closings(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array, Integers]:
+    """Line loads and approach when strips close, and which (contacts, strips); see ``from_the_nearest``."""
     contacts, strips = gaps.shape
     rows = np.arange(contacts)
     whole = np.zeros((contacts, strips + 1, strips + 2))

@@ -16,12 +16,15 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import TYPE_CHECKING
 
-from base import Faults, Limit
+from base import Faults, Limit, rounded_down
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
 __all__ = ["FIXED", "Support", "held_profiles", "on_both"]
+
+ROUNDING = 1e-9
+"""Relative difference below which a hub is as large as the bore."""
 
 HUB_RADIUS = Limit(0.0, unit="m", low_open=True, remedy="leave it out: the bore")
 
@@ -97,8 +100,10 @@ def held_profiles(pair: GearPair, supports: tuple[Support, Support]) -> tuple[To
         most, left = profile.root_radius - 0.05 * profile.module, "0.05 modules under the root circle"
         if profile.steps:
             most, left = profile.zones[0].inner - 0.25 * profile.module, "0.25 modules of web inside the rim"
+        if abs(radius - profile.bore_radius) < ROUNDING * profile.bore_radius:
+            radius = profile.bore_radius
         if support.hub_radius is not None and not profile.bore_radius <= radius <= most:
-            allowed = f"must be {profile.bore_radius:g} m (bore) to {most:g} m ({left})"
+            allowed = f"must be {profile.bore_radius:.6g} m (bore) to {rounded_down(most)} m ({left})"
             remedy = "the hub fills the bore and leaves a rim"
             found.add(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy)
         held.append(replace(profile, bore_radius=radius))

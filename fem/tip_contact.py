@@ -23,7 +23,7 @@ import numpy as np
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.strip_contact import by_the_far_end, flat_kernel, from_the_corner, from_the_nearest, smoothed
+from fem.strip_contact import by_the_far_end, closings, flat_kernel, from_the_corner, smoothed
 from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
 from fem.tip_strips import RATIO, REACH, TipStrips, sharp_layout
 
@@ -113,9 +113,9 @@ def _gaps(
     return gaps + missing[1 - corner](touched), touched
 
 
-def _levers(pair: GearPair, corner: int, where: Array, rho1: Array) -> Array:
-    """Levers of forces on the touched flank at ``where`` (n, k) about the pinion's axis, over its base radius."""
-    return np.ones_like(where) if corner == 1 else lever_ratio(pair, where, rho1[:, None])
+def _levers(pair: GearPair, corner: int, where: Array, rho1: Array, turned: int = 0) -> Array:
+    """Levers of forces on the touched flank at ``where`` (n, k) about the turned gear's axis, over its base radius."""
+    return lever_ratio(pair, where, rho1[:, None], corner) if corner == turned else np.ones_like(where)
 
 
 def _at_corner(profile: ToothProfile, rounding: TipRound) -> _Tip:
@@ -135,12 +135,18 @@ def nearest_gap(
     missing = removed or (_nothing, _nothing)
     sharp = rounding.radius == 0.0
     layout = sharp_layout(profile.module) if sharp else round_layout(profile.module, rounding)
-    tip = _at_corner(profile, rounding) if sharp else _surface(profile, *layout, rounding)
-    gaps, _ = _gaps(pair, corner, rho1, tip, missing)
-    if sharp and removed is not None:
-        more, _ = _gaps(pair, corner, rho1, _surface(profile, *layout, rounding), missing)
-        return np.asarray(more.min(axis=1))
-    return np.asarray(gaps.min(axis=1))
+    tips = [] if sharp and removed is None else [_surface(profile, *layout, rounding)]
+    tips += [_at_corner(profile, rounding)] if sharp else []
+    least = [_gaps(pair, corner, rho1, tip, missing)[0].min(axis=1) for tip in tips]
+    return np.asarray(np.min(least, axis=0))
+
+
+def _touching(
+    pair: GearPair, corner: int, rho1: Array, tip: _Tip, missing: tuple[Removed, Removed], turned: int = 0
+) -> Array:
+    """Approach at which each strip by itself would touch (contacts, strips) [m]."""
+    gaps, touched = _gaps(pair, corner, rho1, tip, missing)
+    return np.asarray(gaps / _levers(pair, corner, touched, rho1, turned))
 
 
 def edge_laws(
@@ -151,6 +157,7 @@ def edge_laws(
     other: PlaneElasticity,
     rounding: TipRound | None = None,
     removed: tuple[Removed, Removed] | None = None,
+    turned: int = 0,
 ) -> EdgeLaw:
     """Laws of the contacts at positions ``rho1`` outside the path of contact.
 
@@ -169,26 +176,39 @@ def edge_laws(
         Of the corner; sharp unless given.
     removed : (function, function), optional
         Material missing from the flanks of pinion and wheel; none unless given.
+    turned : {0, 1}
+        Whose turn the approach is: of the pinion, or of the wheel with the pinion where it is.
     """
     profile = pair.teeth_profiles[corner]
     rounding = rounding or tip_round(profile, 0.0)
     missing = removed or (_nothing, _nothing)
     _, where = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
     if rounding.radius == 0.0 and removed is None:
-        force, approach = strip_law(pair, strips, corner, rho1, other)
+        force, approach = strip_law(pair, strips, corner, rho1, other, turned=turned)
     else:
         sharp = rounding.radius == 0.0
         layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
         tip = _surface(profile, *layout, rounding)
         answer = strips if sharp else strips.on(tip.distance, tip.width)
-        force, approach = from_the_nearest(*_strips(pair, answer, corner, rho1, other, tip, missing))
+        force, approach, order = closings(*_strips(pair, answer, corner, rho1, other, tip, missing, turned))
         force = force * pair.face_width
+        if sharp:  # the corner is nearer than the middle of its strip
+            first = _touching(pair, corner, rho1, _at_corner(profile, rounding), missing, turned)[:, 0]
+            approach[:, 0] = np.minimum(approach[:, 0], first)
+            inwards = np.all(order == np.arange(order.shape[1]), axis=1, keepdims=True)
+            approach = np.where(inwards, smoothed(force, approach), approach)
     force, approach, largest = _growing(force, approach)
     return EdgeLaw(force, approach, where[:, 0], largest)
 
 
 def strip_law(
-    pair: GearPair, strips: TipStrips, corner: int, rho1: Array, other: PlaneElasticity
+    pair: GearPair,
+    strips: TipStrips,
+    corner: int,
+    rho1: Array,
+    other: PlaneElasticity,
+    removed: tuple[Removed, Removed] | None = None,
+    turned: int = 0,
 ) -> tuple[Array, Array]:
     """Force [N] and approach [m] (n, k) of contacts that spread from a sharp corner inwards, strip by strip.
 
@@ -196,17 +216,23 @@ def strip_law(
     whose strips would have to pull there, mean nothing.
     """
     profile = pair.teeth_profiles[corner]
-    sharp, missing = tip_round(profile, 0.0), (_nothing, _nothing)
-    end, where = _gaps(pair, corner, rho1, _at_corner(profile, sharp), missing)
-    first = (end / _levers(pair, corner, where, rho1))[:, 0]
+    sharp, missing = tip_round(profile, 0.0), removed or (_nothing, _nothing)
+    first = _touching(pair, corner, rho1, _at_corner(profile, sharp), missing, turned)[:, 0]
     tip = _surface(profile, strips.distance, strips.width, sharp)
-    kernel, gaps, levers = _strips(pair, strips, corner, rho1, other, tip, missing)
+    kernel, gaps, levers = _strips(pair, strips, corner, rho1, other, tip, missing, turned)
     force, approach = from_the_corner(kernel, gaps, first, levers)
     return force * pair.face_width, smoothed(force, approach)
 
 
 def rounded_law(
-    pair: GearPair, strips: TipStrips, corner: int, rho1: Array, other: PlaneElasticity, rounding: TipRound
+    pair: GearPair,
+    strips: TipStrips,
+    corner: int,
+    rho1: Array,
+    other: PlaneElasticity,
+    rounding: TipRound,
+    removed: tuple[Removed, Removed] | None = None,
+    turned: int = 0,
 ) -> tuple[Array, Array]:
     """As ``strip_law`` for contacts on the path near a rounding, onto which they spread.
 
@@ -214,7 +240,8 @@ def rounded_law(
     """
     tip = _surface(pair.teeth_profiles[corner], *round_layout(pair.module, rounding), rounding)
     answer = strips.on(tip.distance, tip.width)
-    kernel, gaps, levers = _strips(pair, answer, corner, rho1, other, tip, (_nothing, _nothing))
+    missing = removed or (_nothing, _nothing)
+    kernel, gaps, levers = _strips(pair, answer, corner, rho1, other, tip, missing, turned)
     force, approach = by_the_far_end(kernel, gaps, levers)
     lower = smoothed(force, approach)
     return force * pair.face_width, np.where(np.isfinite(lower), lower, approach)
@@ -228,14 +255,15 @@ def _strips(
     other: PlaneElasticity,
     tip: _Tip,
     missing: tuple[Removed, Removed],
+    turned: int = 0,
 ) -> tuple[Array, Array, Array]:
     """Kernel (n, k, k) of both bodies [m per N/m], gaps [m] and levers (n, k) of strips at a tip."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
     angle = _lean(pair, corner, rho1, tip, touched)
     own = strips.lever(angle)
-    turned = strips.hub_windup * own[:, :, None] * own[:, None, :]
-    kernel = strips.leaning(angle) - turned + flat_kernel(tip.distance, tip.width, other, pair.module)
-    return kernel, gaps, _levers(pair, corner, touched, rho1)
+    hub = strips.hub_windup * own[:, :, None] * own[:, None, :]
+    kernel = strips.leaning(angle) - hub + flat_kernel(tip.distance, tip.width, other, pair.module)
+    return kernel, gaps, _levers(pair, corner, touched, rho1, turned)
 
 
 def _lean(pair: GearPair, corner: int, rho1: Array, tip: _Tip, touched: Array) -> Array:

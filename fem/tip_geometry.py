@@ -24,8 +24,10 @@ __all__ = [
     "chamfer_gap",
     "chamfer_length",
     "corner_angle",
+    "gap_at",
     "lever_ratio",
     "opening",
+    "opening_at",
     "tip_round",
     "unloaded_gap",
 ]
@@ -63,15 +65,31 @@ def unloaded_gap(
     where : (n, k) array
         Curvature radius of flank 1 there [m].
     """
+    return gap_at(base_radii, line, rho1[:, None], rho2, along, out)
+
+
+def gap_at(
+    base_radii: tuple[float, float],
+    line: float,
+    rho1: Array,
+    rho2: Array,
+    along: Array | float = 0.0,
+    out: Array | float = 0.0,
+) -> tuple[Array, Array]:
+    """As ``unloaded_gap`` for points of their own at every position: arrays of one shape."""
     r1, r2 = base_radii
-    # line of action along x, gear 1's tangent point at the origin, axes at (0, -r1) and (line, r2)
-    turn = (rho2[None, :] - (line - rho1[:, None])) / r2
-    c, s = np.cos(turn), np.sin(turn)
-    x = line + r2 * s - rho2 * c + along * s - out * c
-    y = r2 - r2 * c - rho2 * s - along * c - out * s + r1
-    where = np.sqrt(np.maximum(x**2 + y**2 - r1**2, 0.0))
-    flank = (where - rho1[:, None]) / r1 + np.arctan2(r1, where)
-    return r1 * (flank - np.arctan2(y, x)), where
+    # line of action along x, gear 1's tangent point at the origin, axes at (0, -r1) and (line, r2); all is written as
+    # differences from where the involutes touch, so that small gaps keep their digits
+    turn = (rho2 - (line - rho1)) / r2
+    s, less = np.sin(turn), 2 * np.sin(0.5 * turn) ** 2
+    c = 1.0 - less
+    x = (line - rho1) * less + r2 * ((s - turn) + turn * less) + along * s - out * c
+    y = r2 * less - rho2 * s - along * c - out * s
+    farther = x * (2 * rho1 + x) + y * (2 * r1 + y)
+    where = np.sqrt(np.maximum(rho1**2 + farther, 0.0))
+    rolled = np.maximum(farther, -(rho1**2)) / (where + rho1)
+    turned = np.arctan2(rho1 * y - r1 * x, rho1 * (rho1 + x) + r1 * (r1 + y))
+    return rolled - r1 * (np.arctan2(r1 * rolled, r1**2 + where * rho1) + turned), where
 
 
 def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
@@ -93,8 +111,13 @@ def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Ar
     rho2 : (k,) array
         Curvature radii of flank 2 [m].
     """
+    return opening_at(base_radii, line, rho1[:, None], where, rho2)
+
+
+def opening_at(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
+    """As ``opening`` for points of their own at every position: arrays of one shape."""
     r1, r2 = base_radii
-    turned: Array = (where - rho1[:, None]) / r1 - (rho2 - (line - rho1[:, None])) / r2
+    turned: Array = (where - rho1) / r1 - (rho2 - (line - rho1)) / r2
     return turned
 
 
@@ -167,7 +190,7 @@ def tip_round(profile: ToothProfile, radius: float) -> TipRound:
     if radius == 0.0:
         return TipRound(0.0, 0.0, end)
     start = radius / tan(0.5 * corner_angle(profile))
-    return TipRound(radius, start, sqrt(end**2 - 2 * profile.base_radius * start))
+    return TipRound(radius, start, sqrt(max(end**2 - 2 * profile.base_radius * start, 0.0)))
 
 
 def chamfer_length(profile: ToothProfile) -> float:

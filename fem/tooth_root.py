@@ -15,10 +15,12 @@ import numpy as np
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
 from fem.contact import MeshCycle
-from fem.elasticity import MIRROR, PlaneElasticity
+from fem.elasticity import PlaneElasticity
 from fem.fillet import FilletLine
-from fem.fillet_influence import FilletInfluence, Fillets
-from fem.fillet_influence import fillets as _fillets
+from fem.fillet_influence import FilletInfluence
+from fem.pair_fillets import Fillets
+from fem.pair_fillets import fillets as _fillets
+from fem.root_peaks import LOADED, OTHER, RootNodes, RootPeak, extreme, peak_of
 from fem.setting import Setting
 from gears.arcs import FORCE, Arcs
 from gears.mesh_figures import MeshArcs
@@ -26,37 +28,7 @@ from gears.mesh_figures import MeshArcs
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["GearRootStress", "RootPeak", "RootStress", "root_stress"]
-
-LOADED, OTHER = 0, 1
-"""Fillet under the loaded flank, in tension when its tooth bears, and the one on the other side."""
-
-
-@record
-class RootPeak:
-    """The greatest stress of a cycle and where it acts."""
-
-    headline = ("stress_Pa", "position")
-
-    stress_Pa: float = quantity(
-        "Pa", "principal stress along the fillet, negative in compression", shown="MPa"
-    )
-    von_mises_Pa: float = quantity("Pa", "von Mises stress", shown="MPa")
-    tooth: int = quantity("1", "base pitches that the tooth is ahead of the pair that entered last")
-    position: float = quantity("1", "base pitches since the tooth's pair passed A")
-    arc: float = quantity("m", "arc length from the middle of the gap between two teeth", shown="mm")
-    tangent_angle: float = quantity("rad", "angle between the fillet's tangent and the tooth's centre line")
-    point: Array = quantity(
-        "m",
-        "place in the tooth's frame, centre line along +y, the loaded flank on the left",
-        "axis",
-        shown="mm",
-    )
-    along_Pa: Array = quantity("Pa", "stress along that fillet at that instant", "sample", shown="MPa")
-    sampling: float = quantity("1", "estimated relative error by what is greater between the instants")
-    forces: float = quantity(
-        "1", "estimated relative error by the forces, from those of the mesh before the last refinement"
-    )
+__all__ = ["GearRootStress", "RootStress", "root_stress"]
 
 
 @record
@@ -94,22 +66,22 @@ class GearRootStress:
     @described("Pa", "position tooth", shown="MPa")
     def tension_Pa(self) -> Array:
         """Greatest principal stress along the fillet under the loaded flank."""
-        return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
+        return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
 
     @described("m", "position tooth", shown="mm")
     def tension_arc(self) -> Array:
         """Place of the greatest stress: arc length from the middle of the gap."""
-        return _extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
+        return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
 
     @described("Pa", "position tooth", shown="MPa")
     def compression_Pa(self) -> Array:
         """Least principal stress along the other fillet, negative in compression."""
-        return -_extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
+        return -extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
 
     @described("m", "position tooth", shown="mm")
     def compression_arc(self) -> Array:
         """Place of the least stress: arc length from the middle of the gap."""
-        return _extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
+        return extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
 
     @described("Pa", shown="MPa")
     def greatest_tension_Pa(self) -> float:
@@ -258,8 +230,8 @@ def _gear_stress(
     at_nodes = forces.at_nodes(influence, found.arcs)
     before = at_nodes if found.before is None else forces.at_nodes(influence, found.before)
     low, high = at_nodes.min(axis=(0, 1)), at_nodes.max(axis=(0, 1))
-    nodes = _Nodes(found.arcs, _positions(cycle, found.arcs), teeth, at_nodes, before, found.gain)
-    tension, compression = (_peak(nodes, influence, side) for side in (LOADED, OTHER))
+    nodes = RootNodes(found.arcs, _positions(cycle, found.arcs), teeth, at_nodes, before, found.gain)
+    tension, compression = (peak_of(nodes, influence, side) for side in (LOADED, OTHER))
     return GearRootStress(
         influence.line,
         influence.law,
@@ -301,18 +273,6 @@ class _Forces:
         return self.stress(influence, every[..., FORCE], every[..., FORCE + 1 + self.gear])
 
 
-@record
-class _Nodes:
-    """Stress at all nodes of a cycle's arcs (n, teeth, 2, samples), and with the forces of the mesh before."""
-
-    arcs: Arcs
-    position: Array
-    teeth: Integers
-    stress: Array
-    before: Array
-    gain: float
-
-
 def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
     """Positions of the loaded flanks at all nodes of the arcs, as `MeshCycle.loaded_position`."""
     if cycle.flank == "front":
@@ -322,40 +282,3 @@ def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
         middle = arc.low + 0.5 * arc.width  # ends of arcs may be where the path starts anew
         found.append((Setting(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
     return np.concatenate(found)
-
-
-def _peak(nodes: _Nodes, influence: FilletInfluence, side: int) -> RootPeak:
-    """Greatest stress on one side of all teeth, and what is missed between the nodes."""
-    line, law, sign = influence.line, influence.law, 1.0 if side == LOADED else -1.0
-    most, arc = _extreme(line.arc, sign * nodes.stress[:, :, side])
-    coarse, _ = _extreme(line.arc, sign * nodes.before[:, :, side])
-    ends = np.cumsum([len(one.position) for one in nodes.arcs.arcs])[:-1]
-    row, column = np.unravel_index(np.argmax(most), most.shape)
-    value, place = float(most[row, column]), float(arc[row, column])
-    greatest, error = nodes.arcs.with_curves("tooth", np.split(most, ends)).greatest_of_all()
-    nu = law.nu if law.plane == "strain" else 0.0
-    point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
-    return RootPeak(
-        sign * value,
-        float(np.sqrt(1 - nu + nu**2)) * value,
-        int(nodes.teeth[column]),
-        float(nodes.position[row] + nodes.teeth[column]),
-        place,
-        float(np.interp(place, line.arc, line.tangent_angle)),
-        point * MIRROR if side == LOADED else point,
-        nodes.stress[row, column, side],
-        (greatest + error) / value - 1.0,
-        abs(float(coarse.max()) / value - 1.0) / nodes.gain,
-    )
-
-
-def _extreme(arc: Array, values: Array) -> tuple[Array, Array]:
-    """Maximum over the last axis and its place, by the parabola through the three highest samples."""
-    step = arc[1] - arc[0]
-    top = np.clip(np.argmax(values, axis=-1), 1, len(arc) - 2)[..., None]
-    before, here, after = (np.take_along_axis(values, top + k, axis=-1)[..., 0] for k in (-1, 0, 1))
-    bend = before - 2 * here + after
-    shift = np.where(bend < 0, 0.5 * (before - after) / np.where(bend < 0, bend, -1.0), 0.0)
-    shift = np.clip(shift, -1.0, 1.0)
-    highest = here + 0.5 * shift * (after - before) + 0.5 * bend * shift**2
-    return np.asarray(highest), np.asarray(arc[top[..., 0]] + shift * step)

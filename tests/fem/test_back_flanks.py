@@ -21,7 +21,7 @@ from fem.loaded_flanks import loaded_flanks
 from fem.opposite_flanks import _both_sides
 from fem.ring import ring_of
 from fem.setting import Setting
-from fem.sharing import _one_sided, solve
+from fem.sharing import one_sided, solve
 from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
 from gears.plane import turned
 from meshes import gear_mesh, mesh_sector
@@ -139,7 +139,7 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     given = Setting(close, 10)
     force = np.array([600.0 / close.base_radii[0]])
     flanks = loaded_flanks(given, bodies, None, 0.6, float(force[0]), EdgeTables(given, bodies))
-    alone = _one_sided(given, bodies, force, flanks)
+    alone = one_sided(given, bodies, force, flanks, EdgeTables(given, bodies))
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
     assert np.array_equal(cycle.forces, (alone.share.forces / alone.kappa).reshape(cycle.forces.shape))
     assert "back flanks stand clear by at least" in cycle.message

@@ -66,7 +66,9 @@ def test_curves_come_on_top_of_relief():
     flat = GearDeviations(ProfileDeviation([low, high], [4e-6, 4e-6]))
     one = fem.unloaded_transmission_error(eased, 40, False)
     two = fem.unloaded_transmission_error(eased, 40, False, deviations=(flat, None))
-    np.testing.assert_allclose(two - one, -4e-6, rtol=1e-12)
+    # turned back by so much, the sloped part is met that much farther down its flank
+    np.testing.assert_allclose(two - one, -4e-6, rtol=1e-4)
+    np.testing.assert_allclose(np.median(two - one), -4e-6, rtol=1e-12)
 
 
 @pytest.fixture(scope="module")
@@ -217,7 +219,9 @@ def test_one_tooth_moves_only_where_it_meshes(article_pair, article_bodies, gear
     curves = [base] * count
     curves[7] = other
     both, same = [None, None], [None, None]
-    both[gear], same[gear] = GearDeviations(curves), GearDeviations([base] * count)
+    far = [base] * count
+    far[25] = other  # does not mesh within these pitches
+    both[gear], same[gear] = GearDeviations(curves), GearDeviations(far)
     given = {"positions": 20, "compliance": article_bodies, "beyond_path": False, "pitches": 12}
     moved = fem.mesh_cycle(article_pair, 600.0, deviations=both, **given)
     plain = fem.mesh_cycle(article_pair, 600.0, deviations=same, **given)

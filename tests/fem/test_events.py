@@ -203,13 +203,13 @@ def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
 
 
 def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monkeypatch):
-    """For each place within a base pitch, whatever the pitch, the torque and the mesh."""
+    """For each place within a base pitch, whatever the pitch and the torque, on both meshes of an estimate."""
     from fem import edge_tables
 
     asked, laws = [], edge_tables.edge_laws
 
     def counted(pair, strips, corner, rho1, *others):
-        asked.extend((corner, round(one / article_pair.base_pitch, 12)) for one in rho1)
+        asked.extend((id(strips), corner, round(one / article_pair.base_pitch, 12)) for one in rho1)
         return laws(pair, strips, corner, rho1, *others)
 
     monkeypatch.setattr(edge_tables, "edge_laws", counted)
@@ -218,13 +218,15 @@ def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monke
     once = len(asked)
     for cycle in cycles:
         assert cycle.transmission_error_range > 0
-    # but for places on the edge of rounding
+    # but for places on the edge of rounding, on both meshes
+    assert len({mesh for mesh, *_ in asked}) == 4
     assert len(asked) - len(set(asked)) < 0.005 * len(asked)
     one = fem.mesh_cycle(article_pair, 600.0, 10, article_bodies)
     assert one.transmission_error_range == pytest.approx(cycles[1].transmission_error_range, rel=1e-6)
     assert once > 0
 
 
+@pytest.mark.slow
 def test_greatest_load_share_is_that_of_very_many_positions(relieved):
     """With relief and a load so light that two pairs bear nearly always; sampled shares miss the steps."""
     pair, bodies = relieved

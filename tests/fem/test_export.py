@@ -74,6 +74,7 @@ def test_pressure_and_line_load_have_one_resultant(article_pair, cycles):
     assert np.count_nonzero(spread) >= np.count_nonzero(line)
 
 
+@pytest.mark.slow
 def test_the_work_of_the_forces_is_that_of_the_compliance(article_pair, article_bodies, cycles):
     """2 W = F D, once the approach within a Hertz pressure is its mean instead of that at its middle.
 

@@ -86,6 +86,7 @@ def test_rotation_under_the_pressure_is_that_of_the_line_load_far_away():
     np.testing.assert_allclose(found, expected, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_energy_of_a_gear_that_is_turned_as_a_whole(monkeypatch):
     """The load, held in its direction, then works along the flank: the energy changes by psi t.
 

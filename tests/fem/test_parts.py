@@ -31,6 +31,14 @@ def test_parts_add_up(article_pair, article_bodies):
     assert np.all(parts["coupling"][inside] > parts["hub_windup"][inside])
 
 
+def test_coupling_is_what_either_pair_does_to_the_other(article_pair, article_bodies):
+    """By Betti's theorem the pair ahead is deflected by as much; far less than by a force of its own."""
+    rho1 = places(article_pair)
+    coupling = article_bodies.parts(rho1[:, 0])["coupling"]
+    np.testing.assert_allclose(coupling, article_bodies.bulk(rho1)[:, 1, 0], rtol=1e-3)
+    assert np.all(coupling < 0.5 * article_bodies.own(rho1[:, 1]))
+
+
 def test_leaving_out_the_hub_takes_it_from_own_and_from_every_cross_term(article_pair, article_bodies):
     rho1, turn = places(article_pair), sum(article_bodies.hub_windup)
     stiff = article_bodies.without("hub_windup")

@@ -13,8 +13,9 @@ import fem
 from base import InputError
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 from fem.fillet import GAUSS, edge_strain_matrix, fillet_line, fillet_stress_matrix, local_cubic
-from fem.fillet_influence import fillet_influence, fillets
+from fem.fillet_influence import fillet_influence
 from fem.line_load import flank_points
+from fem.pair_fillets import fillets
 from fem.ring import ring_of
 from fem.tooth_root import root_stress
 from gears import BasicRack, Gear, GearPair, closed_form
@@ -207,6 +208,27 @@ def test_stress_grows_with_the_forces_alone(article_pair, held, article_fillets)
     assert np.max(twice.wheel.tension_Pa) == pytest.approx(2 * np.max(once.wheel.tension_Pa))
 
 
+def test_a_root_feels_the_loads_on_the_teeth_beside_its_own(article_pair, held, article_fillets):
+    """The pair ahead bears on the next tooth anticlockwise of the pinion, and clockwise of the wheel."""
+    found = root_stress(article_pair, held, article_fillets)
+    row = int(np.argmax(np.min(held.forces, axis=1)))  # two pairs bear
+    parts: dict[tuple[int, int], list[np.ndarray]] = {(j, k): [] for j in range(2) for k in range(-2, 3)}
+    for gear, influence in enumerate((article_fillets.pinion, article_fillets.wheel)):
+        for pair in range(2):
+            rho, load = held.flank_rho[gear][row, pair], held.forces[row, pair] / 0.04
+            for k in (-2, -1, 0, 1, 2):
+                parts[gear, k].append(load * influence.stress(k, np.array([rho]))[0])
+    assert held.pair_offset.tolist() == [0, 1]
+    assert found.pinion.tooth.tolist() == found.wheel.tooth.tolist() == [-1, 0, 1, 2]
+    for place, tooth in enumerate((-1, 0, 1, 2)):
+        pinion = parts[0, tooth][0] + parts[0, tooth - 1][1]
+        wheel = parts[1, -tooth][0] + parts[1, 1 - tooth][1]
+        np.testing.assert_allclose(found.pinion.tangential_Pa[row, place], pinion, rtol=1e-9, atol=1.0)
+        np.testing.assert_allclose(found.wheel.tangential_Pa[row, place], wheel, rtol=1e-9, atol=1.0)
+    beside = np.abs(parts[0, -1][1]).max() / np.abs(parts[0, 0][0]).max()
+    assert beside > 0.02
+
+
 def test_greatest_stress_is_at_the_outer_point_of_single_contact(article_pair, held, article_fillets):
     """Contact held to the path: tension on one side, compression on the other, both greatest near D and B."""
     found = root_stress(article_pair, held, article_fillets)
@@ -243,8 +265,9 @@ def test_greatest_stress_does_not_depend_on_the_positions(article_pair, article_
             (found.greatest_compression, -brute.compression_Pa),
         ):
             size = abs(peak.stress_Pa)
-            # samples never exceed it by more than it says; half an interval from a corner they are a little less
-            assert -5e-4 < np.max(samples) / size - 1 < peak.sampling + 1e-9
+            # an estimate, no bound: half of an error is the least that it may be; half an interval from a corner
+            # samples are a little less
+            assert -5e-4 < np.max(samples) / size - 1 < 2.0 * peak.sampling + 1e-9
             assert 0 <= peak.sampling < 1e-3
         np.testing.assert_allclose(np.max(found.tension_Pa), found.greatest_tension_Pa, rtol=0.2)
         assert np.max(found.tension_Pa) < 0.999 * found.greatest_tension_Pa
@@ -274,6 +297,7 @@ def test_equal_gears_bear_alike():
             )
 
 
+@pytest.mark.slow
 def test_same_stress_in_every_module():
     found = []
     for scale in (1.0, 20.0):

@@ -142,6 +142,7 @@ def test_regular_parts_are_smooth_where_strips_pass_one_another_and_the_elements
             assert np.abs(np.diff(regular, n=2, axis=axis)).max() < 0.03  # of 8 to 15
 
 
+@pytest.mark.slow
 def test_leaning_kernel_against_plain_finite_elements(article_pair):
     """A strip pulled obliquely on the whole annulus with fine elements at the tip, no singularity taken out."""
     profile = article_pair.teeth_profiles[1]

@@ -1,0 +1,151 @@
+"""Tip corners under contacts that move: no steps, exact tangents, and stiff teeth as if contacts stayed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fem
+from fem.cut_off import cut_off
+from fem.edge_tables import EdgeTables
+from fem.local_law import Table
+from fem.place_surface import up_to
+from fem.setting import Setting
+from fem.sharing import solve
+from fem.tip_contact import edge_laws
+from fem.tip_geometry import lever_ratio
+from gears import Gear, GearPair, Material
+
+STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
+
+
+def pair_of(factor=1.0):
+    materials = tuple(Material(m.youngs_modulus * factor, m.poisson_ratio, m.density) for m in (STEEL, PA66))
+    return GearPair(Gear(17), Gear(51), 2e-3, 20e-3, material=materials).with_backlash(600e-6)
+
+
+@pytest.fixture(scope="module")
+def plastic():
+    pair = pair_of()
+    bodies = fem.compliance(pair, tolerance=0.01)
+    return pair, bodies, EdgeTables(Setting(pair, moving_contact=True), bodies)
+
+
+def ends(pair):
+    """Positions of A and E [base pitches from A]."""
+    return 0.0, (pair.points.E - pair.points.A) / pair.base_pitch
+
+
+def solved(pair, bodies, tables, position, torque, moving=True):
+    given = Setting(pair, 1, moving_contact=moving).at(np.atleast_1d(position))
+    found = solve(given, bodies, np.array([torque / pair.base_radii[0]]), None, tables if moving else None)
+    assert not found.refusal(0)
+    return found
+
+
+@pytest.mark.parametrize("torque", [1.0, 20.0, 50.0])
+def test_nothing_steps_at_A_and_E(plastic, torque):
+    for end in ends(plastic[0]):
+        share = solved(*plastic, [end - 1e-6, end + 1e-6], torque).share
+        before, after = share.transmission_error[0, 0]
+        assert after == pytest.approx(before, rel=5e-5)
+        assert share.stiffness[0, 0, 1] == pytest.approx(share.stiffness[0, 0, 0], rel=5e-4)
+
+
+@pytest.mark.parametrize("away", [-0.03, -0.01, 0.02])
+def test_the_tangent_is_the_derivative(plastic, away):
+    torque, step = 20.0, 1e-4
+    for end in ends(plastic[0]):
+        less, same, more = (solved(*plastic, end + away, torque * (1 + s)).share for s in (-step, 0.0, step))
+        rise = (more.transmission_error - less.transmission_error) / (
+            2 * step * torque / plastic[0].base_radii[0]
+        )
+        np.testing.assert_allclose(1 / same.stiffness, rise, rtol=1e-6)
+
+
+def test_stiff_teeth_have_the_law_of_contacts_that_stay():
+    """What the motion changes goes with D/m: by forty times the modulus to a fortieth, and by their root."""
+    changes = []
+    for factor in (1.0, 40.0):
+        pair = pair_of(factor)
+        bodies = fem.compliance(pair, tolerance=0.01)
+        tables = EdgeTables(Setting(pair, moving_contact=True), bodies)
+        positions = [end + away for end in ends(pair) for away in (-0.02, -0.004, 0.004, 0.03)]
+        moves, stays = (
+            solved(pair, bodies, tables, positions, 10.0, moving).share.transmission_error[0, 0]
+            for moving in (True, False)
+        )
+        changes.append(np.abs(moves / stays - 1).max())
+    assert changes[0] > 0.01
+    assert changes[1] < changes[0] / 10
+
+
+@pytest.mark.parametrize("corner", [0, 1])
+def test_the_surface_is_the_law_by_strips(plastic, corner):
+    pair, bodies, tables = plastic
+    surface, slid = tables.surfaces[corner], tables.slid[corner]
+    gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
+    for away in (-0.09, -0.02, 0.0, 0.003, 0.04, 0.3):
+        z = np.array([away * pair.module])
+        rho = gear.rho_end + z
+        place = rho if corner == 0 else pair.line_of_action - rho
+        own, rounded = (
+            float(gear.own(at)[0] - gear.hub_windup) / pair.face_width
+            for at in (rho, up_to(rho, gear.rho_range[1], pair.module)[0])
+        )
+        for size in (20.0, 200.0, 1000.0):
+            force = np.array([size])
+            flank = bodies.hertz(np.clip(place, pair.points.A, pair.points.E)).approach(force) + own * force
+            if away <= 0.0:
+                law = cut_off(bodies, corner, place, np.ones((1, 1), bool), None, None, slid, 1 - corner)
+                wanted = flank + law.value_and_slope(force)[0]
+            else:
+                law = edge_laws(pair, bodies.tips[corner], corner, place, other.law, turned=1 - corner)
+                wanted = (
+                    Table.through(law.force, law.approach).value_and_slope(force)[0] + 3 * slid * force**2
+                )
+            at = surface.at(z - surface.sliding * force, force)
+            got = flank + at.approach - surface.sliding * at.push + (rounded - own) * force
+            np.testing.assert_allclose(got, wanted, rtol=4e-4)
+
+
+def test_derivatives_of_the_surface(plastic):
+    surface, step = plastic[2].surfaces[0], 1e-4
+    z, force = np.array([-0.05e-3, 0.02e-3, 0.3e-3]), np.array([150.0, 700.0, 40.0])
+    here = surface.at(z, force)
+    less, more = (surface.at(z, force * (1 + s)) for s in (-step, step))
+    np.testing.assert_allclose((more.approach - less.approach) / (2 * step * force), here.slope, rtol=1e-5)
+    np.testing.assert_allclose((more.push - less.push) / (2 * step * force), here.less, rtol=1e-5)
+    less, more = (surface.at(z + s, force) for s in (-1e-8, 1e-8))
+    np.testing.assert_allclose((more.approach - less.approach) / 2e-8, here.less, rtol=1e-5)
+    np.testing.assert_allclose((more.push - less.push) / 2e-8, here.stiff, rtol=1e-4)
+
+
+def test_the_lever_of_an_edge_is_in_its_gap(plastic):
+    """Turned by D, the pinion's corner closes by kappa D: kappa = 1 - d gap/dx."""
+    pair, _, tables = plastic
+    z = np.linspace(0.05, 0.3, 5) * pair.module
+    gap = [tables.surfaces[0].gap(z + s) for s in (-1e-7, 1e-7)]
+    place = pair.points.E + z
+    _, where = fem.tip_geometry.unloaded_gap(
+        pair.base_radii[::-1], pair.line_of_action, pair.line_of_action - place, np.array([pair.points.E])
+    )
+    np.testing.assert_allclose(
+        1 - (gap[1] - gap[0]) / 2e-7, lever_ratio(pair, where[:, 0], place, 0), atol=1e-3
+    )
+
+
+def test_torques_add_up_with_corners_that_move(plastic):
+    found = solved(*plastic, np.linspace(0.5, 1.8, 27), 20.0)
+    np.testing.assert_allclose(found.torques(0).sum(axis=-1), 20.0 / plastic[0].base_radii[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("torque", [5.0, 20.0])
+def test_the_model_error_of_contacts_that_stay_holds_the_corners(plastic, torque):
+    pair, bodies, _ = plastic
+    stays, moves = (
+        fem.mesh_cycle(pair, torque, 40, bodies, moving_contact=moving) for moving in (False, True)
+    )
+    change = np.abs(moves.secant_stiffness / stays.secant_stiffness - 1).max()
+    assert change < stays.model_error < 3 * change
+    assert moves.model_error < 0.4 * stays.model_error
