@@ -5,6 +5,7 @@ from .boundary import BasinBoundary as BasinBoundary
 from .boundary import basin_boundary as basin_boundary
 from .branch import Branch as Branch
 from .branch import SpecialPoint as SpecialPoint
+from .carrying import carried_point as carried_point
 from .continuation import continue_branch as continue_branch
 from .continuation import doubled_orbit as doubled_orbit
 from .crises import Crisis as Crisis

@@ -96,6 +96,7 @@ def diagram(
     max_period: int = 8,
     max_branches: int = 100,
     max_step: float = 0.02,
+    starts: Sequence[tuple[float, Array, int]] = (),
     progress: Callable[[int, str], None] | None = None,
 ) -> Diagram:
     """Build the bifurcation diagram of periodic orbits over one parameter.
@@ -126,6 +127,9 @@ def diagram(
         Branches followed at most.
     max_step : float
         Largest step along a branch, as in `continue_branch`.
+    starts : sequence of tuple
+        Where orbits are known to lie about, as on the branches of a like oscillator: value of the parameter, X and V at
+        tau = 0, and period. Those outside the bounds are left out.
     progress : callable, optional
         Called with the number of branches and what is done next.
 
@@ -166,6 +170,11 @@ def diagram(
             unsure.append(value)
         for orbit in found.orbits:
             if not builder.holds(orbit):
+                builder.follow(orbit, Origin(None, value))
+    for value, state, known in starts:
+        if low <= value <= high:
+            orbit = find_orbit(oscillator.with_parameter(parameter, value), state, periods=known)
+            if orbit.converged and not builder.holds(orbit):
                 builder.follow(orbit, Origin(None, value))
     if steps:
         met = multi_sweep(

@@ -185,6 +185,12 @@ class ForceRange:
     error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
+def mesh_force(oscillator: GearOscillator, motion: Trajectory) -> Array:
+    """Force k(tau) f(X) of the mesh at the samples of a motion, dimensionless like the mean force."""
+    stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
+    return np.asarray(stiffness * oscillator.deflection(motion.x))
+
+
 def force_range(
     oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
 ) -> ForceRange:
@@ -218,9 +224,7 @@ def force_range(
         number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
         if oscillator.mean_force == 0.0:
             faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
-    motion = trajectory(oscillator, state, periods, number)
-    stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
-    force = stiffness * oscillator.deflection(motion.x) / oscillator.mean_force
+    force = mesh_force(oscillator, trajectory(oscillator, state, periods, number)) / oscillator.mean_force
     low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
     error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
     return ForceRange(low, high, error)

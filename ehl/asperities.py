@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Faults, Limit
+from base import Array, Faults, Limit, RangeWarning
 
 LAWS = ("greenwood-tripp", "greenwood-williamson")
 LIMITS = {
@@ -18,6 +19,24 @@ LIMITS = {
     "offset": Limit(0.0, 3.0, remedy="1.15 is usual"),
 }
 """What the numbers of a roughness may be."""
+
+DRAWN = Limit.above(0.0, 1e-3, "m", "Ra or Rz in m, 4e-7 is Ra 0.4")
+"""What a roughness on a drawing may be."""
+
+ROUGHNESS_NUMBER = (0.03, 0.05)
+"""n beta sigma of ground and honed steel, after Greenwood and Tripp."""
+
+USUAL_NUMBER = 0.04
+"""n beta sigma where the density of asperities is not known."""
+
+USUAL_SLENDERNESS = 1e-3
+"""sigma/beta where the asperities' tip radius is not known; 1e-4 to 1e-2 are found."""
+
+MEAN_OVER_DEVIATION = math.sqrt(2.0 / math.pi)
+"""Ra over the standard deviation, of heights with normal distribution."""
+
+PEAKS_OVER_MEAN = 6.0
+"""Rz over Ra after ISO 6336-2; 4 to 10 are measured."""
 
 _FAR = 8.0  # standard deviations beyond which no asperity is met
 
@@ -70,6 +89,11 @@ class Roughness:
     offset : float
         c, distance between the planes of mean height and of mean asperity height over sigma [-]; 1.15.
 
+    Warns
+    -----
+    RangeWarning
+        Where n beta sigma lies outside 0.03 to 0.05.
+
     References
     ----------
     J. A. Greenwood and J. B. P. Williamson, Proc. R. Soc. Lond. A 295 (1966) 300-319. J. A. Greenwood and
@@ -77,7 +101,7 @@ class Roughness:
 
     Examples
     --------
-    >>> ground = Roughness(deviation=0.3e-6, density=1e11, tip_radius=1e-5)
+    >>> ground = Roughness(deviation=0.3e-6, density=1e10, tip_radius=1e-5)
     >>> pressure, slope = ground.pressure(0.6e-6, reduced_modulus=2.2e11)
     >>> bool(pressure > 0.0), bool(slope < 0.0)
     (True, True)
@@ -93,6 +117,90 @@ class Roughness:
         """Check every field."""
         with Faults.of(self, LIMITS, "roughness.") as found:
             found.choice("roughness.law", self.law, LAWS)
+        low, high = ROUGHNESS_NUMBER
+        if not low * (1.0 - 1e-9) <= self.number <= high * (1.0 + 1e-9):
+            warnings.warn(
+                f"roughness: sigma beta eta = {self.number:.3g} lies outside {low:g} to {high:g}, where ground steel "
+                "is found; check density and tip radius of the asperities",
+                RangeWarning,
+                stacklevel=3,
+            )
+
+    @classmethod
+    def from_drawing(
+        cls,
+        mean: float | tuple[float, float] | None = None,
+        peaks: float | tuple[float, float] | None = None,
+        *,
+        density: float | None = None,
+        tip_radius: float | None = None,
+        law: str = "greenwood-tripp",
+        offset: float = 1.15,
+    ) -> Roughness:
+        """Roughness by what drawings have, Ra or Rz of each flank.
+
+        sigma_i = Ra_i sqrt(pi/2), of normal heights, Ra_i = Rz_i/6; sigma = sqrt(sigma_1^2 + sigma_2^2). Where they are
+        not known, sigma/beta = 1e-3 and n beta sigma = 0.04. Found are 1e-4 to 1e-2 and 0.03 to 0.05, so that the
+        pressure of the asperities is uncertain by a factor of five up and down; Rz/Ra is 4 to 10 in measurements.
+
+        Parameters
+        ----------
+        mean, peaks : float or (float, float)
+            Ra or Rz [m], one of them: of both flanks alike, or of either.
+        density, tip_radius : float, optional
+            n [1/m^2] and beta [m].
+        law, offset
+            As in the constructor.
+
+        Raises
+        ------
+        InputError
+            With every fault; where not exactly one of Ra and Rz is given.
+
+        References
+        ----------
+        ISO 6336-2:2006, 12.3.1.3 (Ra = Rz/6). J. A. Greenwood and J. H. Tripp, as above (n beta sigma).
+
+        Examples
+        --------
+        >>> ground = Roughness.from_drawing(mean=0.4e-6)
+        >>> round(1e6 * ground.deviation, 3), round(ground.number, 3)
+        (0.709, 0.04)
+        """
+        with Faults() as found:
+            if (mean is None) == (peaks is None):
+                found.add("roughness", "", "must have Ra or Rz, one of them", "give mean or peaks")
+            given = peaks if mean is None else mean
+            both = given if isinstance(given, tuple) else (given, given)
+            each = [found.number("roughness", one, DRAWN) for one in both if given is not None]
+        scale = MEAN_OVER_DEVIATION * (PEAKS_OVER_MEAN if mean is None else 1.0)
+        return cls.of_deviation(math.hypot(*each) / scale, density, tip_radius, law, offset)
+
+    @classmethod
+    def of_deviation(
+        cls,
+        deviation: float,
+        density: float | None = None,
+        tip_radius: float | None = None,
+        law: str = "greenwood-tripp",
+        offset: float = 1.15,
+    ) -> Roughness:
+        """Roughness with the usual asperities of its sigma [m] where these are not known; see `from_drawing`.
+
+        Examples
+        --------
+        >>> Roughness.of_deviation(0.5e-6).tip_radius
+        0.0005
+        """
+        radius = deviation / USUAL_SLENDERNESS if tip_radius is None else tip_radius
+        known = deviation > 0.0 and radius > 0.0  # else the constructor tells
+        usual = USUAL_NUMBER / (radius * deviation) if known else 1.0
+        return cls(deviation, usual if density is None else density, radius, law, offset)
+
+    @property
+    def number(self) -> float:
+        """Roughness number n beta sigma [-]."""
+        return self.density * self.tip_radius * self.deviation
 
     def pressure(self, separation: ArrayLike, reduced_modulus: float) -> tuple[Array, Array]:
         """Pressure of the asperities [Pa] and its derivative by the separation [Pa/m].

@@ -80,6 +80,22 @@ def test_linear_oscillator_closed_form():
     np.testing.assert_allclose(motion.x, exact, rtol=0, atol=2e-14)
 
 
+@pytest.mark.parametrize("zeta", [3.0, 20.0])
+def test_strong_damping_closed_form(zeta):
+    """Two exponentials, the fast one gone within a hundredth of a period: the cells are as short as it wants."""
+    osc = GearOscillator(FourierStiffness(1.0), zeta, 0.5, 0.0, 1.0, half_backlash=0.0)
+    assert osc.cells == pytest.approx(
+        2 * 2 * zeta * 2 * np.pi, rel=1e-12
+    )  # half a radian of 2 zeta tau in each
+    slow, fast = -zeta + np.sqrt(zeta**2 - 1), -zeta - np.sqrt(zeta**2 - 1)
+    x, v = 1.5, -0.7  # from rest at F/k = 0.5
+    share = np.linalg.solve([[1.0, 1.0], [slow, fast]], [x, v])
+    decay = np.exp(2 * np.pi * np.array([slow, fast]))
+    image = period_map(osc, (0.5 + x, v))
+    expected = [0.5 + share @ decay, share @ (decay * [slow, fast])]
+    np.testing.assert_allclose(image.states[0], expected, rtol=1e-12)
+
+
 def test_dead_zone_closed_form():
     zeta, force, v0 = 0.1, 0.02, 0.3
     osc = GearOscillator(FourierStiffness(1.0, (0.4,), (0.0,)), zeta, force, 0.0, 2.0, half_backlash=10.0)

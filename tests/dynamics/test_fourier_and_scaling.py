@@ -99,6 +99,17 @@ def test_ways_back(value):
         assert back(there(value)) == pytest.approx(value, rel=1e-14)
 
 
+def test_velocity_is_the_change_of_displacement_in_time(scaling):
+    def at(tau):  # X = 0.3 sin 2 tau
+        return scaling.displacement(0.3 * math.sin(2 * tau)), scaling.time(tau)
+
+    (x0, t0), (x1, t1) = at(0.4 - 1e-5), at(0.4 + 1e-5)
+    assert scaling.velocity(0.6 * math.cos(0.8)) == pytest.approx((x1 - x0) / (t1 - t0), rel=1e-9)
+    assert scaling.velocity(1.0) == pytest.approx(
+        scaling.length * math.sqrt(7.7e8 / scaling.equivalent_mass), rel=1e-12
+    )
+
+
 def test_length_is_a_free_choice(scaling):
     """Two lengths give two oscillators with the same motion in metres."""
     from dynamics import find_orbit

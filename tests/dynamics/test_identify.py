@@ -290,6 +290,7 @@ def test_the_scale_of_a_one_sided_motion_is_a_direction_nobody_sees(points):
 # ---- the whole
 
 
+@pytest.mark.slow
 def test_parameters_are_found_from_eight_points_two_of_them_misprinted():
     """The true values are no trial values; the first choice as the exact event is a misprint too."""
     bounds = (0.35, 1.1)

@@ -25,6 +25,7 @@ def ran(scan: str, folder: Path, *more: str) -> str:
     return files[-1].read_text()
 
 
+@pytest.mark.slow
 def test_lubricated_frequency_scan_small(tmp_path: Path):
     lines = ran("6.1", tmp_path, "--small")
     assert "basins at 0.6: 1-0-0" in lines
@@ -69,6 +70,7 @@ def test_table_of_all_scans():
     assert "| 6.3 | boundary crisis | 0.68 | 0.77990" in lines
 
 
+@pytest.mark.slow
 def test_loaded_law_gives_back_the_finite_elements():
     """At every position of the sweep the law has the force that gave the deflection."""
     study = example("loaded_law")

@@ -18,7 +18,7 @@ from dynamics import (
     sweep,
 )
 from dynamics.grazing import contact_orbit
-from dynamics.shooting import floquet_multipliers
+from dynamics.shooting import floquet_multipliers, is_stable
 from dynamics.sweeps import repeat_after
 
 
@@ -83,6 +83,22 @@ def test_multipliers_far_apart_keep_their_digits():
     assert small == pytest.approx(1e-9, rel=1e-15)
     pair = floquet_multipliers(0.5, 1.0)
     assert abs(pair[0]) == pytest.approx(1.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("multipliers", "stable"),
+    [
+        ((0.9, -0.4), True),
+        ((1.001, 0.5), False),
+        ((0.5, -1.001), False),
+        ((1.0, 0.3), False),
+        ((0.6 + 0.8j, 0.6 - 0.8j), True),
+        ((0.6006 + 0.8008j, 0.6006 - 0.8008j), False),
+    ],
+)
+def test_stability_ends_on_the_unit_circle(multipliers, stable):
+    """A real multiplier of one is a fold; a pair on the circle is what no damping leaves."""
+    assert is_stable(np.array(multipliers)) is stable
 
 
 def test_contact_orbit_is_the_orbit_while_it_clears_the_limit(article):

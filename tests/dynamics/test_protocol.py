@@ -16,6 +16,7 @@ STEPWISE = SmoothOscillator(
 )
 
 
+@pytest.mark.slow
 def test_basins_are_those_of_the_exact_flow():
     ours, theirs = (
         dynamics.basins(o, x=(-0.9, 0.9, 4), v=(-0.9, 0.9, 4), limit=60) for o in (STEPWISE, EXACT)
@@ -26,6 +27,7 @@ def test_basins_are_those_of_the_exact_flow():
         assert mine.orbit.state == pytest.approx(other.orbit.state, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_scan_of_exponents_is_that_of_the_exact_flow():
     ours, theirs = (
         dynamics.lyapunov_scan(o, "frequency", [0.5, 0.7], 60, transient=60) for o in (STEPWISE, EXACT)

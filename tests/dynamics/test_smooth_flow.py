@@ -323,6 +323,7 @@ print(json.dumps([float(v) for v in found]))
 """
 
 
+@pytest.mark.slow
 def test_compiled_code_computes_what_is_written():
     """The kernels interpreted give the same figures."""
     runs = []

@@ -59,6 +59,7 @@ def assert_same_points(branch, reference, tolerance):
             assert p.acceleration == pytest.approx(q.acceleration, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_branch_has_the_exact_special_points(exact_branch):
     """Exponent 1: folds, grazings and the period doubling of the lubricated scan, to 1e-12."""
     orbit = dynamics.find_orbit(ours(), (0.4, 0.0))
@@ -110,6 +111,7 @@ class ExactMap(PeriodMap):
         return states / self.scale
 
 
+@pytest.mark.slow
 def test_continuation_serves_any_period_map(exact_branch):
     problem = ExactMap(exact(), ("frequency",), 1, np.array([0.5]), np.array([0.95]), 0.4)
     start = dynamics.find_orbit(exact(), (0.4, 0.0))

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 
 from base import InputError, RangeWarning
-from ehl import OilLayer, Roughness, solve, solve_mixed
+from ehl import LineContact, OilLayer, Roughness, solve, solve_mixed
 from ehl.asperities import height_integral
-from ehl.mixed import central_asperity_pressure
+from ehl.mixed import _Search, central_asperity_pressure
 from tests.validation.article import PITCH
 
 STIFF = Roughness(2e-7, 2.5e10, 1e-5, "greenwood-williamson")
@@ -98,6 +98,15 @@ def test_smooth_surfaces_leave_the_smooth_film():
         assert mixed.stiffness() == film.stiffness()
 
 
+def test_central_pressure_of_asperities_by_hand():
+    """(n/s) R^1.5 beta^0.5 = 2e10/0.3 1e-3 3.1622777e-3 = 210818.51; powers of it, of sigma/R = 4e-5, W = 1e-4."""
+    contact = LineContact(1e-4 * 2.2e11 * 0.01, 1.0, 0.01, 2.2e11, PITCH.lubricant)
+    spread = 1.558 * 1.5115264 * 87.879886 * 0.012508349
+    pressure = 0.3 * 2.2e11 * math.sqrt(1e-4 / (2 * math.pi)) * (1 + spread**-1.7) ** (-1 / 1.7)
+    rough = Roughness(0.4e-6, 2e10, 1e-5)
+    assert central_asperity_pressure(contact, rough, 0.3) == pytest.approx(pressure, rel=1e-6)
+
+
 def test_film_ratio_from_three_to_a_tenth():
     speeds = np.geomspace(3.0, 1e-4, 12)
     films = [quiet(solve_mixed, replace(PITCH, entrainment=float(u)), STIFF) for u in speeds]
@@ -167,3 +176,42 @@ def test_bad_roughness_is_listed_at_once():
     assert len(caught.value.faults) == 5
     with pytest.raises(InputError, match="roughness"):
         solve_mixed(PITCH, 1e-7)
+
+
+def test_roughness_of_drawings():
+    """Ra and Rz of normal heights, the root of the sum of squares of both flanks, and the usual asperities."""
+    rough = Roughness.from_drawing(mean=(0.3e-6, 0.4e-6))
+    heights = np.random.default_rng(1).normal(0.0, 1.0, 400_000)
+    assert rough.deviation == pytest.approx(0.5e-6 / np.abs(heights).mean(), rel=3e-3)
+    assert rough.number == pytest.approx(0.04, rel=1e-12)
+    assert rough.tip_radius == pytest.approx(1e3 * rough.deviation, rel=1e-12)
+    assert Roughness.from_drawing(peaks=(1.8e-6, 2.4e-6)).deviation == pytest.approx(
+        rough.deviation, rel=1e-12
+    )
+    alike = Roughness.from_drawing(mean=0.4e-6, density=1e11, tip_radius=5e-7)
+    assert alike.deviation == pytest.approx(0.4e-6 * np.sqrt(np.pi), rel=1e-12)
+    assert (alike.density, alike.tip_radius) == (1e11, 5e-7)
+    with pytest.raises(InputError, match="Ra or Rz, one of them"):
+        Roughness.from_drawing()
+    with pytest.raises(InputError, match="Ra or Rz in m"):
+        Roughness.from_drawing(mean=0.4)
+
+
+@pytest.mark.parametrize(("number", "warned"), [(0.029, True), (0.03, False), (0.05, False), (0.051, True)])
+def test_unusual_roughness_is_warned_of(number, warned):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        Roughness(1e-7, number / 1e-12, 1e-5)
+    assert ["sigma beta eta" in str(one.message) for one in caught] == [True] * warned
+
+
+def test_trials_warn_of_no_films_that_nothing_shows():
+    """Asperities take all but 5e-5 of this load; on the way there are trials whose films are thicker than R/1000."""
+    contact = replace(PITCH, entrainment=1e-4, load=0.05 * PITCH.load)
+    with pytest.warns(RangeWarning, match="film of about"):
+        _Search(contact, STIFF, 0.05, None, None).solved()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RangeWarning)
+        found = solve_mixed(contact, STIFF, tolerance=0.05)
+    assert found.converged
+    assert found.film.central_thickness < 1e-3 * contact.radius
