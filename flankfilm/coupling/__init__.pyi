@@ -2,6 +2,8 @@ from .along_path import FilmAlongPath as FilmAlongPath
 from .cycle import MeshCycle as MeshCycle
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
+from .jump_order import OrderedJumps as OrderedJumps
+from .jump_order import jumps_to_tolerance as jumps_to_tolerance
 from .jumps import Jump as Jump
 from .jumps import SpeedDiagram as SpeedDiagram
 from .jumps import jump_speeds as jump_speeds
@@ -15,6 +17,8 @@ from .lubricated import film_along_path as film_along_path
 from .lubricated import lubricate as lubricate
 from .lubricated import lubricated_cycle as lubricated_cycle
 from .mesh_cycles import mesh_cycle as mesh_cycle
+from .mesh_table import MeshTable as MeshTable
+from .mesh_table import mesh_table as mesh_table
 from .motion import Portrait as Portrait
 from .motion import SpeedSweep as SpeedSweep
 from .motion import speed_sweep as speed_sweep
@@ -36,6 +40,7 @@ from .series import mesh_series as mesh_series
 from .single_pairs import SinglePairs as SinglePairs
 from .single_pairs import single_pair_stiffness as single_pair_stiffness
 from .single_pairs import single_pairs as single_pairs
+from .truncation import MissedJump as MissedJump
 from .verification import Verification as Verification
 from .verification import compare_closed_forms as compare_closed_forms
 from .verification import verification_of as verification_of

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import dynamics
-import gears
 from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.series import OTHER, MeshSeries, arc_fit
+from flankfilm.coupling.series import MEANS, OTHER, MeshSeries, arc_fit
+from flankfilm.coupling.speed_ranges import (
+    back_contact_ranges,
+    changes,
+    force_factors,
+    separated_ranges,
+    standard_factors,
+)
+from flankfilm.coupling.truncation import Longer, MissedJump, longer_branches, longer_motion, missed_jumps
 
 if TYPE_CHECKING:
     from dynamics.branch import Stretch
-
-MEANS = {"secant": "mean_secant_stiffness", "tangent": "mean_stiffness"}
-"""Figure of a mesh cycle that is the mean of a kind of stiffness."""
-
-DROPPED = 4
-"""Harmonics beyond the series that the error budget looks at."""
 
 
 @dataclass(frozen=True)
@@ -39,21 +40,22 @@ class Jump:
     label : str
         The motion that ends.
     budget : mapping
-        Source of error to relative error of the speed: ``"stiffness"`` of meshes, arcs and films, ``"series"`` of what
-        its order leaves out, ``"flow"``; empty for an oscillator in its own units.
-    second : float
-        Relative change of the speed by the first harmonic that the series leaves out, to first order; 0 if none.
+        Source of error to relative error of the speed: ``"stiffness"`` of meshes, arcs and films, ``"truncation"`` of
+        what the order of its series leaves out, ``"flow"``; empty for a given series. The truncation is infinite,
+        that is unknown, where the longer series has no such jump.
+    longer : float or None
+        The same jump's frequency with the longer series; nan where it has none, None for a given series.
     """
 
     frequency: float
     rising: bool
     label: str
     budget: Mapping[str, float]
-    second: float
+    longer: float | None
 
     @property
     def error(self) -> float:
-        """Sum of the budget."""
+        """Sum of the budget; infinite where it is unknown."""
         return math.fsum(self.budget.values())
 
 
@@ -80,6 +82,14 @@ class SpeedDiagram:
     force_factor: Array = quantity("1", "greatest force of a stable motion over the mean force", "force")
     force_factor_iso6336: Array = quantity("1", "K_v after ISO 6336-1, method B; nan without a pair", "force")
     half_backlash: float = quantity("1", "half the backlash D")
+    longer_order: int | None = quantity(
+        "1", "harmonics of the longer series that truncations are measured with; None for a given series"
+    )
+    with_longer: dynamics.Diagram | None = part("branches of period 1 with the longer series")
+    missed: tuple[MissedJump, ...] = part("jumps of period 1 that only the longer series has")
+    truncation: Mapping[str, float] = part(
+        "relative change of ranges and greatest force by the longer series, motions of period 1; infinite where unknown"
+    )
     error: float
     cost: Cost
     converged: bool
@@ -92,13 +102,18 @@ class SpeedDiagram:
 
     @described("1", "jump")
     def jump_error(self) -> Array:
-        """Relative errors of the jump speeds; nan for an oscillator in its own units."""
+        """Relative errors of the jump speeds; infinite where unknown, nan for a given series."""
         return np.array([jump.error if jump.budget else np.nan for jump in self.jumps])
 
     @described("rad/s", "jump", shown="rpm", error="jump_error")
     def jump_speed(self) -> Array | None:
         """Pinion speeds at which a stable motion ends; None for an oscillator in its own units."""
         return None if self.speed_of_one is None else self.speed_of_one * self.jump_frequency
+
+    @described("1", error="truncation")
+    def greatest_force(self) -> float:
+        """Greatest force of a stable motion over the mean force; nan without a mean force."""
+        return float(np.max(self.force_factor)) if self.force_factor.size else math.nan
 
     @property
     def branches(self) -> int:
@@ -148,22 +163,33 @@ def jump_speeds(
         from dynamics import diagram
     watch = Stopwatch()
     low, high = frequencies_of(motion, speed, frequency)[0].tolist()
-    oscillator, scales = motion.oscillator, motion.scales
+    oscillator, scales, longer = motion.oscillator, motion.scales, longer_motion(motion, (low, high))
     found = diagram(oscillator, "frequency", (low, high), searches=searches, max_period=max_period)
     stable = tuple(found.stretches(stable=True))
-    value, force, standard = _factors(motion, found)
+    forces = force_factors(oscillator, found)
+    carried = [
+        (stretch, point, None if longer is None else longer.carried(oscillator, point))
+        for stretch, point in jump_points(found)
+    ]
+    jumps = tuple(_jump(motion, longer, *one) for one in carried)
+    folds = [(point, there) for _, point, there in carried]
+    whole, missed, changed = _with_longer(found, forces, longer, folds)
     return SpeedDiagram(
         diagram=found,
         speed_of_one=None if scales is None else scales.speed(1.0),
         stable=stable,
-        separated=_union([s for s in stable if _counts(s.label)[0] > 0]),
-        back_contact=_union([s for s in stable if _counts(s.label)[1] > 0]),
-        jumps=tuple(_jump(motion, stretch, point) for stretch, point in jump_points(found)),
-        variants=_variants(motion, (low, high)),
-        force_frequency=value,
-        force_factor=force,
-        force_factor_iso6336=standard,
+        separated=separated_ranges(stable),
+        back_contact=back_contact_ranges(stable),
+        jumps=jumps,
+        variants=_variants(motion, found, whole),
+        force_frequency=forces[:, 0],
+        force_factor=forces[:, 1],
+        force_factor_iso6336=standard_factors(motion, forces[:, 0]),
         half_backlash=oscillator.half_backlash,
+        longer_order=None if longer is None else longer.order,
+        with_longer=whole,
+        missed=missed,
+        truncation=changed,
         error=found.error,
         cost=Cost(watch.seconds),
         converged=found.converged,
@@ -177,31 +203,38 @@ def jump_points(found: dynamics.Diagram) -> list[tuple[Stretch, dynamics.Special
     return sorted((e for e in ends if e[1].kind == "saddle-node"), key=lambda end: end[1].parameter)
 
 
-def _jump(motion: PairOscillator, stretch: Stretch, point: dynamics.SpecialPoint) -> Jump:
-    """Carry the errors of the stiffness through the exact derivatives of a jump's speed.
+def rises(stretch: Stretch, point: dynamics.SpecialPoint) -> bool:
+    """Whether a stable motion ends at a point as the parameter rises."""
+    return stretch.high - point.parameter < point.parameter - stretch.low
+
+
+def _jump(
+    motion: PairOscillator,
+    longer: Longer | None,
+    stretch: Stretch,
+    point: dynamics.SpecialPoint,
+    carried: dynamics.SpecialPoint | None,
+) -> Jump:
+    """Carry the stiffness' errors through the exact derivatives of a jump's speed, and the jump to more harmonics.
 
     The speed is the frequency times sqrt(k_m): half the relative error of the mean stiffness, less what the mean
     force, which is over k_m, changes of the frequency. The amplitudes over the mean err by errors of their own.
     """
-    rising = stretch.high - point.parameter < point.parameter - stretch.low
+    rising, here = rises(stretch, point), point.parameter
     series, oscillator = motion.series, motion.oscillator
-    if series.fit is None:
-        return Jump(point.parameter, rising, stretch.label, {}, 0.0)
-    order = series.order
-    extended, dropped = _longer(motion, order + DROPPED)
-    slopes = dynamics.special_sensitivities(extended, "frequency", point)
-    here = point.parameter
+    if longer is None:
+        return Jump(here, rising, stretch.label, {}, None)
+    names = [f"stiffness.amplitudes[{j}]" for j in range(series.order)]
+    slopes = dynamics.special_sensitivities(oscillator, "frequency", point, ["mean_force", *names])
     force = abs(0.5 - slopes["mean_force"] * oscillator.mean_force / here)
-    amplitudes = (*oscillator.stiffness.amplitudes, *dropped)
-    steep = [slopes[f"stiffness.amplitudes[{j}]"] / here for j in range(len(amplitudes))]
-    left = [rate * a for rate, a in zip(steep[order:], dropped, strict=True)]
+    steep = np.array([slopes[name] / here for name in names])
     mean, off = _stiffness_errors(series)
     budget = {
-        "stiffness": mean * force + float(np.abs(steep[:order]) @ off),
-        "series": math.fsum(map(abs, left)),
+        "stiffness": mean * force + float(np.abs(steep) @ off),
+        "truncation": longer.truncation(point, carried),
         "flow": point.error,
     }
-    return Jump(here, rising, stretch.label, budget, left[0] if left else 0.0)
+    return Jump(here, rising, stretch.label, budget, math.nan if carried is None else carried.parameter)
 
 
 def _stiffness_errors(series: MeshSeries) -> tuple[float, Array]:
@@ -215,80 +248,42 @@ def _stiffness_errors(series: MeshSeries) -> tuple[float, Array]:
     return mean or 0.0, amplitudes
 
 
-def _longer(motion: PairOscillator, order: int) -> tuple[dynamics.GearOscillator, tuple[float, ...]]:
-    """Oscillator with room for further harmonics, of amplitude zero at their phases, and the amplitudes they have."""
-    assert motion.series.cycle is not None
-    own = motion.oscillator.stiffness
-    whole = arc_fit(motion.series.cycle, motion.series.kind, order).stiffness
-    further = tuple(a / whole.mean for a in whole.amplitudes[own.order :])
-    series = dynamics.FourierStiffness(
-        own.mean, own.amplitudes + (0.0,) * len(further), own.phases + whole.phases[own.order :]
+def _with_longer(
+    found: dynamics.Diagram,
+    forces: Array,
+    longer: Longer | None,
+    folds: Sequence[tuple[dynamics.SpecialPoint, dynamics.SpecialPoint | None]],
+) -> tuple[dynamics.Diagram | None, tuple[MissedJump, ...], Mapping[str, float]]:
+    """Branches of period 1 with the longer series, jumps that it has alone, and what it changes of other figures."""
+    if longer is None:
+        return None, (), {}
+    whole = longer_branches(longer, found, folds)
+    own = ((point, stretch.label, rises(stretch, point)) for stretch, point in jump_points(whole))
+    missed = missed_jumps(whole, own, [there.parameter for _, there in folds if there is not None])
+    return (
+        whole,
+        missed,
+        changes((found, whole), (forces, force_factors(longer.oscillator, whole, longest=1))),
     )
-    return replace(motion.oscillator, stiffness=series), further
 
 
-def _variants(motion: PairOscillator, bounds: tuple[float, float]) -> dict[str, tuple[float, ...]]:
-    """Jump frequencies with the other law of stiffness and with one more harmonic, in this motion's frequency."""
+def _variants(
+    motion: PairOscillator, found: dynamics.Diagram, whole: dynamics.Diagram | None
+) -> dict[str, tuple[float, ...]]:
+    """Jump frequencies of period 1 with the longer series and with the other law, in this motion's frequency."""
     series, scales = motion.series, motion.scales
-    if series.cycle is None or scales is None:
+    if series.cycle is None or scales is None or whole is None:
         return {}
-    kind, order, found, k_m = series.kind, series.order, {}, scales.mean_stiffness
-    for law, number in ((kind, order), (kind, order + 1), (OTHER[kind], order)):
-        fitted = arc_fit(series.cycle, law, number).stiffness
-        over = dynamics.FourierStiffness(
-            fitted.mean / k_m, tuple(a / k_m for a in fitted.amplitudes), fitted.phases
-        )
-        changed = replace(motion.oscillator, stiffness=over)
-        ends = jump_points(
-            dynamics.diagram(changed, "frequency", bounds, periods=(1,), searches=5, max_period=1)
-        )
-        found[f"{law}, order {number}, mean {over.mean:.4f}"] = tuple(point.parameter for _, point in ends)
-    return found
-
-
-def _factors(motion: PairOscillator, found: dynamics.Diagram) -> tuple[Array, Array, Array]:
-    """Frequency, greatest force over the mean force along stable branches of period 1 and 2, ISO 6336-1's K_v."""
-    from dynamics.motions import force_range
-
-    rows = []
-    for branch in found.branches:
-        for value, state, stable in zip(branch.values, branch.states, branch.stable, strict=True):
-            if stable and branch.periods <= 2 and motion.oscillator.mean_force != 0.0:
-                here = motion.oscillator.with_parameter("frequency", float(value))
-                rows.append((float(value), force_range(here, state, branch.periods).greatest))
-    curve = np.array(sorted(rows)).reshape(-1, 2)
-    return curve[:, 0], curve[:, 1], _standard(motion, curve[:, 0])
-
-
-def _standard(motion: PairOscillator, frequency: Array) -> Array:
-    """K_v after ISO 6336-1, method B; the pitch deviation is the peak-to-peak value of the unloaded error."""
-    scales, pair = motion.scales, motion.pair
-    if scales is None or pair is None:
-        return np.full(len(frequency), np.nan)
-    reliefs = [gear.tip_relief.amount for gear in (pair.pinion, pair.wheel) if gear.tip_relief is not None]
-    factor = gears.closed_form.iso6336_dynamic(
-        pair,
-        motion.force,
-        scales.equivalent_mass,
-        scales.speed(1.0) * frequency,
-        pitch_deviation=2.0 * motion.error_amplitude,
-        relief=max(reliefs, default=0.0),
+    other, k_m = arc_fit(series.cycle, OTHER[series.kind], series.order).stiffness, scales.mean_stiffness
+    stiffness = dynamics.FourierStiffness(
+        other.mean / k_m, tuple(a / k_m for a in other.amplitudes), other.phases
     )
-    return np.asarray(factor.K_v)
-
-
-def _counts(label: str) -> tuple[int, int]:
-    """Losses of contact and contacts of the back flank in a label."""
-    _, p, q = label.removeprefix("U").split("-")
-    return int(p), int(q)
-
-
-def _union(parts: list[Stretch]) -> tuple[tuple[float, float], ...]:
-    """Ranges covered by stretches, joined where they touch or overlap."""
-    joined: list[tuple[float, float]] = []
-    for low, high in sorted((s.low, s.high) for s in parts):
-        if joined and low <= joined[-1][1] * (1.0 + 1e-9):
-            joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
-        else:
-            joined.append((low, high))
-    return tuple(joined)
+    changed = replace(motion.oscillator, stiffness=stiffness)
+    alike = dynamics.diagram(changed, "frequency", found.bounds, periods=(1,), searches=5, max_period=1)
+    laws = ((series.kind, found), (series.kind, whole), (OTHER[series.kind], alike))
+    return {
+        f"{law}, order {one.oscillator.stiffness.order}, mean {one.oscillator.stiffness.mean:.4f}": tuple(
+            point.parameter for stretch, point in jump_points(one) if stretch.periods == 1
+        )
+        for law, one in laws
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,9 @@ from flankfilm.coupling.believed import believed
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 
 REVOLUTION_POSITIONS = 40
+
+HARMONICS = range(1, 6)
+"""Harmonics of the transmission error that are given over torque."""
 
 
 @record
@@ -26,6 +29,10 @@ class TorqueCurves:
         "m", "transmission error, peak to peak", "torque", shown="um", error="range_error"
     )
     harmonic_1: Array = quantity("1", "first harmonic of the secant stiffness over its mean", "torque")
+    transmission_error_harmonic: Mapping[str, Array] = quantity(
+        "m", "amplitude of a harmonic of the transmission error", "torque", shown="um"
+    )
+    harmonics_error: Array = quantity("m", "largest error of those harmonics", "torque", shown="um")
     range_error: float = quantity("1", "largest relative error of the peak-to-peak transmission errors")
     error: float
     cost: Cost
@@ -76,6 +83,11 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
         stiffness=np.array([cycle.mean_stiffness for cycle in good]),
         transmission_error=np.array([cycle.transmission_error_range for cycle in good]),
         harmonic_1=np.array([cycle.secant_stiffness_harmonics[0] for cycle in good]),
+        transmission_error_harmonic={
+            str(order): np.array([cycle.transmission_error_harmonics[order - 1] for cycle in good])
+            for order in HARMONICS
+        },
+        harmonics_error=np.array([_harmonics_error(cycle) for cycle in good]),
         error=max(_error(cycle, "mean_secant_stiffness", "mean_stiffness") for cycle in good),
         range_error=max(_error(cycle, "transmission_error_range") for cycle in good),
         cost=cycles[0].cost,
@@ -92,6 +104,12 @@ def _refusal(cycle: fem.MeshCycle) -> str:
         return "" if cycle.arcs is not None else cycle.message
     except SolverError as error:
         return str(error)
+
+
+def _harmonics_error(cycle: fem.MeshCycle) -> float:
+    """Largest error of the harmonics of the transmission error [m]; nan where it is not known."""
+    errors = cycle.transmission_error_harmonics_error
+    return float("nan") if errors is None else float(np.max(errors[: max(HARMONICS)]))
 
 
 def _error(cycle: fem.MeshCycle, *names: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -11,7 +12,16 @@ from numpy.typing import ArrayLike
 
 import dynamics
 from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
+from flankfilm.coupling.first_loss import grazing_budget
 from flankfilm.coupling.oscillator import PairOscillator
+from flankfilm.coupling.resonance import vibrations
+from flankfilm.coupling.swept_truncation import (
+    LEAST_HARMONICS,
+    checked_values,
+    grazing_errors,
+    motion_changes,
+)
+from flankfilm.coupling.truncation import longer_motion
 
 MOST_PORTRAITS = 6
 
@@ -61,6 +71,41 @@ class SpeedSweep:
         "1", "where the orbit that never leaves contact touches the backlash", "grazing"
     )
     half_backlash: float = quantity("1", "half the backlash D")
+    force_factor: Mapping[str, Array] = quantity(
+        "1", "greatest force over the mean force", "frequency", error="sampling_error"
+    )
+    separated: Mapping[str, Array] = quantity(
+        "1", "part of the time without contact of the driving flanks", "frequency", shown="%"
+    )
+    spread: Mapping[str, Array] = quantity(
+        "1", "root mean square of the displacement about its mean", "frequency", error="sampling_error"
+    )
+    sampling_error: float = quantity(
+        "1", "largest relative change of force and spread with half as many samples of a period"
+    )
+    grazing_budget: Mapping[str, float] = part(
+        "source of error to relative error of the least speed at which contact is lost: stiffness, truncation, flow"
+    )
+    longer_order: int | None = quantity(
+        "1", "harmonics of the longer series that the figures are held against; None for a given series"
+    )
+    grazing_error: Array | None = quantity(
+        "1",
+        "relative change of the frequency of the touch by the longer series; infinite where it has none near",
+        "grazing",
+    )
+    checked: Array | None = quantity(
+        "1", "frequencies at which motions are computed with the longer series as well", "checked"
+    )
+    force_change: Mapping[str, Array] | None = quantity(
+        "1",
+        "relative change of the greatest force there by the longer series; nan where the motion does not repeat, "
+        "infinite where there is none of the same label",
+        "checked",
+    )
+    spread_change: Mapping[str, Array] | None = quantity(
+        "1", "relative change of the displacement's root mean square there, likewise", "checked"
+    )
     portraits: tuple[Portrait, ...] = part("settled motions at chosen values")
     error: float
     cost: Cost
@@ -70,6 +115,12 @@ class SpeedSweep:
     def least_grazing(self) -> float | None:
         """Least frequency at which contact is lost."""
         return float(self.grazings.min()) if self.grazings.size else None
+
+    @property
+    def least_grazing_error(self) -> float | None:
+        """Relative error of the least speed at which contact is lost; None where there is none, or it is not known."""
+        known = self.grazing_budget
+        return math.fsum(known.values()) if "stiffness" in known or set(known) == {"flow"} else None
 
     @property
     def converged(self) -> bool:
@@ -122,6 +173,15 @@ def speed_sweep(
     }
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
     solved: list[Result] = [*found.values(), grazing]
+    shaken = {direction: vibrations(oscillator, result) for direction, result in found.items()}
+    touched = grazing.columns()
+    longer = longer_motion(motion, (float(values[0]), float(values[-1])), LEAST_HARMONICS)
+    at = np.zeros(0, dtype=np.int64)
+    beside, left_out = {}, None
+    if longer is not None:
+        at = checked_values(len(values), {direction: force for direction, (force, *_) in shaken.items()})
+        beside = {way: motion_changes(longer, oscillator, result, at) for way, result in found.items()}
+        left_out = grazing_errors(longer, touched)
     return SpeedSweep(
         frequency=values,
         speed=speeds,
@@ -131,12 +191,33 @@ def speed_sweep(
             _portrait(oscillator, found[direction], direction, index)
             for direction, index in _choices(values, portraits, found)
         ),
-        grazings=np.asarray(grazing),
+        grazings=touched,
         half_backlash=oscillator.half_backlash,
+        force_factor={direction: force for direction, (force, *_) in shaken.items()},
+        separated={direction: part for direction, (_, part, *_) in shaken.items()},
+        spread={direction: spread for direction, (_, _, spread, _) in shaken.items()},
+        sampling_error=max(error for *_, error in shaken.values()),
+        grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
+        longer_order=None if longer is None else longer.order,
+        grazing_error=left_out,
+        checked=None if longer is None else values[at],
+        force_change={way: force for way, (force, _) in beside.items()} or None,
+        spread_change={way: spread for way, (_, spread) in beside.items()} or None,
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
         messages=tuple(one.message for one in solved if not one.converged),
     )
+
+
+def _first_loss(
+    motion: PairOscillator, touched: Array, left_out: Array | None, flow: float
+) -> Mapping[str, float]:
+    """Error budget of the least speed at which contact is lost; empty where it never is."""
+    if not touched.size:
+        return {}
+    first = int(np.argmin(touched))
+    truncation = None if left_out is None else float(left_out[first])
+    return grazing_budget(motion, float(touched[first]), flow, truncation)
 
 
 def frequencies_of(

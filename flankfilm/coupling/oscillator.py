@@ -73,6 +73,26 @@ class PairOscillator:
         """Natural frequency; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.natural_frequency
 
+    @described("m", shown="um", error="error")
+    def length_scale(self) -> float | None:
+        """Length of displacement 1; None for an oscillator in its own units."""
+        return None if self.scales is None else self.scales.length
+
+    @described("m/s", error="error")
+    def speed_scale(self) -> float | None:
+        """Velocity dX/dtau of 1; None for an oscillator in its own units."""
+        return None if self.scales is None else self.scales.length * self.scales.omega_n
+
+    @described("N/m", error="error")
+    def mean_stiffness(self) -> float | None:
+        """Mean stiffness that frequencies refer to; None for an oscillator in its own units."""
+        return None if self.scales is None else self.scales.mean_stiffness
+
+    @described("kg")
+    def equivalent_mass(self) -> float | None:
+        """Equivalent mass along the line of action; None for an oscillator in its own units."""
+        return None if self.scales is None else self.scales.equivalent_mass
+
     def rows(self) -> tuple[tuple[str, str, str], ...]:
         """Quantities, physical and dimensionless, as text for tables."""
         osc, scales = self.oscillator, self.scales

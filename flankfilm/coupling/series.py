@@ -23,6 +23,9 @@ from gears.mesh_figures import SHOWN
 MOST_HARMONICS = 50
 """Highest order of a series."""
 
+MEANS = {"secant": "mean_secant_stiffness", "tangent": "mean_stiffness"}
+"""Figure of a mesh cycle that is the mean of a kind of stiffness."""
+
 OTHER = {"secant": "tangent", "tangent": "secant"}
 
 RESOLVED = 150
@@ -53,6 +56,9 @@ class MeshSeries:
         "estimated error of the amplitudes over the mean, of meshes and arcs; None where it is unknown",
         "harmonic",
         default=None,
+    )
+    tried: tuple[tuple[int, float], ...] = part(
+        "lower orders that jump speeds ruled out, with what these err by", default=()
     )
     converged: bool = True
     message: str = ""

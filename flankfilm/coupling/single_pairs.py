@@ -36,6 +36,7 @@ class SinglePairs:
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
     stiffness: Mapping[str, Array] = quantity("N/m", "stiffness of one pair", "path")
     iso: gears.closed_form.Iso6336Stiffness = part("stiffness by ISO 6336-1")
+    contact: gears.closed_form.Iso6336ContactStress = part("nominal contact stress by ISO 6336-2")
     error: float | None
     cost: Cost
     converged: bool = True
@@ -136,6 +137,7 @@ def single_pairs(
             for model in models
         },
         iso=forms.iso6336(pair, force=force),
+        contact=forms.iso6336_2(pair, force),
         error=None if compliance is None else compliance.error,
         cost=Cost(watch.seconds),
     )

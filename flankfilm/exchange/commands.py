@@ -17,7 +17,7 @@ def import_gears(
     stage: str | None = None,
     rack: Literal["A", "B", "C", "D"] | None = None,
 ) -> int:
-    """Write a scene from the gear data in FILE (REXS, XML).
+    """Write a scene from the gear data in FILE (REXS as XML, JSON or an archive of either).
 
     What the scene needs and FILE lacks is left open in the scene and listed.
 
@@ -55,17 +55,17 @@ def export_rexs(scene: Path, /, *, out: Path | None = None) -> int:
     scene : Path
         The scene file (TOML); its sections pair and material count.
     out : Path, optional
-        The file; SCENE.rexs beside you if left out.
+        The file, as XML (.rexs), JSON (.rexsj) or XML in an archive (.rexsz); SCENE.rexs beside you if left out.
     """
     from flankfilm.build import gear_pair
-    from flankfilm.exchange.rexs_write import rexs_text
-    from flankfilm.output.files import write_text
+    from flankfilm.exchange.rexs_write import rexs_file
+    from flankfilm.output.files import write_bytes
     from flankfilm.scene import read_scene
 
     wanted = read_scene(scene)
-    text, left_out = rexs_text(gear_pair(wanted), wanted.title or scene.stem)
     target = out if out is not None else Path(f"{scene.stem}.rexs")
-    write_text(target, text)
+    content, left_out = rexs_file(gear_pair(wanted), wanted.title or scene.stem, target)
+    write_bytes(target, content)
     for omission in left_out:
         print(printable(omission))
     print(f"{target} is written.")
@@ -169,6 +169,40 @@ def export_mesh(
     )
     for path in files:
         print(f"{path} is written.")
+    return 0
+
+
+def export_table(scene: Path, /, *, out: Path | None = None) -> int:
+    """Write the mesh of SCENE as a table over angle, for programs that vibrate shafts.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML), or a results.nc; the mesh cycle is computed with its film where there is one.
+    out : Path, optional
+        A table (.csv), or arrays in SI (.npz); SCENE-mesh.csv beside you if left out.
+    """
+    from flankfilm.cache import results_cache
+    from flankfilm.coupling import mesh_table
+    from flankfilm.exchange.mesh_files import refuse_others, write_table
+    from flankfilm.reproduce import scene_in
+    from flankfilm.scene.section import required
+    from flankfilm.stages.catalogue import MESH, PAIR
+    from flankfilm.stages.engine import Engine
+
+    wanted, _ = scene_in(scene)
+    target = out if out is not None else Path(f"{scene.stem}-mesh.csv")
+    refuse_others(target)
+    for name in ("pair", "material", "operating"):
+        required(getattr(wanted, name), f"[{name}]", "the mesh")
+    engine = Engine(wanted, results_cache())
+    motion = wanted.dynamics
+    extra = (0.0, 0.0) if motion is None else motion.extra_inertia_kg_m2.each
+    table = mesh_table(engine[PAIR], engine[MESH], extra)
+    write_table(target, table)
+    print(
+        f"{target} is written: {table.angle.size} positions of one mesh, measured against {table.reference}."
+    )
     return 0
 
 

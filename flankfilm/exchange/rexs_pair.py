@@ -17,7 +17,7 @@ from base import Faults, InputError, shorten
 from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.draft import GEARS, OPEN, Draft
 from flankfilm.exchange.rexs_attributes import Attribute
-from flankfilm.exchange.rexs_file import Component, Model, Relation
+from flankfilm.exchange.rexs_model import Component, Model, Relation
 
 SAME = 1e-9
 """Relative difference within which two numbers of a file are one number."""
@@ -197,6 +197,7 @@ class _StageReader:
         shift = self._common(rexs.PROFILE_SHIFT, flanks)
         if math.isnan(shift):
             shift = self._common(rexs.PROFILE_SHIFT_LENGTH, flanks) / module
+        cut = self._generating_shift(gear, flanks, shift)
         tip = self._number(gear, rexs.TIP_DIAMETER)
         alteration = OPEN
         if tip is not None and teeth is not None:
@@ -204,7 +205,7 @@ class _StageReader:
             alteration = 0.0 if abs(exact) < 1e-9 else float(f"{exact:.12g}")
         root = self._number(gear, rexs.ROOT_DIAMETER)
         if root is not None and teeth is not None:
-            own = module * (teeth + 2.0 * (shift - rack["h_fP"]))
+            own = module * (teeth + 2.0 * ((shift if cut is None else cut) - rack["h_fP"]))
             if abs(own - root) > 0.01 * module:
                 self.notes.append(
                     f"{gear}: root_diameter {root:g} mm in the file, {own:g} mm by shift and tool: the file's "
@@ -218,10 +219,25 @@ class _StageReader:
         return {
             "teeth": OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
             "profile_shift": shift,
+            **({} if cut is None else {"generating_shift": cut}),
             "tip_alteration": _or_default(alteration),
             "bore_mm": self._number(gear, rexs.BORE_DIAMETER) or None,
             "tip_chamfer_mm": _or_default(self._common(rexs.TIP_CHAMFER, flanks)),
         }
+
+    def _generating_shift(self, gear: Component, flanks: list[Component], shift: float) -> float | None:
+        """Shift at which the only tool cuts a gear, where it is another than the profile shift."""
+        if self._tool(gear, flanks, silent=True) is None:
+            return None
+        settings = [
+            found
+            for flank in flanks
+            for found in self.model.others(
+                "manufacturing_step", "workpiece", flank.id, "manufacturing_settings"
+            )
+        ]
+        cut = self._common(rexs.GENERATED_SHIFT, list({one.id: one for one in settings}.values()))
+        return None if math.isnan(cut) or abs(cut - shift) <= SAME else cut
 
     def _rack(
         self,
@@ -263,7 +279,7 @@ class _StageReader:
                 return value if attribute.unit is rexs.PURE else float(f"{value / module:.12g}")
         return OPEN
 
-    def _tool(self, gear: Component, flanks: list[Component]) -> Component | None:
+    def _tool(self, gear: Component, flanks: list[Component], silent: bool = False) -> Component | None:
         """The rack-shaped tool that cut a gear, where it is the only tool."""
         found = [
             t for f in flanks for t in self.model.others("manufacturing_step", "workpiece", f.id, "tool")
@@ -273,7 +289,7 @@ class _StageReader:
         tools = list({tool.id: tool for tool in found if tool.type.endswith("_tool")}.values())
         if len(tools) == 1 and tools[0].type == "rack_shaped_tool":
             return tools[0]
-        if tools:
+        if tools and not silent:
             self.notes.append(
                 f"{gear}: made by {', '.join(map(str, tools))}: the fillet of one rack-shaped tool alone is generated."
             )

@@ -1,4 +1,4 @@
-"""Writes a gear pair as a REXS file (XML, version 1.4)."""
+"""Writes a gear pair as a REXS file, version 1.4: XML, JSON or either in an archive."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ import math
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
+from base import InputError
 from flankfilm.exchange import rexs_attributes as rexs
+from flankfilm.exchange.rexs_archive import packed
 from flankfilm.exchange.rexs_attributes import Attribute
+from flankfilm.exchange.rexs_json import json_text
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -18,8 +22,30 @@ if TYPE_CHECKING:
 VERSION = "1.4"
 
 
+FORMATS = (".rexs", ".rexsj", ".rexsz")
+"""Endings of files: XML, JSON, and XML in a ZIP archive."""
+
+
+def rexs_file(pair: GearPair, title: str, path: Path) -> tuple[bytes, tuple[str, ...]]:
+    """Content of a REXS file in the format that the ending of its name says; see `rexs_text`.
+
+    Raises
+    ------
+    InputError
+        Where the name ends otherwise.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError.at("--out", str(path), f"must end in {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+    text, left_out = rexs_text(pair, title)
+    if path.suffix.lower() == ".rexsj":
+        text = json_text(ET.fromstring(text))
+    if path.suffix.lower() == ".rexsz":
+        return packed(text, f"{path.stem}.rexs"), left_out
+    return text.encode(), left_out
+
+
 def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
-    """Write a pair as one stage of two cylindrical gears, each with flanks, tool and material.
+    """Write a pair, as XML, as one stage of two cylindrical gears, each with flanks, tool and material.
 
     Parameters
     ----------
@@ -125,7 +151,7 @@ class _Writer:
         tool = self.component("rack_shaped_tool", f"{name}, basic rack", module | angle | depth)
         for flank in (left, right):
             settings = self.component(
-                "cylindrical_gear_manufacturing_settings", "", {rexs.GENERATED_SHIFT: shift}
+                "cylindrical_gear_manufacturing_settings", "", {rexs.GENERATED_SHIFT: float(gear.cut_shift)}
             )
             self.relation(
                 "manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings

@@ -17,8 +17,9 @@ from flankfilm.build import gear_pair, pinion_speed
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
 from flankfilm.coupling import Flanks, LubricatedCycle, MeshCycle
-from flankfilm.stages.catalogue import DIAGRAM, DRY_CYCLE, FILM, SCALING, SWEEP, VERIFICATION
+from flankfilm.stages.catalogue import DRY_CYCLE, FILM, VERIFICATION
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
 from tests.flankfilm.scenes import ARTICLE
 
 HEAD = """
@@ -95,6 +96,7 @@ def test_the_least_film_of_the_pairs_is_that_of_the_path(cycle: LubricatedCycle)
     assert cycle.thinnest_film == pytest.approx(cycle.film.least_film, rel=0.01)
 
 
+@pytest.mark.slow
 def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: LubricatedCycle):
     motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, error_amplitude=1e-6 * 10)
     assert motion.oscillator == run[SCALING].oscillator
@@ -167,6 +169,7 @@ def test_speeds_need_scales_and_one_range():
             ff.jump_speeds(motion, **ranges)
 
 
+@pytest.mark.slow
 def test_contacts_of_plastics_move_unless_they_are_told_to_stay():
     """With a plastic wheel it counts; scene, plain call and finite elements mean the same."""
     text = HEAD.replace("WANTS", '"stiffness"') + ARTICLE.replace(

@@ -16,8 +16,9 @@ from flankfilm.cache import Cache
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.report.mesh_parts import references as report_part
-from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, REFERENCES, SCALING
+from flankfilm.stages.catalogue import DRY_CYCLE, REFERENCES
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.motion import FOURIER, SCALING
 from tests.flankfilm.scenes import ARTICLE
 from tests.validation.article import PAIR
 
@@ -59,6 +60,7 @@ def test_cycles_measure_as_finite_elements_do(bodies, cycle):
     assert np.ptp(cycle.transmission_error) == pytest.approx(np.ptp(found.transmission_error), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_film_yields_by_as_much_against_every_reference(bodies):
     oil = ff.FilmModel("dowson")
     given = {"tolerance": 0.01, "film": oil, "compliance": bodies}

@@ -1,0 +1,85 @@
+"""What a series leaves out of a sweep: some of its motions, and where contact is first lost, with more harmonics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import dynamics
+from base import Array, Integers
+from flankfilm.coupling.resonance import vibration
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.truncation import Longer
+
+CHECKED = 12
+"""Values of a sweep, evenly over the range, at which motions are computed with the longer series as well."""
+
+LEAST_HARMONICS = 32
+"""Least order of the longer series: forces follow the stiffness at every instant, and need more than displacements."""
+
+NEAR, POINTS = 0.1, 41
+"""Part of the frequency on both sides in which the longer series' loss of contact is looked for, and at how many."""
+
+
+def grazing_errors(longer: Longer, grazings: Array) -> Array:
+    """Relative errors of the frequencies at which contact is first lost; infinite where the longer series has none.
+
+    Parameters
+    ----------
+    longer : Longer
+    grazings : ndarray, shape (n,)
+        Frequencies with the series itself.
+    """
+    errors = []
+    for here in grazings.tolist():
+        bounds = ((1.0 - NEAR) * here, (1.0 + NEAR) * here)
+        near = dynamics.contact_grazing(longer.oscillator, "frequency", bounds, points=POINTS).columns()
+        errors.append(float(np.min(np.abs(near / here - 1.0), initial=np.inf)))
+    return np.array(errors)
+
+
+def checked_values(count: int, forces: Mapping[str, Array]) -> Integers:
+    """Values of a sweep that are computed once more: evenly, and where the forces of either direction are greatest."""
+    evenly = np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64)
+    greatest = [int(np.nanargmax(force)) for force in forces.values() if np.isfinite(force).any()]
+    return np.unique(np.concatenate([evenly, np.array(greatest, dtype=np.int64)]))
+
+
+def motion_changes(
+    longer: Longer, oscillator: dynamics.GearOscillator, swept: dynamics.SweepResult, at: Integers
+) -> tuple[Array, Array]:
+    """Relative changes of the greatest force and of the spread of swept motions by the longer series.
+
+    Parameters
+    ----------
+    longer : Longer
+    oscillator : GearOscillator
+        Of the sweep.
+    swept : SweepResult
+    at : ndarray of int, shape (n,)
+        Values that are looked at.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,)
+        nan where the motion does not repeat; infinite where Newton's method finds no motion of the same label.
+    """
+    changes = np.full((len(at), 2), np.nan)
+    for row, index in enumerate(at.tolist()):
+        periods, frequency = int(swept.periods[index]), float(swept.values[index])
+        if not periods:
+            continue
+        state = swept.states[index][-1]
+        there = longer.oscillator.with_parameter("frequency", frequency)
+        orbit = dynamics.find_orbit(there, state, periods=periods)
+        if not orbit.converged or orbit.label != swept.labels[index]:
+            changes[row] = np.inf
+            continue
+        before = vibration(oscillator.with_parameter("frequency", frequency), state, periods)
+        after = vibration(there, orbit.state, periods)
+        for column, (one, other) in enumerate(((before.force, after.force), (before.spread, after.spread))):
+            changes[row, column] = abs(one / other - 1.0) if other > 0.0 else np.nan
+    return changes[:, 0], changes[:, 1]
