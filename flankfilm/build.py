@@ -5,7 +5,8 @@ What a section hands over one to one is its `Section.si`; here stands what takes
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TypeVar
 
@@ -38,10 +39,10 @@ def gear_pair(scene: Scene) -> gears.GearPair:
 def _cold_pair(scene: Scene) -> gears.GearPair:
     """Build the pair of a scene as it was measured."""
     section = required(scene.pair, "[pair]")
-    with under_keys(section, "pair"):
+    with under_keys(section, "pair"), _under_tool(section):
         materials = (gears.STEEL, gears.STEEL)
         if scene.material is not None:
-            materials = _both(scene.material.each, lambda material: gears.Material(**material.si()))
+            materials = _both(scene.material.each, lambda section: section.material())
         pinion, wheel = _both(section.each, _gear)
         pair = gears.GearPair(
             pinion=pinion, wheel=wheel, rack=_rack(section), material=materials, **section.si()
@@ -89,10 +90,36 @@ def _gear(section: GearSection) -> gears.Gear:
 
 
 def _rack(section: PairSection) -> gears.BasicRack:
+    """Rack of both gears, with dedendum and fillet radius by the tool where there is one."""
     if isinstance(section.rack, RackSection):
-        return gears.BasicRack(**section.rack.si())
-    h_aP, h_fP, rho_fP = ISO_53[section.rack[-1]]
-    return gears.BasicRack(h_aP=h_aP, h_fP=h_fP, rho_fP=rho_fP)
+        rack = gears.BasicRack(**section.rack.si())
+    else:
+        rack = gears.BasicRack(*ISO_53[section.rack[-1]])
+    if section.tool is None:
+        return rack
+    h_aP0, rho_aP0, bulge = (section.tool.value(name) for name in ("h_aP0", "rho_aP0", "protuberance_um"))
+    return gears.BasicRack.of_tool(h_aP0, rho_aP0, rack.h_aP, rack.alpha, bulge)
+
+
+@contextmanager
+def _under_tool(section: PairSection) -> Iterator[None]:
+    """Give the faults of what a tool's keys say to the tool."""
+    try:
+        yield
+    except InputError as error:
+        if section.tool is None:
+            raise
+        of_tool = {
+            "rack.h_fP": "tool.h_fP",
+            "rack.rho_fP": "tool.rho_fP",
+            "protuberance": "tool.protuberance",
+        }
+        raise InputError(
+            replace(fault, where=of_tool[fault.where], remedy=fault.remedy.replace("h_fP", "h_aP0"))
+            if fault.where in of_tool
+            else fault
+            for fault in error.faults
+        ) from error
 
 
 def pinion_speed(scene: Scene) -> float:

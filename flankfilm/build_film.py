@@ -7,7 +7,7 @@ from typing import Any
 
 import ehl
 from flankfilm import coupling
-from flankfilm.scene.film import BY_GRADE, BY_NUMBERS
+from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, RoughnessSection
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import required
@@ -54,5 +54,15 @@ def roughness(scene: Scene) -> ehl.Roughness | None:
     rough = scene.roughness
     if rough is None:
         return None
+    asperities = rough.si("density_per_mm2", "tip_radius_um", "law", "mean_plane_offset")
     with under_keys(scene, ""):
-        return ehl.Roughness(**rough.si())
+        if rough.sigma_um is not None:
+            return ehl.Roughness.of_deviation(rough.value("sigma_um"), **asperities)
+        mean, peaks = (_of_flanks(rough, name) for name in ("Ra_um", "Rz_um"))
+        return ehl.Roughness.from_drawing(mean, peaks, **asperities)
+
+
+def _of_flanks(rough: RoughnessSection, name: str) -> tuple[float, float] | None:
+    """Roughness of pinion and wheel by the name of its key [m]; None where it was not given."""
+    pinion, wheel = rough.value(name), rough.value(f"wheel_{name}")
+    return None if pinion is None else (pinion, pinion if wheel is None else wheel)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
+from flankfilm.beforehand import refuse
 from flankfilm.build import gear_pair, warm_pair
 from flankfilm.build_film import lubricant
-from flankfilm.build_flanks import deviations
 from flankfilm.cache import Cache
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import DRY_CYCLE, FOURIER, PLAN
-from flankfilm.stages.engine import Engine
+from flankfilm.stages.catalogue import PLAN
+from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.goals import goals
 
 T = TypeVar("T")
@@ -29,12 +29,14 @@ def check_scene(scene: Scene) -> list[str]:
     Raises
     ------
     InputError
-        With every fault of the geometry, or of the oil.
+        With every fault that shows without solving.
+    SolverError
+        Where no models meet the tolerance.
     """
+    _, foreseen = _built(refuse, scene)
     lines = [f"{scene.title or 'The scene'} is valid."]
     if scene.pair is not None:
         pair, warned = _built(gear_pair, scene)
-        deviations(scene, pair, every_tooth=True)
         lines.append(
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
@@ -52,12 +54,19 @@ def check_scene(scene: Scene) -> list[str]:
             f"Oil: {oil.viscosity:.4g} Pa s, {1e9 * oil.pressure_viscosity:.4g} /GPa, {oil.density:.4g} kg/m³."
         )
         lines += warned
-    if DRY_CYCLE in (wanted := goals(scene)) or (scene.stiffness.model != "given" and FOURIER in wanted):
+    lines += foreseen
+    wanted = goals(scene)
+    if scene.stiffness.model != "given" and any(PLAN in needed(stage) for stage in wanted):
         plan = Engine(scene, Cache(None))[PLAN]  # models and shares, from cheap estimates
         lines += [decision.line for decision in plan.decisions]
         lines.append(plan.line)
     lines.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
     return lines
+
+
+def needed(stage: Stage[Any]) -> set[Stage[Any]]:
+    """A stage and all that it may ask for."""
+    return {stage}.union(*map(needed, stage.needs))
 
 
 def _built(build: Callable[[Scene], T], scene: Scene) -> tuple[T, list[str]]:

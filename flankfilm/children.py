@@ -1,12 +1,17 @@
 """Processes that we start: they import nothing from the current folder, and end with the one that started them.
 
 A child that is told to (a closed pipe, which also tells that its parent has died) ends at once, without cleaning up:
-what it writes is whole at any moment.
+what it writes is whole at any moment. Compiled code may keep the interpreter busy for minutes; so where the system can
+end a child by itself, it is asked to.
+
+A module runs as a child that ends with its parent by ``python -m flankfilm.children PARENT MODULE ARGUMENTS``.
 """
 
 from __future__ import annotations
 
+import ctypes
 import os
+import runpy
 import signal
 import sys
 import threading
@@ -14,12 +19,16 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
+from typing import Any
 
 ENDS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that ask for an end; the first is Ctrl-C."""
 
 AGAIN = 3.0
 """Seconds after which an end is asked for once more: what is raised within a destructor or a callback is lost."""
+
+DEATH_OF_PARENT = 1
+"""PR_SET_PDEATHSIG of Linux's prctl: the signal that a process is sent when its parent has died."""
 
 LOOK = 0.5
 """Seconds between two looks whether a parent is still there."""
@@ -41,6 +50,11 @@ class Ended(BaseException):
 def python(*arguments: str) -> list[str]:
     """Command that starts this interpreter without the current folder among the places that it imports from."""
     return [sys.executable, "-P", *arguments]
+
+
+def module(name: str, *arguments: str) -> list[str]:
+    """Arguments of `python` that run a module, in a process that ends when this one has."""
+    return ["-m", "flankfilm.children", str(os.getpid()), name, *arguments]
 
 
 @contextmanager
@@ -93,6 +107,7 @@ def answering_signals() -> Iterator[None]:
 def work_until_told(told: Connection) -> None:
     """Start of a worker: Ctrl-C is the parent's to answer; end when the other end of the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _end_when_closed(told)
 
     def wait() -> None:
         with suppress(EOFError, OSError):
@@ -102,9 +117,35 @@ def work_until_told(told: Connection) -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
-def end_with_parent() -> None:
-    """Start of a child that was started as a command: end when its parent has died."""
-    parent = os.getppid()
+def _end_when_closed(told: Connection) -> None:
+    """Have the system end this process when the other end of a pipe is closed, where it can.
+
+    It sends SIGIO then, which ends a process that does not answer it, whatever the interpreter is at.
+    """
+    if sys.platform != "linux":
+        return
+    import fcntl
+
+    # opened anew: of a file that processes share only one is told
+    own = os.open(f"/proc/self/fd/{told.fileno()}", os.O_RDONLY | os.O_NONBLOCK)
+    fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)
+
+
+def killed_with_parent() -> None:
+    """Have the system kill this process when its parent has died, where it can."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(DEATH_OF_PARENT, signal.SIGKILL)
+
+
+def dask_setup(_worker: Any) -> None:
+    """Start of a worker of dask that we started: this module is what it loads first."""
+    killed_with_parent()
+
+
+def end_with(parent: int) -> None:
+    """End this process when its parent has died, at once if it is dead already."""
+    killed_with_parent()
 
     def watch() -> None:
         while os.getppid() == parent:
@@ -112,3 +153,9 @@ def end_with_parent() -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+
+
+if __name__ == "__main__":
+    end_with(int(sys.argv[1]))
+    del sys.argv[:2]
+    runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)

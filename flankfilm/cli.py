@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 USER_FAULT = 2
 SOLVER_FAULT = 3
-ROWS_FAILED = 4
+PART_FAILED = 4
+"""Some rows of a study, or parts of a scene, failed; the others are there."""
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says of a disk or quota that is full, and of a file that may not grow."""
@@ -106,6 +107,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     from flankfilm.progress import console_progress
     from flankfilm.report.contents import summary
     from flankfilm.running import run_scene
+    from flankfilm.stages.failures import lines as not_computed
 
     wanted = _read(scene, options.tolerance)
     # a results file is called like all others: its folder distinguishes it
@@ -115,7 +117,9 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
         results = run_scene(wanted, folder, use_cache=options.cache, progress=progress)
     for line in summary(results):
         print(printable(line))
-    return 0
+    for line in not_computed(results.failures):
+        print(f"flankfilm: {printable(line)}", file=sys.stderr)
+    return PART_FAILED if results.failures else 0
 
 
 @app.command
@@ -168,7 +172,7 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
         found = run_study(plan, out, how, progress)
     _conclude(summary(found), out, write_study(found, out))
     if found.failures:
-        return SOLVER_FAULT if len(found.failures) == len(found.rows) else ROWS_FAILED
+        return SOLVER_FAULT if all(row.lost for row in found.rows) else PART_FAILED
     return 0
 
 
@@ -278,7 +282,7 @@ def new(scene: Path, /) -> int:
 
 
 for _name, _where, _help in (
-    ("import", "exchange.commands:import_gears", "Write a scene from the gear data in FILE (REXS, XML)."),
+    ("import", "exchange.commands:import_gears", "Write a scene from the gear data in FILE (REXS)."),
     ("export-profile", "exchange.commands:export_profile", "Write the tooth profile of a gear of SCENE."),
     (
         "export",
@@ -286,6 +290,7 @@ for _name, _where, _help in (
         "Write both gears of SCENE, loaded as they mesh, for other programs.",
     ),
     ("export-rexs", "exchange.commands:export_rexs", "Write the pair of SCENE as a REXS file."),
+    ("export-table", "exchange.commands:export_table", "Write the mesh of SCENE as a table over angle."),
     ("completion", "exchange.commands:completion", "Print the script that completes commands in SHELL."),
     ("view", "figures.commands:view", "Show the fields in RESULTS on the deformed teeth."),
     ("animate", "figures.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),

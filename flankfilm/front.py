@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import tempfile
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from base import PartWarning
 from flankfilm.cache import keep_compiled_code, results_cache
 from flankfilm.folder import claim
 from flankfilm.reproduce import scene_in
@@ -37,12 +39,23 @@ def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True
     cache : bool
         Whether results of earlier runs with the same inputs and code may serve.
 
+    Returns
+    -------
+    Results
+        A part that failed beside others is in its ``failures``, and nowhere else: it has no value, and asking for its
+        stage raises the reason.
+
+    Warns
+    -----
+    PartWarning
+        For each part that failed, with the reason and the remedy.
+
     Raises
     ------
     InputError
         With every fault of the scene, or of the folder.
     SolverError
-        Where a solver did not reach a result that it believes.
+        Where no wanted part could be computed.
 
     Examples
     --------
@@ -63,8 +76,12 @@ def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True
     """
     keep_compiled_code()
     from flankfilm.running import run_scene
+    from flankfilm.stages.failures import lines
 
-    return run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
+    found = run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
+    for line in lines(found.failures):
+        warnings.warn(line, PartWarning, stacklevel=2)
+    return found
 
 
 def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True) -> Verification:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flankfilm.report.text import number
+from flankfilm.stages.failures import lines
 from gears.notebook import table
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ def results_html(results: Results) -> str:
     more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""
     size = f"{results.written} after {results.seconds:.1f} s{': ' if files else ''}{files}{more}"
     title = escape(results.scene.title or "flankfilm")
-    return f"<p><b>{title}</b></p>{table((), rows)}<p>{escape(size)}</p>"
+    failed = "".join(f"<p>{escape(line)}</p>" for line in lines(results.failures))
+    return f"<p><b>{title}</b></p>{failed}{table((), rows)}<p>{escape(size)}</p>"
 
 
 def study_html(found: StudyResults) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from types import MappingProxyType
@@ -21,6 +22,9 @@ ALIGNED = 64
 
 KINDS = "biufcUS"
 """Kinds of numbers and text that an array may hold: no objects."""
+
+TYPES = re.compile(rf"[<>|=][{KINDS}]\d{{1,9}}")
+"""Types of arrays as numpy writes them; what else it reads as one is none."""
 
 SEQUENCES: Mapping[str, Callable[[list[Any]], Any]] = {
     "tuple": tuple,
@@ -83,6 +87,7 @@ def read(content: bytes, packages: tuple[str, ...]) -> Any:
         IndexError,
         AttributeError,
         ImportError,
+        OverflowError,
         RecursionError,
     ) as fault:
         raise NotPlainDataError(f"no plain data: {type(fault).__name__}: {fault}") from fault
@@ -119,7 +124,8 @@ class _Writer:
             return [name, [[self.node(key), self.node(one)] for key, one in value.items()]]
         cls = type(value)
         _check_class(cls, self.packages)
-        state = value.__getstate__()
+        # a record without fields has no state at all
+        state = {} if (found := value.__getstate__()) is None else found
         if not isinstance(state, dict):
             raise NotPlainDataError(f"{cls.__qualname__} has no fields to keep")
         values = {key: self.node(one) for key, one in state.items()}
@@ -172,9 +178,9 @@ class _Reader:
     def _array(
         self, kind: str, dtype: str, shape: list[int], order: Any, writable: bool, start: int
     ) -> np.ndarray[Any, Any] | np.generic:
-        form = np.dtype(dtype)
-        if form.kind not in KINDS or order not in ("C", "F") or min([start, *shape], default=0) < 0:
+        if not TYPES.fullmatch(dtype) or order not in ("C", "F") or min([start, *shape], default=0) < 0:
             raise NotPlainDataError(f"an array of {dtype} is none of ours")
+        form = np.dtype(dtype)
         count = int(np.prod(shape, dtype=object))
         flat = np.frombuffer(self.arrays[start : start + count * form.itemsize], form, count).copy()
         array: np.ndarray[Any, Any] = flat.reshape(shape, order=order)

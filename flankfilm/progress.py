@@ -1,14 +1,24 @@
-"""Progress on standard error, when that is a terminal."""
+"""Progress on standard error: a bar on a terminal, one line a stage in a log."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
+from typing import TextIO
+
+from base import heard_compiling
 
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, steps done, and steps in all."""
+
+COMPILING = "compiling, once: later runs load what is kept"
+"""Said when code is compiled for the first time on a machine, which takes up to a minute."""
+
+TENTHS = 10
+"""Lines that a log has of rows."""
 
 
 def silent(what: str, done: int, total: int) -> None:
@@ -38,16 +48,52 @@ def in_steps(progress: Progress, total: int) -> Callable[[str], None]:
 
 @contextmanager
 def console_progress() -> Iterator[Progress]:
-    """Show a bar with the time left on a terminal; show nothing elsewhere."""
+    """Show a bar with the time left on a terminal, and a line for each stage elsewhere."""
     with _bar("{task.description}") as advance:
-        yield (lambda what, done, total: advance(what, done, total)) if advance else silent
+        shown = advance or lines(sys.stderr)
+        said: list[str] = []
+
+        def compiling() -> None:
+            if not said:
+                said.append(COMPILING)
+                shown(COMPILING, 0, 1)
+
+        with heard_compiling(compiling):
+            yield shown
 
 
 @contextmanager
 def console_rows() -> Iterator[Callable[[int, int], None]]:
-    """Show rows done, rows per second and the time left on a terminal; show nothing elsewhere."""
+    """Show rows done, rows per second and the time left on a terminal, and a line for each tenth of them elsewhere."""
     with _bar("rows", rate=True) as advance:
-        yield lambda done, total: advance("rows", done, total) if advance else None
+        shown = advance or lines(sys.stderr)
+
+        def show(done: int, total: int) -> None:
+            tenth = TENTHS * done // max(total, 1)
+            shown("rows" if advance else f"{total * tenth // TENTHS} of {total} rows", done, total)
+
+        yield show
+
+
+def lines(log: TextIO) -> Progress:
+    """Progress that writes a line, with the seconds since now, whenever something else is being done.
+
+    Examples
+    --------
+    >>> progress = lines(sys.stdout)
+    >>> for what in ("geometry", "closed forms", "closed forms"):
+    ...     progress(what, 0, 2)
+       0.0 s  geometry
+       0.0 s  closed forms
+    """
+    start, before = time.perf_counter(), [""]
+
+    def show(what: str, done: int, total: int) -> None:
+        if what != before[0]:
+            before[0] = what
+            print(f"{time.perf_counter() - start:6.1f} s  {what}", file=log, flush=True)
+
+    return show
 
 
 @contextmanager

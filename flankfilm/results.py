@@ -10,6 +10,7 @@ from base import Cost, record, show_with
 from flankfilm.plan.decisions import decisions
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Stage, StageRun
+from flankfilm.stages.failures import Failure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,9 +44,11 @@ class Results:
         What ``results.nc`` holds; the functions of `flankfilm.figures` draw from it.
     others : tuple of str
         Files in the folder that this run did not write.
+    failures : tuple of Failure
+        Parts that could not be computed, each with the reason; empty where all could.
     """
 
-    headline = ("title", "stages", "written")
+    headline = ("title", "stages", "failed", "written")
 
     scene: Scene
     folder: Path | None
@@ -55,9 +58,19 @@ class Results:
     seconds: float
     dataset: xr.Dataset
     others: tuple[str, ...] = ()
+    failures: tuple[Failure, ...] = ()
 
     def get(self, stage: Stage[T]) -> T | None:
-        """Result of a stage, such as `flankfilm.stages.catalogue.DRY_CYCLE`; None where the scene did not need it."""
+        """Result of a stage, such as `flankfilm.stages.catalogue.DRY_CYCLE`; None where the scene did not need it.
+
+        Raises
+        ------
+        InputError, SolverError
+            Where the stage, or one that it needs, failed.
+        """
+        for failure in self.failures:
+            if failure.name == stage.name:
+                raise failure.error
         return self.values.get(stage.name)
 
     @property
@@ -69,6 +82,11 @@ class Results:
     def stages(self) -> int:
         """Number of stages that ran."""
         return len(self.runs)
+
+    @property
+    def failed(self) -> int | None:
+        """Number of stages that could not be computed; None where all could."""
+        return len(self.failures) or None
 
     @property
     def written(self) -> str:

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from base import InputError, SolverError
+from flankfilm.beforehand import refuse
 from flankfilm.cache import results_cache
 from flankfilm.folder import claim, locked
 from flankfilm.manifest import conclude
-from flankfilm.output.run import results_dataset, write_data
+from flankfilm.output.run import not_computed, results_dataset, write_data
 from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.results import Results
 from flankfilm.scene import Scene
+from flankfilm.stages.catalogue import FIELDS
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
 from flankfilm.stages.vtk import write_fields
+
+PREPARATIONS = {"plan", "heat"}
+"""Stages that no want is for: what they give is no result of a run whose other parts failed."""
 
 
 def run_scene(
@@ -42,9 +49,9 @@ def run_scene(
     Raises
     ------
     InputError
-        Where the geometry cannot be built or the folder cannot be written.
+        Where the scene is refused or the folder cannot be written; nothing is computed then.
     SolverError
-        Where a solver did not reach a result that it believes.
+        Where no part that the scene wants could be computed; parts that failed beside others are in `failures`.
     """
     start = time.perf_counter()
     if folder is None:
@@ -52,11 +59,14 @@ def run_scene(
     claim(folder)
     with locked(folder):
         found, engine = _computed(scene, use_cache, progress)
+        progress("netCDF and CSV files", 1, 1)
         files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, found.dataset))
         if "vtk" in scene.wants:
-            files += engine.timed(
-                "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
-            )
+            files += _fields(folder, engine, progress)
+        if len(engine.failures) > len(found.failures):
+            found = replace(found, failures=tuple(engine.failures.values()))
+            found = replace(found, dataset=found.dataset.assign_attrs(not_computed(found.failures)))
+            write_data(folder, found.dataset)
         found = replace(found, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
         if "report" in scene.wants:
             from flankfilm.report.contents import write_report
@@ -67,14 +77,35 @@ def run_scene(
     return replace(found, files=tuple(files), others=others, seconds=time.perf_counter() - start)
 
 
+def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:
+    """Files for ParaView; none where the fields failed, which the engine notes."""
+    if FIELDS.name in engine.failures:
+        return []
+    try:
+        return engine.timed(
+            "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
+        )
+    except (InputError, SolverError):
+        return []
+
+
 def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Results, Engine]:
     """Results without files, and the engine that has them."""
     start = time.perf_counter()
+    refuse(scene)
     wanted = goals(scene)
     announce = in_steps(progress, len(wanted) + 2)
     engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))
     for stage in wanted:
-        engine[stage]
+        with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
+            engine[stage]
+    failures = tuple(engine.failures.values())
+    asked = {stage.name for stage in wanted} - PREPARATIONS
+    if failures and asked <= set(engine.failures):
+        raise failures[0].error
+    for failure in failures:
+        failure.error.with_traceback(None)  # which would keep every array of the solver
     values = engine.results()
-    dataset = results_dataset(scene, values)
-    return Results(scene, None, values, engine.runs, (), time.perf_counter() - start, dataset), engine
+    dataset = results_dataset(scene, values, failures)
+    seconds = time.perf_counter() - start
+    return Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures), engine

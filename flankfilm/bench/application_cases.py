@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from flankfilm.bench.case import Levels, case, work
-from flankfilm.children import python
+from flankfilm.children import module, python
 
 STUDY = """
 title = "Geometry"
@@ -54,7 +54,7 @@ def work_application(quick: bool) -> Levels:
 
     def study(rows: int) -> None:
         with tempfile.TemporaryDirectory(dir=place) as out:
-            command = python("-m", "flankfilm", "study", f"study{rows}.toml", "--out", out)
+            command = python(*module("flankfilm", "study", f"study{rows}.toml", "--out", out))
             options = ["--workers", "2", "--no-cache"]
             one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
             subprocess.run(

@@ -14,7 +14,7 @@ from math import nan
 from time import process_time
 
 from flankfilm.bench.process import output_of
-from flankfilm.children import end_with_parent, python
+from flankfilm.children import module, python
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def first_call(solver: str, compiles: bool) -> FirstCall:
 
 
 def _in_fresh_process(solver: str, **environment: str) -> list[float] | str:
-    command = python("-W", "ignore", "-m", "flankfilm.bench.first_call", solver)
+    command = python("-W", "ignore", *module("flankfilm.bench.first_call", solver))
     printed = output_of(command, env={**os.environ, **environment})
     return printed if isinstance(printed, str) else [float(time) for time in json.loads(printed[-1])]
 
@@ -88,5 +88,4 @@ def _main(solver: str) -> None:
 
 
 if __name__ == "__main__":
-    end_with_parent()
     _main(sys.argv[1])

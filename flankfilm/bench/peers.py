@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -84,7 +85,7 @@ def ask(python: Path, case: Case, repeat: int, longest: float = LONGEST) -> list
 def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str, Any] | str:
     """Return what the script printed, or why it printed nothing."""
     # neither variables nor packages of the user reach the peer; the scripts find each other
-    command = [str(python), "-E", "-s", "-W", "ignore", str(MAIN), work.script]
+    command = [str(python), "-E", "-s", "-W", "ignore", str(MAIN), work.script, str(os.getpid())]
     printed = output_of(command, longest, input=json.dumps({**work.given, "repeat": repeat}))
     if isinstance(printed, str):
         return printed

@@ -16,6 +16,7 @@ from .gear import root_stress as root_stress
 from .gear import tooth_stress as tooth_stress
 from .motion import diagram as diagram
 from .motion import portraits as portraits
+from .motion import resonance as resonance
 from .motion import sweep as sweep
 from .stiffness import fourier as fourier
 from .stiffness import load_share as load_share

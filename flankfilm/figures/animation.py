@@ -13,7 +13,7 @@ import numpy as np
 
 from base import Faults, InputError, SolverError, shorten
 from base.files import replacing
-from flankfilm.children import python
+from flankfilm.children import module, python
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
 from flankfilm.figures.rendering import UNREADABLE, View, draw, plotter_of, steps
@@ -228,7 +228,7 @@ def _round(value: float) -> float:
 
 def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:
     """Draw in a process of its own, which a missing OpenGL may kill."""
-    command = python("-m", "flankfilm.figures.rendering")
+    command = python(*module("flankfilm.figures.rendering"))
     try:
         done = subprocess.run(
             command,

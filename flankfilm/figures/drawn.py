@@ -79,6 +79,8 @@ def path(pair: GearPair, speed: float | None = None) -> Iterator[Quantity]:
         ("radius", "radius of relative curvature"),
     ):
         yield figure_of(name, "m", meaning, "station", getattr(along, name), shown="mm")
+    sliding = np.stack(along.specific_sliding, axis=-1)
+    yield figure_of("specific_sliding", "1", "specific sliding", "station gear", sliding)
     if speed is not None:
         mean = along.entrainment(speed)
         yield figure_of("entrainment", "m/s", "entrainment, (u1 + u2)/2", "station", mean)

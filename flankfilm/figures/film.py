@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.panels import PATH_LABEL, curves, over_path
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
-from flankfilm.figures.style import Style, colours, from_zero, looks, sheet
+from flankfilm.figures.style import MARK, Style, colours, from_zero, looks, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +25,12 @@ THROUGH = "distance from the line of centres [half-widths]"
 POINTS = ("near_A", "after_B", "C", "before_D", "near_E")
 """Contacts through which films are given, in the order of the path."""
 
-SHARES = ("film_starvation", "film_ratio", "film_asperity_share")
+SHARES = {
+    "film_starvation": "starved over\nflooded film",
+    "film_ratio": "film ratio Lambda",
+    "film_asperity_share": "asperities'\nshare of load",
+}
+"""Variables beside the film, with labels that low panels have room for."""
 
 
 def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -58,20 +65,22 @@ def film_shares(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    shown = [read(results, name) for name in SHARES if name in results]
+    shown = {label: read(results, name) for name, label in SHARES.items() if name in results}
     if not shown:
         need(results, "run a scene with a starved film or a section [roughness]", *SHARES)
-    with sheet(style, len(shown), height=0.8 + 1.5 * len(shown)) as (drawn, panels):
-        for axes, share, colour in zip(panels, shown, colours(len(shown)), strict=True):
+    with sheet(style, len(shown), height=0.8 + 1.6 * len(shown)) as (drawn, panels):
+        for axes, (label, share), colour in zip(panels, shown.items(), colours(len(shown)), strict=True):
             axes.plot(travel(results, "film_rho1"), share.values, color=colour)
-            axes.set(ylabel=share.label)
+            axes.set(ylabel=share.named(label))
         from_zero(*panels)
         over_path(results, *panels)
     return drawn
 
 
 def film_profiles(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw pressure and film thickness through the contacts at points of the path.
+    """Draw pressure and film thickness through the contacts at points of the path, the dry Hertz pressure thin.
+
+    Between rough flanks the pressure is that of film and asperities together; a panel below it has the film's part.
 
     Parameters
     ----------
@@ -83,12 +92,45 @@ def film_profiles(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     points = [name for name in POINTS if f"film_profile_{name}_x" in results]
     if not points:
         need(results, SOLVED, "film_profile_C_x")
-    with sheet(style, 2, height=4.4, legend=5) as (drawn, (upper, lower)):
+    parts = ["pressure", "film_pressure"] if _rough(results, points[0]) else ["pressure"]
+    height = 2.8 + 1.7 * len(parts)
+    with sheet(style, 1 + len(parts), height=height, legend=3) as (drawn, panels):
+        *pressures, lower = panels
         for name, look in zip(points, looks(len(points)), strict=True):
-            _through(upper, lower, results, name, name.replace("_", " "), look)
-        from_zero(upper)
+            _through(pressures[0], lower, results, name, name.replace("_", " "), look)
+            dry = _hertz(results, name)
+            pressures[0].plot(dry[0], dry[1], color=look["color"], linestyle="-", linewidth=0.6)
+            for axes in pressures[1:]:
+                x, film = _places(results, name), read(results, f"film_profile_{name}_pressure")
+                curves(axes, x, {name: replace(film, meaning="pressure, film's part")}, **look)
+        pressures[0].plot([], [], color=MARK, linestyle="-", linewidth=0.6, label="thin: Hertz pressure, dry")
+        if len(parts) > 1:
+            pressures[0].set(
+                ylabel=read(results, f"film_profile_{points[0]}_pressure").named("pressure, total")
+            )
+        from_zero(*pressures)
+        for axes in pressures[1:]:
+            axes.set_ylim(pressures[0].get_ylim())
         lower.set(xlabel=THROUGH, xlim=(-2.0, 1.5), ylim=(0, 3 * _thickest(lower)))
     return drawn
+
+
+def _rough(results: xr.Dataset, point: str) -> bool:
+    """Whether asperities carry a part of the load."""
+    return f"film_profile_{point}_total_pressure" in results
+
+
+def _places(results: xr.Dataset, point: str) -> Array:
+    """Places through the contact at a point [half-widths]."""
+    x = results[f"film_profile_{point}_x"].values
+    return np.asarray(x / float(results[f"film_profile_{point}_half_width"]))
+
+
+def _hertz(results: xr.Dataset, point: str) -> tuple[Array, Array]:
+    """Pressure of the dry contact at a point, over the place in half-widths."""
+    x = np.sin(np.linspace(-0.5 * np.pi, 0.5 * np.pi, 61))
+    greatest = float(read(results, f"film_profile_{point}_hertz_pressure").values)
+    return x, greatest * np.sqrt(np.maximum(1.0 - x**2, 0.0))
 
 
 def film_families(
@@ -123,9 +165,9 @@ def _through(
     upper: Axes, lower: Axes, results: xr.Dataset, point: str, label: str, look: Mapping[str, Any]
 ) -> None:
     """Draw pressure and film through the contact at a point over the place in half-widths."""
-    name = f"film_profile_{point}"
-    x = results[f"{name}_x"].values / float(results[f"{name}_half_width"])
-    for axes, what in ((upper, "pressure"), (lower, "thickness")):
+    name, x = f"film_profile_{point}", _places(results, point)
+    pressure = "total_pressure" if _rough(results, point) else "pressure"
+    for axes, what in ((upper, pressure), (lower, "thickness")):
         curves(axes, x, {label: read(results, f"{name}_{what}")}, **look)
 
 
@@ -154,7 +196,7 @@ def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         label: Reading(100 * (cycle.values / dry.values - 1), "change by the film", "%")
         for label, cycle in cycles.items()
     }
-    with sheet(style, 2, height=4.4, legend=2) as (drawn, (upper, lower)):
+    with sheet(style, 2, height=4.9, legend=2) as (drawn, (upper, lower)):
         curves(upper, position.values, {**cycles, text(results, "dry_label"): dry}, "tangent stiffness")
         from_zero(upper)
         curves(lower, position.values, changes)

@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array
 from flankfilm.figures.panels import curves, over_path
-from flankfilm.figures.reading import need, read, travel
+from flankfilm.figures.reading import need, read, text, travel
 from flankfilm.figures.style import Style, colours, legend_over, sheet
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 PAIR = "run a scene with a section [pair]"
 VTK = 'run a scene that wants "vtk"'
 FIELDS = ("field_point", "field_von_mises", "field_triangles", "field_centre", "field_reach")
+
+SLIDING_SHOWN = 8.0
+"""Largest specific sliding that the drawing shows."""
 
 SHADES = ("#dce9f5", "#f8e6d8")
 
@@ -83,10 +86,12 @@ def _path(axes: Axes, results: xr.Dataset) -> tuple[Array, float]:
     axes.plot(*ends.T, color="#000000", linewidth=1.2, zorder=3)
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     across = 10 * np.array([along[1], -along[0]])
+    # B and D stand on the other side, drawn apart: the points may lie close together
+    apart = 5 * along * (1 if (places["D"] - places["B"]) @ along >= 0 else -1)
+    sides = {"B": -across - apart, "D": -across + apart}
     for name, at in places.items():
         axes.plot(*at, "o", color="#000000", markersize=3, zorder=3)
-        # B and D stand on the other side: the points may lie close together
-        side = across if name in "ACE" else -across
+        side = sides.get(name, across)
         axes.annotate(
             name, (float(at[0]), float(at[1])), xytext=(float(side[0]), float(side[1])),
             textcoords="offset points", ha="center", va="center", color="#000000", zorder=4,
@@ -112,7 +117,7 @@ def _nearby(shape: Array, middle: Array, reach: float) -> Array:
 
 
 def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw curvature radii along the path of contact, and the velocities of the flanks where the speed is known.
+    """Draw curvature radii and specific sliding along the path, and the flanks' velocities where the speed is known.
 
     Parameters
     ----------
@@ -121,10 +126,10 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, PAIR, "path_rho1", "path_point_rho1")
+    need(results, PAIR, "path_rho1", "path_point_rho1", "path_specific_sliding")
     at, known = travel(results, "path_rho1"), "path_sliding" in results
     radii = {"pinion, R1": "path_rho1", "wheel, R2": "path_rho2", "reduced, R": "path_radius"}
-    with sheet(style, 1 + known, height=4.8 if known else 2.6) as (drawn, panels):
+    with sheet(style, 2 + known, height=6.6 if known else 4.6) as (drawn, panels):
         curves(
             panels[0], at, {label: read(results, name) for label, name in radii.items()}, "curvature radius"
         )
@@ -137,6 +142,17 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             speeds |= {mean.meaning: mean, sliding.meaning: sliding}
             curves(panels[1], at, speeds, "velocity")
             legend_over(panels[1], 4)
+        sliding = read(results, "path_specific_sliding")
+        flank = {
+            name: replace(sliding, values=one)
+            for name, one in zip(
+                ("pinion, (u1 - u2)/u1", "wheel, (u2 - u1)/u2"), sliding.values.T, strict=True
+            )
+        }
+        curves(panels[-1], at, flank)
+        # unbounded where a flank stands still, on its base circle
+        panels[-1].set_ylim(bottom=max(-SLIDING_SHOWN, 1.08 * float(sliding.values.min())))
+        legend_over(panels[-1], 2)
         over_path(results, *panels)
     return drawn
 
@@ -194,7 +210,9 @@ def root_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
                 curves(axes, travel.values, stress, "stress along the fillet", color=colour, linestyle=dash)
             if "iso6336_3_stresses" in results:
                 nominal = float(read(results, "iso6336_3_stresses").values[i])
-                axes.axhline(nominal, color=colour, linestyle=":", label=f"{name}, ISO 6336-3 at D")
+                # the outer point of single contact: of the wheel the travel runs the other way
+                at = "the tip" if text(results, "iso6336_3_load_at") == "tip" else "DB"[i]
+                axes.axhline(nominal, color=colour, linestyle=":", label=f"{name}, ISO 6336-3 at {at}")
         axes.axhline(0.0, color="black", linewidth=0.6)
         axes.set(xlabel=travel.label)
     return drawn

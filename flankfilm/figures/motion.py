@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flankfilm.figures.panels import beside
 from flankfilm.figures.reading import Reading, need, read
-from flankfilm.figures.style import COLOURS, MARK, Style, colours, legend_over, sheet
+from flankfilm.figures.style import COLOURS, MARK, Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,12 +44,16 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     with sheet(style, 2, height=3.8 + below, height_ratios=(2.6, below)) as (drawn, (upper, lower)):
         pair = colours(6)[5], colours(1)[0]
         # the larger dots lie below, so that both show where the sweeps agree
+        length = scale(results, "length")
         for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=True):
             points = results[f"sweep_{direction}"].values
-            x, y = np.repeat(parameter.values, points.shape[1]), points[:, :, 0].ravel()
+            x, y = np.repeat(parameter.values, points.shape[1]), length.values * points[:, :, 0].ravel()
             upper.plot(x, y, ".", color=colour, markersize=size, rasterized=True)
             upper.plot([], [], ".", color=colour, markersize=8, label=direction)
-        upper.set(ylabel="displacement at tau = 0 [-]")
+        upper.set(ylabel=length.named("displacement at tau = 0"))
+        if length.unit != "-":
+            beside(upper, float(length.values), "over the length scale [-]")
+            beside(upper, rpm_of_one(results), "mesh over natural frequency [-]", "top")
         for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=True):
             height = np.array([names.index(label) if label in names else len(names) for label in row])
             lower.plot(parameter.values, height + shift, ".", color=colour, markersize=2, rasterized=True)
@@ -77,24 +82,91 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     rows = -(-count // columns)
     of_sample, of_point = results["portrait_of_sample"].values, results["portrait_of_point"].values
     x, v = (read(results, f"portrait_{name}") for name in ("displacement", "velocity"))
-    with sheet(style, rows, columns, height=2.6 * rows + 0.3) as (drawn, panels):
+    length, speed = scale(results, "length"), scale(results, "speed")
+    far, fast = float(length.values), float(speed.values)
+    with sheet(style, rows, columns, height=2.8 * rows + 0.3) as (drawn, panels):
         for axes in panels[count:]:
             axes.set_axis_off()
         first, second = colours(2)
         for i, axes in enumerate(panels[:count]):
             mine = of_sample == i
             many = int(mine.sum()) > SMOOTH
-            axes.plot(x.values[mine], v.values[mine], color=first, linewidth=0.8, rasterized=many)
+            axes.plot(
+                far * x.values[mine], fast * v.values[mine], color=first, linewidth=0.8, rasterized=many
+            )
             section = results["portrait_section"].values[of_point == i]
-            axes.plot(section[:, 0], section[:, 1], "o", color=second, markersize=3.5)
-            for at in (-edge, edge):
+            axes.plot(far * section[:, 0], fast * section[:, 1], "o", color=second, markersize=3.5)
+            for at in (-far * edge, far * edge):
                 axes.axvline(at, color=MARK, linewidth=0.8, linestyle=":")
             motion, direction, frequency = (
                 results[f"portrait_{name}"].values[i] for name in ("motion", "direction", "frequency")
             )
-            axes.set_title(f"{motion} at ω = {frequency:.4g}, {direction}", fontsize=8.5)
-            axes.set(xlabel=x.label, ylabel=v.label)
+            where = f"ω = {frequency:.4g}"
+            if length.unit != "-":
+                where = f"{rpm_of_one(results) * frequency:.0f} rpm, {where}"
+            axes.set_title(f"{motion}, {direction}\nat {where}", fontsize=8.5)
+            axes.set(
+                xlabel=length.named("displacement X"),
+                ylabel=speed.named("velocity dX/dτ" if speed.unit == "-" else "velocity"),
+            )
     return drawn
+
+
+def resonance(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw greatest force, time without contact and vibration of the sweeps up and down over the speed.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``sweep``; in N, um and rpm where the scene has scales, with the dimensionless figures
+        beside them.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, SWEEP, "sweep_force_factor_up", "sweep_separated_up", "sweep_spread_up")
+    length, force, at = scale(results, "length"), scale(results, "force"), over_speed(results, "sweep")
+    shown = {"force_factor": force, "separated": None, "spread": length}
+    labels = {
+        "force_factor": "greatest force" if force.unit == "N" else "greatest force\nover mean",
+        "separated": "time without\ncontact",
+        "spread": "displacement,\nroot mean square",
+    }
+    with sheet(style, 3, height=6.0, legend=2) as (drawn, panels):
+        for axes, (name, unit) in zip(panels, shown.items(), strict=True):
+            for direction, colour, wide in zip(
+                ("up", "down"), (colours(6)[5], colours(1)[0]), (2.6, 1.1), strict=True
+            ):
+                curve = read(results, f"sweep_{name}_{direction}")
+                values = curve.values if unit is None else float(unit.values) * curve.values
+                axes.plot(
+                    at.values,
+                    values,
+                    ".-",
+                    color=colour,
+                    linewidth=wide,
+                    markersize=2 * wide,
+                    label=direction,
+                )
+            axes.set(ylabel=(curve if unit is None else unit).named(labels[name]))
+            if unit is not None and unit.unit != "-":
+                over = "over the mean\nforce [-]" if unit is force else "over the\nlength scale [-]"
+                beside(axes, float(unit.values), over)
+        from_zero(*panels)
+        if length.unit != "-":
+            beside(panels[0], rpm_of_one(results), "mesh over natural frequency [-]", "top")
+        panels[-1].set(xlabel=at.label)
+    return drawn
+
+
+def scale(results: xr.Dataset, of: str) -> Reading:
+    """What 1 is of ``"length"``, ``"speed"`` or ``"force"``, the mean one; 1 for an oscillator in its own units."""
+    name = "oscillator_force" if of == "force" else f"oscillator_{of}_scale"
+    return read(results, name) if name in results else Reading(np.array(1.0), of, "-")
+
+
+def rpm_of_one(results: xr.Dataset) -> float:
+    """Pinion speed of the mesh frequency that is the natural one [rpm]."""
+    return float(read(results, "sweep_speed").values[0] / results["sweep_frequency"].values[0])
 
 
 def diagram(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -123,20 +195,23 @@ def _branches(axes: Axes, results: xr.Dataset) -> None:
     colour = colours(1)[0]
     number, stable = (results[f"diagram_{name}"].values for name in ("branch", "stable"))
     values, x = over_speed(results, "diagram").values, read(results, "diagram_displacement")
+    length = scale(results, "length")
     for branch in np.unique(number):
         mine = number == branch
         for wanted, dash, width in ((True, "-", 1.4), (False, "--", 0.6)):
             keep = stable[mine].astype(bool) == wanted
             keep[1:] |= keep[:-1].copy()
-            height = np.where(keep, x.values[mine], np.nan)
+            height = np.where(keep, float(length.values) * x.values[mine], np.nan)
             axes.plot(values[mine], height, dash, color=colour, linewidth=width)
     kinds = results["special_kind"].values
     for kind, (mark, shade) in MARKS.items():
         mine = kinds == kind
         at = over_speed(results, "special").values[mine]
-        height = results["special_displacement"].values[mine]
+        height = float(length.values) * results["special_displacement"].values[mine]
         axes.plot(at, height, mark, color=shade, markersize=3.5, linestyle="none", label=kind)
-    axes.set(ylabel=x.label)
+    axes.set(ylabel=length.named(x.meaning))
+    if length.unit != "-":
+        beside(axes, float(length.values), "over the length scale [-]")
 
 
 def _forces(axes: Axes, results: xr.Dataset) -> None:
@@ -149,6 +224,9 @@ def _forces(axes: Axes, results: xr.Dataset) -> None:
         order = np.argsort(at)
         axes.plot(at[order], standard[order], color=second, label="K_v of ISO 6336-1, method B")
     axes.set(ylabel=factor.label)
+    mean = scale(results, "force")
+    if mean.unit == "N":
+        beside(axes, 1.0 / float(mean.values), mean.named("greatest force"))
     legend_over(axes, 2)
 
 

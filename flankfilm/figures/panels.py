@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
+NARROW = 0.03
+"""Part of the path within which the names of two points would overprint."""
+
 PATH_LABEL = "travel along the path of contact from A [mm]"
 
 
@@ -64,14 +67,40 @@ def over_two_pitches(
     axes.set(xlabel=position.label)
 
 
+def beside(axes: Axes, one: float, label: str, way: str = "right") -> None:
+    """Show a panel's values on its other side as multiples of `one`, such as dimensionless ones.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    one : float
+        Value in the panel of 1 on the other side.
+    label : str
+        Of the other side.
+    way : {"right", "top"}
+    """
+    both = (lambda value: value / one), (lambda value: value * one)
+    if way == "top":
+        axes.secondary_xaxis("top", functions=both).set_xlabel(label)
+        axes.spines["top"].set_visible(True)
+    else:
+        axes.secondary_yaxis("right", functions=both).set_ylabel(label)
+        axes.spines["right"].set_visible(True)
+
+
 def over_path(results: xr.Dataset, *panels: Axes) -> None:
     """Mark A to E in panels over the travel along the path, name them above the first, and title the last."""
     places = travel(results, "path_point_rho1").tolist()
-    for name, at in zip(results["path_point"].values, places, strict=True):
+    points = sorted(zip(places, map(str, results["path_point"].values), strict=True))
+    narrow, before, raised = NARROW * (max(places) - min(places)), -np.inf, False
+    for at, name in points:
         for axes in panels:
             axes.axvline(at, color=MARK, linewidth=0.8)
+        # names of points that lie close together stand by turns above each other
+        raised = not raised and at - before < narrow
         panels[0].annotate(
-            str(name), (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
-            ha="center", va="bottom", color="#000000",
+            name, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 12 if raised else 2),
+            textcoords="offset points", ha="center", va="bottom", color="#000000",
         )  # fmt: skip
+        before = at
     panels[-1].set(xlabel=PATH_LABEL)

@@ -15,6 +15,7 @@ import numpy as np
 from base import Array
 from base.results import figures
 from base.units import factor, suffix
+from base.units import unit_of as unit_in
 from flankfilm.output.tables import read_in
 from flankfilm.output.variables import sentence
 
@@ -29,6 +30,8 @@ WIDEST = 34
 
 LONGEST = 60
 """Most characters of a meaning that is not cut at a comma."""
+
+GEARS = ("pinion", "wheel")
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
@@ -59,7 +62,8 @@ class Reading:
     def named(self, meaning: str) -> str:
         """The same for another meaning, such as what several curves have in common."""
         unit = f"[{self.unit}]".replace(" ", NO_BREAK)
-        return fill(f"{meaning} {unit}", WIDEST).replace(NO_BREAK, " ")
+        lines = (fill(line, WIDEST) for line in f"{meaning} {unit}".split("\n"))
+        return "\n".join(lines).replace(NO_BREAK, " ")
 
 
 def read(results: xr.Dataset, name: str, *, per_face: bool = False) -> Reading:
@@ -171,6 +175,28 @@ def beside(results: xr.Dataset, name: str, *, per_face: bool = False) -> dict[st
     every = read(results, name, per_face=per_face)
     labels = results[results[name].dims[0]].values.tolist()
     return {label: replace(every, values=one) for label, one in zip(labels, every.values, strict=True)}
+
+
+def key_words(key: str) -> tuple[str, str]:
+    """Key of a scene as a person writes it, and its unit.
+
+    Examples
+    --------
+    >>> key_words("pair.module_mm"), key_words("pair.pinion.profile_shift"), key_words("operating.pinion_torque_Nm")
+    (('module', 'mm'), ('profile shift of the pinion', '-'), ('pinion torque', 'N m'))
+    """
+    *path, last = key.split(".")
+    unit = unit_in(last)
+    name = last.removesuffix(f"_{suffix(unit)}").replace("_", " ")
+    part = " ".join(one.replace("_", " ") for one in path[1:] if one not in GEARS)
+    gear = next((f" of the {one}" for one in path if one in GEARS), "")
+    return f"{part} {name}".strip() + gear, unit_text(unit)
+
+
+def key_title(key: str) -> str:
+    """Key of a scene with its unit, for an axis or the head of a column."""
+    name, unit = key_words(key)
+    return f"{name} [{unit}]"
 
 
 def words(results: xr.Dataset, name: str) -> str:

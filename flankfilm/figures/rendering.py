@@ -16,8 +16,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from flankfilm.children import end_with_parent
-
 INK, PAPER = "#1c2126", "#ffffff"
 
 SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
@@ -221,7 +219,6 @@ def _palette() -> Any:
 
 
 if __name__ == "__main__":
-    end_with_parent()
     asked = View(**json.load(sys.stdin))
     try:
         show(asked) if asked.window else write(asked)

@@ -10,7 +10,7 @@ import numpy as np
 from base import Array
 from flankfilm.figures.panels import curves, over_path, over_two_pitches
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
-from flankfilm.figures.style import MARK, Style, colours, from_zero, sheet
+from flankfilm.figures.style import MARK, Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -145,7 +145,7 @@ def fourier(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 
 
 def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw mean stiffness, and transmission error, over the pinion's torque.
+    """Draw mean stiffness and transmission error over the pinion's torque, and below them their harmonics.
 
     Parameters
     ----------
@@ -155,15 +155,23 @@ def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's.
     """
     names = {"secant": "torque_secant_stiffness", "tangent": "torque_stiffness"}
-    need(results, 'run a scene that wants "torques"', *names.values(), "pair_face_width")
+    wants, first = 'run a scene that wants "torques"', "torque_transmission_error_harmonic_1"
+    need(results, wants, *names.values(), first, "pair_face_width")
     torque, error = read(results, "torque"), read(results, "torque_transmission_error")
     means = {kind: read(results, name, per_face=True) for kind, name in names.items()}
-    with sheet(style, 1, 2, height=2.8) as (drawn, (left, right)):
+    over_mean = read(results, "torque_harmonic_1")
+    with sheet(style, 2, 2, height=5.4) as (drawn, (left, right, lower, stiff)):
         curves(left, torque.values, means, "mean stiffness", marker=".")
         right.plot(torque.values, error.values, ".-", color=colours(1)[0])
-        right.set(ylabel=error.label)
-        from_zero(right)
-        for axes in (left, right):
+        right.set(ylabel=error.named("transmission error,\npeak to peak"))
+        curves(
+            lower, torque.values, labelled(results, first[:-1]), "transmission error,\nharmonics", marker="."
+        )
+        legend_over(lower, 5)
+        stiff.plot(torque.values, over_mean.values, ".-", color=colours(1)[0])
+        stiff.set(ylabel=over_mean.named("secant stiffness, first\nharmonic over mean"))
+        from_zero(right, lower, stiff)
+        for axes in (lower, stiff):
             axes.set(xlabel=torque.label)
     return drawn
 

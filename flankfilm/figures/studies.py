@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array
-from flankfilm.figures.reading import need, titled
+from flankfilm.figures.reading import key_title, need, titled
 from flankfilm.figures.style import COLOURS, DASHES, Style, colours, sheet
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def study(
             axes.set_visible(False)
         handles, labels = panels[0].get_legend_handles_labels()
         if handles:
-            title = ", ".join(others)
+            title = ", ".join(key_title(key) for key in others)
             drawn.legend(handles, labels, loc="outside upper left", ncols=4, title=title, alignment="left")
     return drawn
 
@@ -85,7 +85,7 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
         shade = found[others[0]].values
         if np.issubdtype(shade.dtype, np.number):
             points = axes.scatter(x, y, c=shade, s=8, cmap="viridis")
-            axes.figure.colorbar(points, ax=axes, label=others[0])
+            axes.figure.colorbar(points, ax=axes, label=key_title(others[0]))
         else:
             axes.plot(x, y, ".", color=colours(1)[0])
     else:
@@ -102,7 +102,7 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
                 marker=".",
                 label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
             )
-    axes.set(xlabel=across, ylabel=titled(found, name))
+    axes.set(xlabel=key_title(across), ylabel=titled(found, name))
 
 
 def optimum(found: xr.Dataset, *, style: Style | None = None) -> Figure:

@@ -120,14 +120,19 @@ def sheet(
 def legend_over(axes: Axes, columns: int) -> None:
     """Put the legend of `axes` right above it: the curves leave no corner free for certain."""
     axes.legend(
-        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2, handlelength=2.6
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=columns,
+        borderaxespad=0.2,
+        handlelength=2.6 if columns < 5 else 1.8,
+        columnspacing=2.0 if columns < 5 else 1.0,
     )
 
 
 def from_zero(*panels: Axes) -> None:
     """Let the vertical axis begin at zero, and end above the data, level ones too."""
     for axes in panels:
-        axes.set_ylim(0.0, 1.08 * float(axes.dataLim.y1))
+        axes.set_ylim(0.0, 1.08 * float(axes.dataLim.y1) or 1.0)
 
 
 RASTER = 150
@@ -150,6 +155,10 @@ def to_svg(drawn: Figure, prefix: str) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     text = io.StringIO()
+    # no paper of their own: the page's shows through, with the shades that hint at more
+    drawn.patch.set_visible(False)
+    for axes in drawn.axes:
+        axes.patch.set_visible(False)
     with styled():
         # savefig would lay the figure out twice
         drawn.set_dpi(RASTER)

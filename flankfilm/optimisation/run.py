@@ -15,8 +15,8 @@ from flankfilm.optimisation.search import FAILED, front, search
 from flankfilm.optimisation.task import Task
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import KeptRows, Work, kept_rows
-from flankfilm.studies.plan import Value
 from flankfilm.studies.row import Row, RowResult
+from flankfilm.studies.study_file import Value
 from flankfilm.studies.table import Columns, Line
 from flankfilm.studies.workers import Workers
 

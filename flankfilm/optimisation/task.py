@@ -13,16 +13,9 @@ from pydantic import Field, model_validator
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section
-from flankfilm.studies.plan import (
-    Range,
-    RowsFile,
-    Value,
-    base_scene,
-    following,
-    put,
-    read_rows_file,
-    refuse_unknown_outputs,
-)
+from flankfilm.studies.design import following
+from flankfilm.studies.plan import base_scene, put, refuse_unknown_outputs
+from flankfilm.studies.study_file import Range, RowsFile, Value, read_rows_file
 
 COARSENING = 5.0
 """The tolerance of the first phase, in tolerances of the scene."""

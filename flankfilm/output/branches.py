@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import SpeedDiagram
     from flankfilm.coupling.jumps import Jump
+    from flankfilm.coupling.truncation import MissedJump
 
-SOURCES = ("stiffness", "series", "flow")
+SOURCES = ("stiffness", "truncation", "flow")
 
 COLUMNS: Mapping[str, tuple[str, str]] = {
     "branch": ("i8", "branch of periodic motions"),
@@ -29,11 +30,10 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
     "stable": ("i8", "1 where stable"),
     "direction": ("U8", "speed at which the motion ends: rising or falling"),
     "jump_motion": ("U24", "motion n-p-q that ends"),
-    "second_harmonic": (
-        "f8",
-        "relative change of the speed by the first harmonic that the series leaves out",
-    ),
-    "error": ("f8", "relative error of the jump's speed"),
+    "longer_frequency": ("f8", "the same jump's frequency with the longer series; nan where it has none"),
+    "missed_motion": ("U24", "motion n-p-q that ends, with the longer series alone"),
+    "width": ("f8", "relative distance to the next fold of the same branch"),
+    "error": ("f8", "relative error of the jump's speed; infinite where it is unknown"),
     **{f"error_by_{source}": ("f8", f"part of the relative error: {source}") for source in SOURCES},
     "factor": ("f8", "greatest force over mean force"),
     "factor_iso6336": ("f8", "K_v after ISO 6336-1, method B"),
@@ -66,16 +66,57 @@ def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
         table(
             "jump",
             "jump",
-            f"frequency direction motion second_harmonic error {errors}",
+            f"frequency direction motion longer_frequency error {errors}",
             map(_jump, found.jumps),
         ),
+        table("missed", "jump", "frequency direction motion width", map(_missed, found.missed)),
         table("stable", "range", "motion from_frequency to_frequency", stable),
         table("force", "force", "frequency factor factor_iso6336", forces),
+        *_truncated(found),
     ]
+
+
+def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
+    """What the longer series changes of whole figures; nothing for a given series."""
+    if found.longer_order is None:
+        return []
+    meant = "largest relative change of the ranges of stable motions that {} by the longer series"
+    changes = [
+        figure_of("longer_order", "1", "harmonics of the longer series", "", found.longer_order),
+        figure_of("separated_error", "1", meant.format("lose contact"), "", found.truncation["separated"]),
+        figure_of(
+            "back_contact_error",
+            "1",
+            meant.format("touch the back flank"),
+            "",
+            found.truncation["back_contact"],
+        ),
+        figure_of(
+            "greatest_force",
+            "1",
+            "greatest force of a stable motion over the mean force",
+            "",
+            found.greatest_force,
+        ),
+        figure_of(
+            "greatest_force_error",
+            "1",
+            "relative change of the greatest force by the longer series; infinite where it is unknown",
+            "",
+            found.truncation["greatest_force"],
+        ),
+    ]
+    return [of_quantities("diagram", changes)]
 
 
 def _jump(jump: Jump) -> tuple[Any, ...]:
     """Row of a jump; its errors are nan for an oscillator in its own units."""
     parts = [jump.budget.get(source, np.nan) for source in SOURCES]
     direction, error = "rising" if jump.rising else "falling", jump.error if jump.budget else np.nan
-    return jump.frequency, direction, jump.label, jump.second, error, *parts
+    longer = np.nan if jump.longer is None else jump.longer
+    return jump.frequency, direction, jump.label, longer, error, *parts
+
+
+def _missed(jump: MissedJump) -> tuple[Any, ...]:
+    """Row of a jump that the longer series has alone."""
+    return jump.frequency, "rising" if jump.rising else "falling", jump.label, jump.width

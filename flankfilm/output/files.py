@@ -65,6 +65,12 @@ def write_text(path: Path, text: str) -> None:
         beside.write_text(text, encoding="utf-8")
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    """Replace the file `path` by `content`."""
+    with replacing(path) as beside:
+        beside.write_bytes(content)
+
+
 def provenance(scene_json: str) -> dict[str, str]:
     """Attributes that say what made a file: scene, versions, and the digest of the code."""
     import platform

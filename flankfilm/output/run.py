@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import gears
 from base import Quantity
 from base.results import figures
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
 from flankfilm.figures import drawn
 from flankfilm.output.branches import branch_tables
+from flankfilm.output.errors import explain
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.flanks import measured_flanks
+from flankfilm.output.geometry import geometry_columns
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
 from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
@@ -27,9 +30,11 @@ from gears.mesh_figures import MeshFigures
 if TYPE_CHECKING:
     import xarray as xr
 
+    import ehl
     import fem
     from flankfilm.coupling import LubricatedCycle, MeshSeries, RootStresses, SpeedSweep
     from flankfilm.scene import Scene
+    from flankfilm.stages.failures import Failure
 
 CONTACTS = ("unloaded_transmission_error", "hertz_pressure", "half_width")
 """Figures of a loaded contact by finite elements that stand beside those which every model has."""
@@ -39,7 +44,17 @@ THROUGH = ("x", "pressure", "thickness", "central_thickness", "minimum_thickness
 
 GEARS = ("pinion", "wheel")
 
+DIMENSIONLESS = ("mean_force", "half_backlash", "frequency")
+"""Figures of an oscillator in its own units."""
+
 CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
+
+
+RESONANCE = (
+    "speed",
+    "frequency",
+    *(f"{what}_{way}" for way in ("up", "down") for what in ("force_factor", "separated", "spread")),
+)
 
 
 @dataclass(frozen=True)
@@ -63,6 +78,9 @@ RECORDS = {
 """Prefix of the variables of each stage whose result is one record."""
 
 TABLES: Mapping[str, Table] = {
+    "path_of_contact": Table(
+        "path", "rho1", ("rho1", "rho2", "radius", "entrainment", "sliding", "specific_sliding")
+    ),
     "single_pair_stiffness": Table("single_pair", "rho1", axis="path"),
     "mesh_cycle_dry": Table("dry", "position", CYCLE),
     "contacts_dry": Table(
@@ -87,16 +105,23 @@ TABLES: Mapping[str, Table] = {
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
     "film_along_path": Table("film", "rho1", axis="point"),
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
+    "resonance": Table("sweep", "force_factor_up", RESONANCE),
     "diagram": Table("diagram", "frequency", axis="point"),
     "special_points": Table("special", "frequency", axis="point"),
     "jumps": Table("jump", "frequency", axis="jump"),
+    "missed_jumps": Table("missed", "frequency", axis="jump"),
     "stable_motions": Table("stable", "motion", axis="range"),
     "force_over_speed": Table("force", "factor", axis="force"),
 }
 """CSV files by name."""
 
 
-def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
+def not_computed(failures: Sequence[Failure]) -> dict[str, str]:
+    """Attribute that says which parts of a scene could not be computed, and why."""
+    return {"not_computed_json": json.dumps([failure.plain() for failure in failures])}
+
+
+def results_dataset(scene: Scene, values: Mapping[str, Any], failures: Sequence[Failure] = ()) -> xr.Dataset:
     """Give everything that a run found as one dataset: what ``results.nc`` holds and figures are drawn from.
 
     Parameters
@@ -105,22 +130,30 @@ def results_dataset(scene: Scene, values: Mapping[str, Any]) -> xr.Dataset:
         What was asked for.
     values : mapping
         Stage name to result.
+    failures : sequence of Failure
+        Parts that could not be computed; they have no variables, and the dataset says why.
     """
     decided = {"decisions_json": json.dumps([decision.plain() for decision in decisions(values)])}
-    attributes = {"title": scene.title, **decided, **provenance(scene.model_dump_json())}
+    attributes = {
+        "title": scene.title,
+        **decided,
+        **not_computed(failures),
+        **provenance(scene.model_dump_json()),
+    }
     parts = list(_records(values, _speed(scene)))
     if (pair := values.get("pair")) is not None:
         parts += measured_flanks(pair, deviations(scene, pair, every_tooth=True))
-    return merged(parts, attributes)
+    return explain(merged(parts, attributes), values)
 
 
 def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
     """Columns of the CSV files by name: one table for each curve."""
-    return {
+    found = {
         file: columns(data, table.prefix, table.names, table.axis)
         for file, table in TABLES.items()
         if joined(table.prefix, table.about) in data.variables
     }
+    return {"geometry": geometry_columns(data), **found} if "dimensions_span" in data else found
 
 
 def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
@@ -138,7 +171,10 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
     for prefix, name in RECORDS.items():
         if (found := values.get(name)) is not None:
             yield of_record(prefix, found)
+    if (closed := values.get("closed forms")) is not None:
+        yield of_record("iso6336_2", closed.contact)
     if (pair := values.get("pair")) is not None:
+        yield of_record("dimensions", gears.dimensions(pair))
         yield of_quantities("outline", drawn.outlines(pair))
         yield of_quantities("path", drawn.path(pair, speed))
     if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
@@ -151,11 +187,13 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
     if others := values.get("other cycles"):
         yield of_models("other", {cycle.label: cycle for cycle in others}, "model of the mesh cycle")
     if (lubricated := values.get("film")) is not None:
-        yield from _lubricated(lubricated)
+        yield from _lubricated(lubricated, values["pair"].reduced_modulus)
     if (roots := values.get("root stress")) is not None:
         yield from _roots(roots)
     if (series := values.get("fourier")) is not None:
         yield _fourier(series)
+    if (motion := values.get("scaling")) is not None:
+        yield of_record("oscillator", motion, None if motion.scales is not None else DIMENSIONLESS)
     if (sweep := values.get("sweep")) is not None:
         yield from _sweep(sweep)
     if (diagram := values.get("diagram")) is not None:
@@ -183,17 +221,34 @@ def held_as_it_is(cycle: LubricatedCycle) -> str:
     return f"this film, {cycle.film.supply.replace('-', ' ')} held"
 
 
-def _lubricated(cycle: LubricatedCycle) -> Iterator[xr.Dataset]:
-    """Mesh cycle with film, the film along the path, whole films, and starved films otherwise."""
+def _lubricated(cycle: LubricatedCycle, modulus: float) -> Iterator[xr.Dataset]:
+    """Mesh cycle with film, the film along the path, whole films and starved ones otherwise; `modulus` E' [Pa]."""
     yield of_record("lubricated", cycle)
     yield of_record("film", cycle.film)
     for name, film in cycle.film.profiles.items():
         prefix = f"film_profile_{name.replace(' ', '_')}"
         yield of_record(prefix, film, THROUGH)
         yield of_record(prefix, film.contact, ("half_width",))
+        yield of_quantities(prefix, _whole_pressure(film, modulus, cycle.film.film_ratio is not None))
     if cycle.otherwise:
         held = {held_as_it_is(cycle): cycle, **cycle.otherwise}
         yield of_models("held", held, "mesh cycle with films that differ in what is held")
+
+
+def _whole_pressure(film: ehl.Film, modulus: float, rough: bool) -> Iterator[Quantity]:
+    """Hertz pressure of a dry contact, and with rough flanks the pressure of film and asperities together.
+
+    Both carry their share of the load at every point alike: the film's contact has this part of the modulus.
+    """
+    part = film.contact.reduced_modulus / modulus
+    greatest = film.contact.peak_pressure / part
+    yield figure_of(
+        "hertz_pressure", "Pa", "Hertz pressure, the largest of the dry contact", "", greatest, shown="GPa"
+    )
+    if rough:
+        whole = film.pressure / part
+        meaning = "pressure of film and asperities together"
+        yield figure_of("total_pressure", "Pa", meaning, "node", whole, shown="GPa")
 
 
 def _fourier(series: MeshSeries) -> xr.Dataset:

@@ -143,7 +143,13 @@ def of_models(prefix: str, records: Mapping[str, object], meaning: str, axis: st
     # arcs and events are as many as a model has
     own = [joined(prefix, axis) for axis in OWN]
     each = [of_record(prefix, record).drop_dims(own, errors="ignore") for record in records.values()]
-    return xr.concat(each, dim=labels, data_vars="all", coords="minimal", compat="override", join="override")
+    whole = xr.concat(each, dim=labels, data_vars="all", coords="minimal", compat="override", join="override")
+    for name, variable in whole.data_vars.items():  # the first one's error is not that of all
+        known = [one[name].attrs["error"] for one in each if name in one and "error" in one[name].attrs]
+        variable.attrs.pop("error", None)
+        if len(known) == len(each):
+            variable.attrs["error"] = max(known)
+    return whole
 
 
 def merged(parts: Iterable[xr.Dataset], attributes: Mapping[str, str | float]) -> xr.Dataset:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from flankfilm.coupling.series import MOST_HARMONICS
 
 if TYPE_CHECKING:
+    from flankfilm.coupling.jumps import SpeedDiagram
     from flankfilm.coupling.series import LeftOut, MeshSeries
 
 
@@ -88,18 +90,18 @@ def signed(value: float) -> str:
 def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     """Decisions among the results of stages, in the order in which they were made."""
     plan, series = values.get("plan"), values.get("fourier")
-    order = None if series is None else order_decision(series)
+    order = None if series is None else order_decision(series, values.get("diagram"))
     return (*(() if plan is None else plan.decisions), *(() if order is None else (order,)))
 
 
-def order_decision(series: MeshSeries) -> Decision | None:
-    """Order of a Fourier series and what it leaves out; None for a given series."""
+def order_decision(series: MeshSeries, diagram: SpeedDiagram | None = None) -> Decision | None:
+    """Order of a Fourier series, what it leaves out, and what its jump speeds err by; None for a given series."""
     if (found := series.left_out) is None:
         return None
     order, share = series.order, series.share
-    effect = float(found.largest[order])
+    effect, jumps = float(found.largest[order]), "" if diagram is None else _jumps(series, diagram)
     if share is None:
-        why = f"{order}, as the scene asks; leaves out {_left_out(found, order)}"
+        why = f"{order}, as the scene asks; leaves out {_left_out(found, order)}{jumps}"
         return Decision("Fourier order", str(order), True, why, effect)
     most = min(MOST_HARMONICS, found.curve.size - 1)
     why = f"{order}, leaves out {_left_out(found, order)}"
@@ -107,13 +109,30 @@ def order_decision(series: MeshSeries) -> Decision | None:
         why += f": above its share of {per_cent(share)}, which no series of up to {most} harmonics meets"
     else:
         why += f", below its share of {per_cent(share)}"
-        if order > 1:
+        if order > 1 and not series.tried:
             why += f"; order {order - 1} would leave {_left_out(found, order - 1)}"
     tried = tuple(
         Candidate(str(n), float(found.largest[n]), None)
         for n in range(max(1, order - 1), min(order + 1, most) + 1)
     )
-    return Decision("Fourier order", str(order), False, why, effect, share, None, tried)
+    return Decision("Fourier order", str(order), False, why + jumps, effect, share, None, tried)
+
+
+def _jumps(series: MeshSeries, diagram: SpeedDiagram) -> str:
+    """What jump speeds err by with the series, and with the lower orders that they ruled out."""
+    ruled_out = "".join(f", with order {order} by {_up_to(worst)}" for order, worst in series.tried)
+    worst_of_all = max((jump.error for jump in diagram.jumps), default=0.0)
+    text = f"; jump speeds err by {_up_to(worst_of_all)}" if diagram.jumps else "; no jumps"
+    if (missed := diagram.missed) and diagram.longer_order is not None:
+        widest = max(jump.width for jump in missed)
+        text += (
+            f", {len(missed)} more with {diagram.longer_order} harmonics, over {_up_to(widest)} of the speed"
+        )
+    return text + ruled_out
+
+
+def _up_to(error: float) -> str:
+    return f"up to {per_cent(error)}" if math.isfinite(error) else "an unknown amount"
 
 
 def _left_out(found: LeftOut, order: int) -> str:

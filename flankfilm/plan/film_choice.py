@@ -8,10 +8,11 @@ How far it may be off was measured over many oils, speeds and torques (by
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 
-from base import InputError, SolverError
+from base import InputError, RangeWarning, SolverError
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque
 from flankfilm.build_film import lubricant
@@ -92,16 +93,19 @@ def foreseen_change(scene: Scene) -> FilmChange | None:
     The flanks are taken as plain: relief decides who carries, and hardly what a film changes of the mean.
     """
     try:
-        cycle = coupling.lubricated_cycle(
-            gear_pair(plain_flanks(scene)),
-            pinion_torque(scene),
-            pinion_speed(scene),
-            lubricant(scene),
-            tolerance=COARSEST_FILMS,
-            model="potential-energy",
-            pairs=scene.stiffness.pairs,
-            film=coupling.FilmModel("dowson"),
-        )
+        with warnings.catch_warnings():
+            # of films that no output shows: those that are taken warn by themselves
+            warnings.simplefilter("ignore", RangeWarning)
+            cycle = coupling.lubricated_cycle(
+                gear_pair(plain_flanks(scene)),
+                pinion_torque(scene),
+                pinion_speed(scene),
+                lubricant(scene),
+                tolerance=COARSEST_FILMS,
+                model="potential-energy",
+                pairs=scene.stiffness.pairs,
+                film=coupling.FilmModel("dowson"),
+            )
     except (InputError, SolverError):
         return None
     uneven = cycle.transmission_error_range / cycle.dry.transmission_error_range - 1

@@ -82,10 +82,12 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
             return f"{name} is {astray[0]:.3g}, outside {low:.3g} to {high:.3g}"
     assert scene.pair is not None
     sections = (scene.pair.pinion, scene.pair.wheel)
-    if scene.pair.rack != "ISO 53 A":
+    if scene.pair.rack != "ISO 53 A" or scene.pair.tool is not None:
         return 'the rack is not "ISO 53 A"'
     if any(s.tip_relief is not None or s.tip_alteration or s.tip_chamfer_mm for s in sections):
         return "tips are relieved, altered or chamfered"
+    if any(gear.generating_shift is not None for gear in both):
+        return "a gear is cut at a generating shift"
     if any(profile.steps for profile in pair.teeth_profiles):
         return "a gear has a web"
     if pair.materials[0] != pair.materials[1]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.figures.reading import read_figure
-from flankfilm.report import film_parts, mesh_parts, motion_parts, run_parts
-from flankfilm.report.page import Fact, Headline, Part, write_page
-from flankfilm.report.text import percent, seconds
+from flankfilm.report import film_parts, mesh_parts, motion_parts, pair_parts, run_parts
+from flankfilm.report.page import Fact, Headline, Part, said, write_page
+from flankfilm.report.text import counted, percent, seconds
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,6 +40,8 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
 }
 """Stages with a section of their own, after geometry, stiffness and film."""
 
+GEOMETRY = {"geometry", "report"}
+"""Wants of a scene whose geometry is printed whole."""
 
 SHOWN = 5
 """Files of somebody else that are named."""
@@ -48,15 +51,22 @@ def headlines(results: Results) -> list[Headline]:
     """Numbers for the page's head and for the terminal."""
     values, cycle = results.values, final_cycle(results)
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
+    if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
+        shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
     for name, numbers in HEADLINES.items():
         if (found := values.get(name)) is not None:
             shown += numbers(found)
-    return shown
+    pair = values.get("pair")
+    return shown if shown or pair is None else pair_parts.headlines(pair)
 
 
 def summary(results: Results) -> list[str]:
     """Lines for the terminal: headline figures with errors, and the files."""
-    lines = [f"{h.name}: {h.with_unit}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    if set(results.scene.wants) <= GEOMETRY:
+        lines = pair_parts.printed(results.dataset)
+    else:
+        lines = [f"{h.name}: {h.with_unit}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
+    lines += run_parts.misses(results)
     lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
         lines.append(results.plan.line)
@@ -73,10 +83,15 @@ def final_cycle(results: Results) -> MeshCycle | None:
     return found
 
 
+def _film_failed(results: Results) -> bool:
+    return any(failure.name == "film" for failure in results.failures)
+
+
 def write_report(results: Results, folder: Path) -> Path:
     """Write ``report.html`` into a folder and return its path."""
     scene = results.scene
     parts = [
+        *run_parts.failures(results),
         *_result_parts(results),
         run_parts.costs(results),
         *run_parts.decisions(results),
@@ -88,6 +103,8 @@ def write_report(results: Results, folder: Path) -> Path:
 def _facts(results: Results) -> list[Fact]:
     """What was computed, how well, and at what cost, in a line."""
     scene, facts = results.scene, []
+    if count := len(results.failures):
+        facts.append(Fact(f"{counted(count, 'part')} not computed", "failures"))
     if (pair := results.values.get("pair")) is not None:
         teeth = f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth"
         size = f"module {1e3 * pair.module:g} mm, face {1e3 * pair.face_width:g} mm"
@@ -97,8 +114,10 @@ def _facts(results: Results) -> list[Fact]:
             at = [f"{value:g} {unit}" for unit, value in asked.items() if value is not None]
             facts.append(Fact("pinion: " + ", ".join(at)))
     facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
+    if count := len(run_parts.misses(results)):
+        facts.append(Fact(f"{counted(count, 'figure')} beyond the tolerance, or in doubt", "decisions"))
     if count := sum(len(run.warnings) for run in results.runs.values()):
-        facts.append(Fact(f"{count} warning{'s' if count > 1 else ''}", "decisions"))
+        facts.append(Fact(counted(count, "warning"), "decisions"))
     return facts
 
 
@@ -107,9 +126,9 @@ def _result_parts(results: Results) -> list[Part]:
     pair, cycle, film = values.get("pair"), final_cycle(results), values.get("film")
     parts = []
     if pair is not None:
-        parts.append(mesh_parts.geometry(pair, data))
+        parts.append(pair_parts.geometry(pair, data))
         if (heat := values.get("heat")) is not None:
-            parts.append(mesh_parts.heat(heat))
+            parts.append(pair_parts.heat(heat))
         if any(f"flank_{gear}_diameter" in data for gear in ("pinion", "wheel")):
             parts.append(mesh_parts.flanks(data))
         if cycle is not None:
@@ -125,6 +144,8 @@ def _result_parts(results: Results) -> list[Part]:
 
 def _film_notes(results: Results, film: LubricatedCycle | None) -> list[str]:
     """Why there is a film or none, and what it changes."""
+    if _film_failed(results):
+        return [said("film_failed")]
     notes = [] if results.plan is None else [f"Film: {results.plan.film.reason}."]
     if film is not None:
         for kind, name in (("secant", "secant_stiffness_change"), ("tangent", "stiffness_change")):

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array
-from flankfilm.figures.reading import read_figure
+from base.units import factor
+from flankfilm.coupling.least_film import parts_of
+from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
 from flankfilm.output.run import held_as_it_is
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent
+from flankfilm.report.text import counted, number, percent, plus_minus
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,13 +32,14 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     verdict = said("film_changes", secant=secant, tangent=tangent)
     if abs(cycle.secant_stiffness_change) < tolerance:
         verdict += said("film_left_out", tolerance=percent(tolerance))
-    rounds = said("film_rounds", cycle=cycle)
-    tables = (*((_otherwise(cycle),) if cycle.otherwise else ()), _definitions(stage))
+    rounds = said("film_rounds", cycle=cycle, rounds=counted(cycle.rounds, "round"))
+    face = factor(PER_FACE) * float(results["pair_face_width"])
+    tables = (*((_otherwise(cycle, face),) if cycle.otherwise else ()), _definitions(stage, face))
     return Part(
         "film",
         "Oil film",
         (verdict, *_supply(stage), *_mixed(stage)),
-        pictures(results, *_pictured(cycle)),
+        pictures(results, *_pictured(cycle), **_captions(stage)),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
     )
@@ -53,38 +57,59 @@ def _pictured(cycle: LubricatedCycle) -> Iterator[str]:
         yield "film_changes"
 
 
-def _definitions(stage: FilmAlongPath) -> Table:
-    """Film stiffness by every definition: at C with what it costs, and its range along the path."""
-    ends = {name: (number(k.min()), number(k.max())) for name, k in stage.stiffness.items()}
+def _captions(stage: FilmAlongPath) -> dict[str, str]:
+    """What the captions say of this film and of no other."""
+    steps = len(parts_of(stage.load)) > 1
+    shares = {
+        "How far the contact is starved": stage.starvation,
+        "the film ratio": stage.film_ratio,
+        "the asperities' share of the load": stage.asperity_share,
+    }
+    shown = [name for name, known in shares.items() if known is not None]
+    sought = [film.spike for film in stage.profiles.values()]
+    narrow = any(spike is None or not np.isfinite(spike.error) for spike in sought)
+    listed = " and ".join([", ".join(shown[:-1]), *shown[-1:]] if shown[1:] else shown)
+    return {
+        "steps": "; both step where a pair comes or goes" if steps else "",
+        "shares": listed[:1].upper() + listed[1:],
+        "rough": said("rough_pressure") if stage.film_ratio is not None else "",
+        "spikes": said("narrow_spikes") if narrow else said("resolved_spikes"),
+    }
+
+
+def _definitions(stage: FilmAlongPath, face: float) -> Table:
+    """Film stiffness by every definition: at C with what it costs, and its range along the path; `face` in N/m."""
+    ends = {name: (number(k.min() / face), number(k.max() / face)) for name, k in stage.stiffness.items()}
+    caption = f"Stiffness in {unit_text(PER_FACE)}."
     if not stage.at_pitch:
-        heads = ("film stiffness by", "least [N/m]", "largest [N/m]")
-        return Table(heads, tuple((name, *both) for name, both in ends.items()))
+        heads = ("film stiffness by", "least", "largest")
+        return Table(heads, tuple((name, *both) for name, both in ends.items()), caption)
     return Table.of(
         stage.at_pitch,
         {
-            "film stiffness by": lambda row: row.definition,
+            "film stiffness by": lambda row: row.definition.replace("-", " "),
             "what it is": lambda row: row.meaning,
-            "at C [N/m]": lambda row: number(row.stiffness),
+            "at C": lambda row: number(row.stiffness / face),
             "error": lambda row: percent(row.error),
             "loss of the pair's stiffness at C": lambda row: (
                 percent(row.loss) if np.isfinite(row.loss) else "-"
             ),
-            "least [N/m]": lambda row: ends.get(row.definition, "--")[0],
-            "largest [N/m]": lambda row: ends.get(row.definition, "--")[1],
+            "least": lambda row: ends.get(row.definition, "--")[0],
+            "largest": lambda row: ends.get(row.definition, "--")[1],
         },
-        "Formulas are of flooded contacts." if stage.supply != "flooded" else "",
+        caption + (" Formulas are of flooded contacts." if stage.supply != "flooded" else ""),
     )
 
 
-def _otherwise(lubricated: LubricatedCycle) -> Table:
-    """The mesh without film, flooded, and starved with either held."""
+def _otherwise(lubricated: LubricatedCycle, face: float) -> Table:
+    """The mesh without film, flooded, and starved with either held; `face` in N/m."""
     dry = lubricated.dry
     rows = tuple(
         (
             name,
-            number(cycle.mean_secant_stiffness),
+            number(cycle.mean_secant_stiffness / face, 5),
             f"{100 * (cycle.mean_secant_stiffness / dry.mean_secant_stiffness - 1):+.3f} %",
-            number(cycle.mean_stiffness),
+            number(cycle.mean_stiffness / face, 5),
             f"{100 * (cycle.mean_stiffness / dry.mean_stiffness - 1):+.3f} %",
             f"{2 * abs(np.fft.rfft(cycle.stiffness)[1]) / cycle.stiffness.sum():.4f}",
         )
@@ -95,7 +120,9 @@ def _otherwise(lubricated: LubricatedCycle) -> Table:
         }.items()
     )
     means = ("mean secant", "change", "mean tangent", "change", "first harmonic of the tangent over its mean")
-    return Table(("mesh stiffness with", *means), rows, "Stiffness in N/m at the whole face.")
+    error = percent(max((one.mean_error or 0.0 for one in (dry, lubricated)), default=None))
+    caption = f"Stiffness in {unit_text(PER_FACE)}; the means are numerically right to {error}."
+    return Table(("mesh stiffness with", *means), rows, caption)
 
 
 def _supply(stage: FilmAlongPath) -> Iterator[str]:
@@ -118,20 +145,31 @@ def _ends(curve: Array) -> tuple[float, float]:
     return float(curve.min()), float(curve.max())
 
 
+def _off(cycle: LubricatedCycle) -> str:
+    """Error of what the film changes the mean secant stiffness by: of both cycles, which share their meshes."""
+    known = [one.mean_error for one in (cycle, cycle.dry)]
+    errors = [error for error in known if error is not None]
+    if cycle.film.error is None or len(errors) < len(known):
+        return "by formula; error unknown" if cycle.film.error is None else "error unknown"
+    return f"± {percent(math.hypot(*errors))[:-2]} points"
+
+
 def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
     stage = cycle.film
     off = stage.least_film_error
-    note = f"error {percent(off)}" if off is not None else "by formula; model error unknown"
+    note = plus_minus(off) if off is not None else "by formula; error unknown"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
     shown = [
         Headline("least film on the path", f"{float(least.values):.3g}", note, least.unit),
-        Headline("what the film changes", changed, "of the mean secant stiffness", change.unit),
+        Headline("mean secant stiffness, change by the film", changed, _off(cycle), change.unit),
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"
-        shown.append(Headline("starved film over flooded", f"{stage.starvation.min():.3g}", supply))
+        error = plus_minus(None if stage.error is None else math.sqrt(2.0) * stage.error)
+        least_part = f"{stage.starvation.min():.3g}"
+        shown.append(Headline("starved over flooded film, the least", least_part, f"{error}; {supply}"))
     if stage.film_ratio is not None and stage.asperity_share is not None:
         share = f"asperities carry up to {percent(stage.asperity_share.max())}"
         shown.append(Headline("least film ratio Lambda", f"{stage.least_film_ratio:.3g}", f"{note}; {share}"))

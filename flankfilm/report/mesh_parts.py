@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base.results import quantities
 from flankfilm.coupling.references import MEANINGS, PARTS
-from flankfilm.figures.reading import read, read_figure, travel
+from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent
+from flankfilm.report.text import number, percent, plus_minus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     import fem
-    from fem.tooth_root import RootPeak
+    from fem.root_peaks import RootPeak
     from flankfilm.coupling import (
         LoadedFields,
         MeshCycle,
@@ -28,70 +27,13 @@ if TYPE_CHECKING:
         StiffnessReferences,
         TorqueCurves,
     )
-    from gears import GearPair, WarmPair
-    from gears.closed_form import Iso6336RootStress
-
-OF_EACH = (
-    "reference_radii",
-    "base_radii",
-    "root_radii",
-    "form_radii",
-    "tip_radii",
-    "bore_radii",
-    "rim_thicknesses",
-    "web_thicknesses",
-)
-"""Figures of both gears."""
+    from gears.closed_form import Iso6336ContactStress, Iso6336RootStress
 
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
 
-OF_THE_PAIR = {
-    "module": 4,
-    "face_width": 4,
-    "working_centre_distance": 7,
-    "working_pressure_angle": 6,
-    "base_pitch": 6,
-    "contact_ratio": 5,
-    "backlash": 4,
-}
-"""Figures of the pair, with their digits."""
-
-
 OF_EACH_SECTION = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F", "q_s")
 """Figures of the root of either gear by ISO 6336-3."""
-
-
-def geometry(pair: GearPair, results: xr.Dataset) -> Part:
-    """Geometry with drawing and table."""
-    gears, teeth = (pair.pinion, pair.wheel), pair.teeth_profiles
-    radii = [read_figure(pair, name) for name in OF_EACH]
-    rows = (
-        ("teeth", *(str(gear.teeth) for gear in gears)),
-        ("profile shift [modules]", *(number(gear.profile_shift) for gear in gears)),
-        *((radius.label, *(number(value, 6) for value in radius.values)) for radius in radii),
-        ("undercut", *("yes" if tooth.undercut else "no" for tooth in teeth)),
-    )
-    known = [(read_figure(pair, name), digits) for name, digits in OF_THE_PAIR.items()]
-    common = (
-        *((figure.label, number(float(figure.values), digits)) for figure, digits in known),
-        ("path of contact A to E [mm]", number(float(travel(results, "path_point_rho1")[-1]), 5)),
-    )
-    drawn = pictures(results, "gears_in_mesh", "kinematics")
-    tables = Table(("", "pinion", "wheel"), rows), Table(("pair", ""), common)
-    return Part("geometry", "Geometry", figures=drawn, tables=tables)
-
-
-def heat(warm: WarmPair) -> Part:
-    """Cold and warm backlash, pressure angle and base pitches."""
-    names = [one.name for one in quantities(warm).values()]
-    found = [read_figure(warm, name) for name in names]
-    rows = tuple((figure.label, number(float(figure.values), 6)) for figure in found)
-    note = (
-        "All other figures are of the gears grown to their temperatures. Unequal base pitches act as a gap that grows "
-        "along the path of contact, in the loaded contact by finite elements of coupled pairs."
-    )
-    return Part("heat", "Growth by heat", notes=(note,), tables=(Table(("pair", ""), rows),))
 
 
 def flanks(results: xr.Dataset) -> Part:
@@ -123,7 +65,7 @@ def stiffness(
     tables = [_cycles(cycles, face_width), _harmonics(cycles[0])]
     if single is not None:
         shown.insert(0, "single_pairs")
-        tables.append(iso_table(single.iso))
+        tables += [iso_table(single.iso), contact_table(single.contact, cycles[0].contact)]
     drawn, notes = pictures(results, *shown, model=cycles[0].label), (*changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
@@ -131,9 +73,14 @@ def stiffness(
 def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
     """Means, range and error of each model's mesh cycle."""
 
-    def shown(name: str, digits: int, width: float | None = None) -> dict[str, Callable[[MeshCycle], str]]:
+    def shown(name: str, width: float | None = None) -> dict[str, Callable[[MeshCycle], str]]:
         head = read_figure(cycles[0], name, width).label
-        return {head: lambda cycle: number(float(read_figure(cycle, name, width).values), digits)}
+
+        def cell(cycle: MeshCycle) -> str:
+            value, error = float(read_figure(cycle, name, width).values), cycle.errors[name]
+            return number(value, 5) if error is None else f"{number(value, 5)} ± {percent(error)}"
+
+        return {head: cell}
 
     def ends(cycle: MeshCycle) -> str:
         least, most = (
@@ -146,16 +93,13 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
         cycles,
         {
             "model": lambda cycle: cycle.label,
-            **shown("mean_secant_stiffness", 5, face_width),
-            **shown("mean_stiffness", 5, face_width),
-            "range of secant": ends,
-            **shown("transmission_error_range", 4),
-            "numerical error of the secant": lambda cycle: percent(cycle.mean_error),
-            "of the peak to peak": lambda cycle: percent(cycle.range_error),
-            "error of the contacts' model": lambda cycle: (
-                "not known" if cycle.model_error is None else percent(cycle.model_error)
-            ),
+            **shown("mean_secant_stiffness", face_width),
+            "secant from, to": ends,
+            **shown("mean_stiffness", face_width),
+            **shown("transmission_error_range"),
+            "error by the contacts' model": lambda cycle: percent(cycle.model_error),
         },
+        "Behind ± stands the numerical error, where it is known.",
     )
 
 
@@ -184,12 +128,12 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
 
 
 def _harmonics(cycle: MeshCycle) -> Table:
-    """First harmonics of the cycle that counts, with their errors."""
+    """First harmonics of the cycle that counts, with their errors in the unit of each."""
     names = ("secant_stiffness_harmonics", "stiffness_harmonics", "transmission_error_harmonics")
     heads, columns = ["harmonic"], [[str(order) for order in range(1, LISTED + 1)]]
     for name in names:
         values, errors = read_figure(cycle, name), getattr(cycle, f"{name}_error")
-        heads += [values.label, "error"]
+        heads += [values.label, "±"]
         columns.append([number(one, 4) for one in values.values[:LISTED].tolist()])
         scale = values.values[0] / getattr(cycle, name)[0]
         columns.append(
@@ -208,6 +152,28 @@ def iso_table(iso: Any) -> Table:
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 
 
+def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -> Table:
+    """Nominal contact stress of both gears by ISO 6336-2, and the greatest Hertz pressure by finite elements."""
+    common = ("Z_H", "Z_E", "Z_eps")
+    rows: list[tuple[str, ...]] = []
+    for name in common:
+        figure = read_figure(contact, name)
+        rows.append((figure.label, *(number(float(figure.values), 5),) * 2))
+    factors = (contact.Z_B, contact.Z_D)
+    rows.append(("single pair tooth contact factors Z_B and Z_D", *(number(one, 5) for one in factors)))
+    for name in ("stresses", "single_pair_stresses"):
+        figure = read_figure(contact, name)
+        rows.append((figure.label, *(number(one, 5) for one in figure.values.tolist())))
+    heads = ("ISO 6336-2, whole force, all factors K = 1", "pinion", "wheel")
+    if loaded is None:
+        return Table(heads, tuple(rows))
+    pressure = read_figure(loaded, "hertz_pressure")
+    greatest = number(float(np.nanmax(pressure.values)), 4)
+    rows.append((pressure.named("finite elements, greatest Hertz pressure"), greatest, greatest))
+    caption = "Contact stress; that by finite elements is of the positions computed, without tip edges, error unknown."
+    return Table(heads, tuple(rows), caption)
+
+
 def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
@@ -220,11 +186,11 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
-    numerical = f"error {percent(cycle.mean_error)}, {cycle.label}"
+    numerical = f"{plus_minus(cycle.mean_error)}, {cycle.label}"
     if cycle.model_error is not None:
         numerical += f"; model of the contacts {percent(cycle.model_error)}"
-    small = f"for small vibration; error {percent(cycle.errors['mean_stiffness'])}"
-    spread = f"peak to peak; error {percent(cycle.range_error)}"
+    small = f"for small vibration; {plus_minus(cycle.errors['mean_stiffness'])}"
+    spread = f"peak to peak; {plus_minus(cycle.range_error)}"
     return [
         Headline(secant.meaning, f"{float(secant.values):.4g}", numerical, secant.unit),
         Headline(tangent.meaning, f"{float(tangent.values):.4g}", small, tangent.unit),
@@ -250,7 +216,8 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))
-        note = said("iso6336_3")
+        both = "at D for the pinion and at B for the wheel"
+        note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else both)
     drawn = pictures(results, "root_stress")
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=(note,))
 
@@ -259,7 +226,9 @@ def root_headlines(stage: RootStresses) -> list[Headline]:
     """Greatest stresses of both gears."""
     largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
     values = " and ".join(f"{float(one.values):.4g}" for one in largest)
-    note = f"error {percent(stage.error)}"
+    note = plus_minus(stage.error)
+    if stage.iso is not None:
+        note += f"; ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
     return [Headline("greatest root stress, pinion and wheel", values, note, largest[0].unit)]
 
 
@@ -278,10 +247,21 @@ def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
     shown = [read(results, "torque"), *curves]
     cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)
-    table = Table(tuple(one.label for one in shown), tuple(cells))
+    errors = {"stiffness": stage.error, "peak to peak": stage.range_error}
+    caption = "Largest numerical errors: " + ", ".join(f"{n} {percent(e)}" for n, e in errors.items()) + "."
+    table = Table(tuple(one.label for one in shown), tuple(cells), caption)
     drawn = pictures(results, "over_torque")
     notes = (f"Left out: {stage.message}",) if stage.message else ()
-    return Part("torques", "Torque", figures=drawn, tables=(table,), notes=notes)
+    orders = stage.transmission_error_harmonic
+    waves = [read(results, f"torque_transmission_error_harmonic_{order}") for order in orders]
+    rows = zip(
+        *([number(value, 4) for value in one.values.tolist()] for one in (shown[0], *waves)), strict=True
+    )
+    heads = (shown[0].label, *(waves[0].named(f"harmonic {order}") for order in orders))
+    off = read(results, "torque_harmonics_error")
+    caption = f"Amplitudes of the transmission error's harmonics, ± {number(float(off.values.max()), 2)} {off.unit}."
+    tables = (table, Table(heads, tuple(rows), caption))
+    return Part("torques", "Torque", figures=drawn, tables=tables, notes=notes)
 
 
 def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
@@ -292,5 +272,8 @@ def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
         "without load": read(results, "revolution_unloaded_transmission_error"),
     }
     rows = tuple((label, number(float(np.ptp(curve.values)))) for label, curve in curves.items())
-    table = Table(("transmission error", curves["under load"].named("peak to peak")), rows)
+    caption = (
+        f"Numerical error of the mesh: {percent(cycle.error)}; extremes are those of the positions drawn."
+    )
+    table = Table(("transmission error", curves["under load"].named("peak to peak")), rows, caption)
     return Part("revolution", "Revolution", figures=drawn, tables=(table,), notes=(cycle.message,))

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from base.units import factor
 from flankfilm.coupling.references import MEANINGS
-from flankfilm.figures.reading import read_figure, unit_text
+from flankfilm.figures.motion import scale
+from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent
+from flankfilm.report.text import counted, number, percent, plus_minus
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,10 +30,17 @@ LONGEST = 40
 def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     """Fourier stiffness with its remainder."""
     series = stage.stiffness
-    unit = unit_text(str(results["fourier_mean"].attrs["units"]))
+    of_gears = "pair_face_width" in results and stage.fit is not None
+    mean, amplitude = (read(results, f"fourier_{name}", per_face=of_gears) for name in ("mean", "amplitude"))
+    over = np.divide(series.amplitudes, series.mean)
+    unsaid = "as given" if stage.cycle is None else "unknown"
+    errors = stage.harmonic_error
+    off = [unsaid] * len(over) if errors is None else [f"± {percent(error)}" for error in errors]
     rows = tuple(
-        (str(j), number(a), percent(a / series.mean), f"{np.degrees(phase):.2f}")
-        for j, (a, phase) in enumerate(zip(series.amplitudes, series.phases, strict=True), start=1)
+        (str(j), number(a), percent(part), error, f"{np.degrees(phase):.2f}")
+        for j, (a, part, error, phase) in enumerate(
+            zip(amplitude.values, over, off, series.phases, strict=True), start=1
+        )
     )
     notes = [said("phases")]
     if stage.fit is not None:
@@ -40,19 +49,25 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
         measured = said("measured_against", what=MEANINGS[stage.reference or "bore"])
         notes += [measured, series_note, said("tangent_or_secant")]
     drawn = pictures(results, *(["fourier"] if stage.fit else []), source=stage.source)
-    mean = f"Mean {number(series.mean, 6)}{'' if unit == '-' else ' ' + unit}."
-    table = Table(("harmonic", f"amplitude [{unit}]", "over the mean", "phase [deg]"), rows)
-    return Part("fourier", "Fourier stiffness", (mean,), drawn, (table,), tuple(notes))
+    unit = "" if mean.unit == "-" else f" {mean.unit}"
+    known = "as given" if stage.cycle is None else plus_minus(stage.cycle.mean_error)
+    text = f"Mean {number(float(mean.values), 6)}{unit} ({known})."
+    heads = ("harmonic", amplitude.named("amplitude"), "over the mean", "error of that", "phase [deg]")
+    table = Table(heads, rows)
+    return Part("fourier", "Fourier stiffness", (text,), drawn, (table,), tuple(notes))
 
 
 def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     """First harmonic and what the series leaves out."""
     kappa = stage.amplitude[0] / stage.mean if stage.order else 0.0
-    left = "given" if stage.remainder is None else f"remainder {100 * stage.remainder:.2g} % of the mean"
+    if stage.remainder is None:
+        return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", "as given")]
+    errors = stage.harmonic_error
+    left = "error unknown" if errors is None or not len(errors) else f"± {float(errors[0]):.1g}"
+    left += f"; beyond {counted(stage.order, 'harmonic')} {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
-        motion = percent(float(stage.left_out.motion[stage.order]))
-        left += f"; order {stage.order} leaves out up to {motion} of the motion"
-    return [Headline("first harmonic over the mean", f"{kappa:.4f}", left)]
+        left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
+    return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", left)]
 
 
 def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
@@ -66,25 +81,106 @@ def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    drawn = pictures(results, "sweep", *(["portraits"] if stage.portraits else []))
+    drawn = pictures(results, "sweep", "resonance", *(["portraits"] if stage.portraits else []))
     notes = []
     if stage.grazings.size:
-        at = ", ".join(f"{g:.6g}" for g in stage.grazings)
+        at = "omega = " + ", ".join(f"{g:.6g}" for g in stage.grazings)
         if (rpm := _speed(stage)) is not None:
-            at += " (" + ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + " rpm)"
+            at = ", ".join(f"{rpm * g:.0f}" for g in stage.grazings) + f" rpm ({at})"
         notes.append(said("grazing", at=at))
-    notes += [said("exact", stage=stage), said("same_law"), *stage.messages]
-    return Part("motion", "Motion", figures=drawn, notes=tuple(notes))
+    periods = counted(stage.cost.periods, "period")
+    notes += [said("exact", stage=stage, periods=periods), *_swept(stage), said("same_law"), *stage.messages]
+    return Part("motion", "Motion", figures=drawn, tables=(_worst(stage, results),), notes=tuple(notes))
+
+
+def _worst(stage: SpeedSweep, results: xr.Dataset) -> Table:
+    """Greatest force, vibration and time without contact of either sweep, each with where it was met."""
+    force, length, rpm = scale(results, "force"), scale(results, "length"), _speed(stage)
+
+    def cells(values: Array, unit: float) -> tuple[str, str]:
+        if not np.isfinite(values).any():
+            return "-", "-"
+        most = int(np.nanargmax(values))
+        at = float(stage.frequency[most]) * (rpm or 1.0)
+        return number(unit * float(values[most])), number(at, 5)
+
+    rows = tuple(
+        (
+            direction,
+            *cells(stage.force_factor[direction], float(force.values)),
+            *cells(stage.spread[direction], float(length.values)),
+            *cells(stage.separated[direction], 100.0),
+        )
+        for direction in stage.force_factor
+    )
+    at = "at ω" if rpm is None else "at [rpm]"
+    named = force.named("greatest force" if force.unit == "N" else "greatest force over the mean")
+    vibration = length.named("displacement, root mean square")
+    heads = ("sweep", named, at, vibration, at, "most time without contact [%]", at)
+    error = percent(stage.sampling_error)
+    return Table(
+        heads, rows, f"Of the speeds swept; force and displacement ± {error} by the samples of a period."
+    )
+
+
+def _swept(stage: SpeedSweep) -> list[str]:
+    """What the series leaves out of the sweep; nothing for a given series."""
+    if stage.longer_order is None or stage.force_change is None or stage.spread_change is None:
+        return []
+    force, spread = (np.concatenate(list(one.values())) for one in (stage.force_change, stage.spread_change))
+    same, repeating = np.isfinite(spread), ~np.isnan(spread)
+    other, rest = int(np.sum(repeating & ~same)), int(np.sum(~repeating))
+    notes = [
+        said(
+            "truncated_motions",
+            order=stage.longer_order,
+            count=int(same.sum()),
+            all=len(spread),
+            force=percent(_largest(force[same])),
+            spread=percent(_largest(spread[same])),
+            unknown=said("truncated_unknown", other=other, rest=rest) if other + rest else "",
+        )
+    ]
+    if stage.grazing_error is not None and stage.grazing_error.size:
+        worst = percent(float(stage.grazing_error.max()))
+        notes.append(said("truncated_grazing", order=stage.longer_order, worst=worst))
+    return notes
+
+
+def _largest(changes: Array) -> float | None:
+    known = changes[np.isfinite(changes)]
+    return float(known.max()) if known.size else None
 
 
 def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
-    """Lowest speed at which the orbit that keeps contact touches the edge of the backlash."""
-    note = f"by the orbit that never leaves contact; error {stage.error:.0e} a period"
+    """Lowest speed at which contact is lost, and the greatest force of the sweeps."""
+    rpm = _speed(stage)
+    name, unit = "contact first lost at", "" if rpm is None else "rpm"
     if stage.least_grazing is None:
-        return [Headline("edge of the backlash touched at", "none in range", note)]
-    if (rpm := _speed(stage)) is None:
-        return [Headline("edge of the backlash touched at ω", number(stage.least_grazing, 6), note)]
-    return [Headline("edge of the backlash touched at", number(rpm * stage.least_grazing, 5), note, "rpm")]
+        return [Headline(name, "none in range", "by the orbit that never leaves contact"), *_greatest(stage)]
+    budget = stage.grazing_budget
+    exact = "exact to rounding for the stiffness as given"
+    note = exact if set(budget) == {"flow"} else plus_minus(stage.least_grazing_error)
+    if "truncation" in budget:
+        note += f", {percent(budget['truncation'])} by harmonics that the series leaves out"
+    value = number((rpm or 1.0) * stage.least_grazing, 5 if rpm else 6)
+    return [Headline(name if rpm else f"{name} ω", value, note, unit), *_greatest(stage)]
+
+
+def _greatest(stage: SpeedSweep) -> list[Headline]:
+    """Greatest force of the sweeps over the mean one."""
+    factors = np.array([*stage.force_factor.values()])
+    if not np.isfinite(factors).any():
+        return []
+    at = float(stage.frequency[int(np.nanargmax(np.nanmax(factors, axis=0)))])
+    rpm = _speed(stage)
+    where = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
+    note = f"at {where} of the speeds swept; ± {percent(stage.sampling_error)} by samples"
+    if stage.force_change is not None and stage.checked is not None:
+        way = max(stage.force_factor, key=lambda one: np.nanmax(stage.force_factor[one], initial=-np.inf))
+        left = stage.force_change[way][int(np.argmin(np.abs(stage.checked - at)))]
+        note += f", {percent(float(left))} by harmonics that the series leaves out"
+    return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note)]
 
 
 def _speed(stage: SpeedSweep) -> float | None:
@@ -96,15 +192,20 @@ def _speed(stage: SpeedSweep) -> float | None:
 
 def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
     """Jump speeds."""
+    more = f"{stage.longer_order} harmonics have {len(stage.missed)} more" if stage.missed else ""
     if not stage.jumps:
-        return [Headline("jump speeds", "none in range")]
+        return [Headline("jump speeds", "none in range", more or "of the branches that were found")]
     at = ", ".join(f"{_shown(stage, j.frequency)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
-    more = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
+    rest = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
     worst = max((j for j in stage.jumps if j.budget), key=lambda j: j.error, default=None)
     note = f"error up to {percent(worst.error)}" if worst else ""
-    if worst and worst.budget["series"] > 0.5 * worst.error:
-        note += f", {percent(worst.budget['series'])} of it by harmonics that the series leaves out"
-    return [Headline("jump speeds", at + more, note, "rpm" if stage.speed_of_one else "")]
+    if worst and not np.isfinite(worst.error):
+        lost = sum(not np.isfinite(j.error) for j in stage.jumps)
+        note = f"error of {lost} unknown: {stage.longer_order} harmonics leave no such jump"
+    elif worst and worst.budget["truncation"] > 0.5 * worst.error:
+        note += f", {percent(worst.budget['truncation'])} of it by harmonics that the series leaves out"
+    note = "; ".join(filter(None, (note, more)))
+    return [Headline("jump speeds", at + rest, note, "rpm" if stage.speed_of_one else "")]
 
 
 def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
@@ -122,7 +223,8 @@ def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
         "speed": lambda j: "up" if j.rising else "down",
         "from": lambda j: j.label,
         "error": lambda j: percent(j.error) if j.budget else "",
-        **{source: partial(_share, source) for source in ("stiffness", "series", "flow")},
+        **{source: partial(_share, source) for source in ("stiffness", "truncation", "flow")},
+        f"by {stage.longer_order} harmonics": lambda j: _longer(stage, j),
     }
     variants: dict[str, Callable[[tuple[str, tuple[float, ...]]], str]] = {
         "stiffness, mean over the scene's": lambda law: law[0],
@@ -142,6 +244,13 @@ def _share(source: str, jump: Jump) -> str:
     return percent(jump.budget[source]) if jump.budget else ""
 
 
+def _longer(stage: SpeedDiagram, jump: Jump) -> str:
+    """Speed of a jump with the longer series; empty for a given series."""
+    if jump.longer is None:
+        return ""
+    return _shown(stage, jump.longer) if np.isfinite(jump.longer) else "no such jump"
+
+
 def _notes(stage: SpeedDiagram) -> list[str]:
     separated, back = (_ranges(stage, one) for one in (stage.separated, stage.back_contact))
     none = "" if stage.jumps else "Jump speeds: none in range."
@@ -151,14 +260,30 @@ def _notes(stage: SpeedDiagram) -> list[str]:
         curves = (stage.force_frequency, stage.force_factor, stage.force_factor_iso6336)
         value, force, standard = (float(curve[i]) for curve in curves)
         beside = said("standard_force", standard=standard) if np.isfinite(standard) else ""
-        at = _shown(stage, value)
+        at = _shown(stage, value) + (" rpm" if stage.speed_of_one else "")
         notes.append(said("greatest_force", force=force, at=at, standard=beside))
-    if any(j.budget for j in stage.jumps):
-        second = ", ".join(f"{100 * j.second:+.2g} %" for j in stage.jumps)
-        notes.append(said("jump_budget", second=second))
+    notes += _truncated(stage)
     notes += [f"Not followed: {text}." for text in stage.diagram.left_out[:8]]
     branches = enumerate(stage.diagram.branches)
     return notes + [f"Branch {i} of period {b.periods}: {b.message}." for i, b in branches if not b.converged]
+
+
+def _truncated(stage: SpeedDiagram) -> list[str]:
+    """What the series leaves out of the figures of motion; nothing for a given series."""
+    if stage.longer_order is None:
+        return []
+    notes = [said("jump_budget", order=stage.longer_order)] if stage.jumps else []
+    if stage.missed:
+        jumps = ", ".join(
+            f"{_shown(stage, j.frequency)} {'up' if j.rising else 'down'} (beside others over {percent(j.width)})"
+            for j in stage.missed
+        )
+        notes.append(said("missed_jumps", order=stage.longer_order, jumps=jumps))
+    changed = {name: percent(change) for name, change in stage.truncation.items()}
+    notes.append(said("truncated_ranges", order=stage.longer_order, **changed))
+    if stage.with_longer is not None and not stage.with_longer.converged:
+        notes.append(said("longer_unsure", order=stage.longer_order, why=stage.with_longer.message))
+    return notes
 
 
 def _shown(stage: SpeedDiagram, frequency: float) -> str:

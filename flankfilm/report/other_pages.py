@@ -13,11 +13,12 @@ import numpy as np
 
 from flankfilm import figures
 from flankfilm.coupling.verification import UNITS
-from flankfilm.figures.reading import titled, unit_of, unit_text, words
+from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
-from flankfilm.report.text import number, percent, seconds
+from flankfilm.report.text import counted, number, percent, seconds
+from flankfilm.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,9 +26,10 @@ if TYPE_CHECKING:
     from flankfilm.coupling.verification import Difference, Verification
     from flankfilm.optimisation.run import Optimum
     from flankfilm.optimisation.task import Task
-    from flankfilm.studies.plan import Plan, Value
+    from flankfilm.studies.plan import Plan
     from flankfilm.studies.row import RowResult
     from flankfilm.studies.run import StudyResults
+    from flankfilm.studies.study_file import Value
 
 MOST_ROWS = 100
 """Rows that a page shows; the files hold all."""
@@ -46,17 +48,18 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
     plan, rows = found.plan, len(found.rows)
     headlines = [_range(data, name) for name in plan.outputs if np.isfinite(data[name]).any()]
     failed = Counter(row.fault for row in found.failures)
-    notes = tuple(f"{count} rows failed: {fault}" for fault, count in failed.most_common(20))
+    notes = tuple(f"{counted(count, 'row')} failed: {fault}" for fault, count in failed.most_common(20))
     varied, drawn = plan.keys[: plan.varied], []
     if varied_numbers(data, varied):
         draw = functools.wraps(figures.study)(
             functools.partial(figures.study, keys=varied, outputs=plan.outputs)
         )
-        caption = f"Every output against {plan.keys[0]}; the other keys make families."
+        caption = f"Every output against {key_words(varied_numbers(data, varied)[0])[0]}"
+        caption += "; the other keys make families." if len(varied) > 1 else "."
         drawn.append(picture(draw, data, caption))
     left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
     table = _rows(data, plan, [(plan.rows[row.index], row) for row in found.rows[:MOST_ROWS]], left)
-    facts = [Fact(f"{rows} rows, {plan.design}", "rows"), _work(data)]
+    facts = [Fact(f"{counted(rows, 'row')}, {plan.design}", "rows"), _tolerance(data), _work(data)]
     parts = [
         Part("study", "Outputs", figures=tuple(drawn)),
         Part("rows", "Rows", tables=(table,)),
@@ -81,21 +84,23 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     task, points = found.task, found.evaluations
     chosen = [points[place] for place in found.best]
     first, one = chosen[0], len(task.objectives) == 1
-    which = "" if len(chosen) == 1 else "where the first objective is best"
+    coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
+    which = f"at a tolerance of {fine}" + ("" if len(chosen) == 1 else ", where the first objective is best")
     headlines = [
         Headline(words(data, name), number(value, 5), which, unit_of(data, name, ""))
         for name, value in zip(task.outputs, first.result.values, strict=True)
     ]
     if len(chosen) == 1:
         keys = zip(task.keys, first.values, strict=True)
-        headlines += [Headline(key, _cell(value), "at the optimum") for key, value in keys]
+        for key, value in keys:
+            name, unit = key_words(key)
+            headlines.append(Headline(name, _cell(value), "at the optimum", "" if unit == "-" else unit))
     caption = said("optimum_of_one" if one else "optimum_of_several")
-    coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
     note = said("two_tolerances", coarse=coarse, fine=fine)
     facts = [
-        Fact(f"{len(points)} points", "points"),
+        Fact(counted(len(points), "point"), "points"),
         _work(data),
-        Fact("one optimum" if one else f"{len(chosen)} points on the front", "best"),
+        Fact("one optimum" if one else f"{counted(len(chosen), 'point')} on the front", "best"),
     ]
     table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
     parts = [
@@ -177,6 +182,14 @@ def _work(data: xr.Dataset) -> Fact:
     return Fact(f"{seconds(float(data['seconds'].sum()))} of work")
 
 
+def _tolerance(data: xr.Dataset) -> Fact:
+    """What every row was computed to."""
+    if "tolerance" in data.coords:
+        return Fact("tolerances of the rows beside them", "rows")
+    asked = json.loads(data.attrs["scene_json"]).get("tolerance", Scene.model_fields["tolerance"].default)
+    return Fact(f"tolerance of each row {percent(float(asked))}")
+
+
 def _range(data: xr.Dataset, name: str) -> Headline:
     """Least and greatest value of an output."""
     values = data[name].values
@@ -193,7 +206,7 @@ def _rows(
     caption: str = "",
 ) -> Table:
     """Numbers of rows, values of their keys, and their outputs."""
-    heads = ("row", *asked.keys, *(titled(data, name) for name in asked.outputs))
+    heads = ("row", *map(key_title, asked.keys), *(titled(data, name) for name in asked.outputs))
     cells = tuple(
         (str(result.index), *map(_cell, values), *(number(value, 5) for value in result.values))
         for values, result in points

@@ -45,6 +45,20 @@ class Table:
         return cls(tuple(columns), cells, caption)
 
     @property
+    def filled(self) -> Table:
+        """The table without columns that hold nothing."""
+        kept = [i for i, column in enumerate(zip(*self.rows, strict=True)) if any(column)]
+        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
+        return Table(tuple(self.heads[i] for i in kept), rows, self.caption) if self.rows else self
+
+    @property
+    def titles(self) -> tuple[str, ...]:
+        """Heads of the columns whose units do not break over lines."""
+        return tuple(
+            re.sub(r"\[[^\]]*\]", lambda unit: unit.group().replace(" ", "\u00a0"), h) for h in self.heads
+        )
+
+    @property
     def sides(self) -> tuple[str, ...]:
         """Class of each column: "f" for the first, "t" for words, "n" for numbers."""
         columns = zip(*self.rows, strict=True) if self.rows else [()] * len(self.heads)

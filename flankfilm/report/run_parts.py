@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flankfilm.report.page import Part, Table, said
-from flankfilm.report.text import percent, seconds
+from flankfilm.report.text import counted, percent, seconds
 from flankfilm.scene.flank_files import CURVES
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def costs(results: Results) -> Part:
     )
     whole, spent = seconds(results.seconds), seconds(sum(run.seconds for run, _ in listed))
     text = said("costs", tolerance=percent(results.scene.tolerance), whole=whole, listed=spent)
-    return Part("costs", "Error and cost", (text,), tables=(table,))
+    return Part("costs", "Error and cost", (text,), tables=(table.filled,))
 
 
 def _work(name: str, results: Results) -> Work:
@@ -53,28 +53,70 @@ def _work(name: str, results: Results) -> Work:
     value: Any = results.values.get(name)
     plan, tolerance = results.plan, results.scene.tolerance
     if name == "bodies" and plan is not None:
-        unknowns = f"{value.cost.unknowns:,} unknowns"
+        unknowns = counted(value.cost.unknowns, "unknown")
         return Work("tooth compliance", plan.resolution.compliance, value.error, unknowns)
     if name == "dry cycle" and plan is not None:
         division = value.arcs.division
         mean, error = division.arcs.mean("secant_stiffness")
-        samples = f"{len(division.arcs.arcs)} arcs, {division.samples} positions"
+        samples = f"{counted(len(division.arcs.arcs), 'arc')}, {counted(division.samples, 'position')}"
         return Work("mean stiffness, from arcs", plan.resolution.sampling, error / mean, samples)
     if name == "fillets":
-        unknowns = f"{value.cost.unknowns:,} unknowns"
+        unknowns = counted(value.cost.unknowns, "unknown")
         return Work("greatest root stress per load", tolerance, value.error, unknowns)
     if name == "film" and plan is not None and value.film.model == "ehl":
         film = value.film
-        note = f"{film.rho1.size} films of up to {film.cost.unknowns} unknowns, {value.rounds} rounds"
+        films, rounds = counted(film.rho1.size, "film"), counted(value.rounds, "round")
+        note = f"{films} of up to {counted(film.cost.unknowns, 'unknown')}, {rounds}"
         return Work("film thickness", plan.film_tolerance, film.error, note)
     if name == "fourier" and value.fit is not None:
         allowed = None if plan is None else plan.series
         return Work("what the series leaves out", allowed, value.remainder, f"order {value.order}")
     if name == "sweep":
-        return Work("settled motions", None, value.error, f"{value.cost.periods:,} periods")
+        return Work("settled motions", None, value.error, counted(value.cost.periods, "period"))
     if name == "diagram":
-        return Work("special points", None, value.error, f"{value.branches} branches")
+        return Work("special points", None, value.error, counted(value.branches, "branch", "branches"))
     return Work()
+
+
+def failures(results: Results) -> list[Part]:
+    """What could not be computed, why, and what needs it; no section where all could."""
+    own = [one for one in results.failures if not one.because]
+    if not own:
+        return []
+    needing = {
+        one.title: ", ".join(other.title for other in results.failures if other.because == one.title)
+        for one in own
+    }
+    table = Table.of(
+        own,
+        {
+            "part": lambda one: one.title,
+            "why, and what to do": lambda one: one.why,
+            "not computed because of it": lambda one: needing[one.title],
+        },
+    )
+    return [Part("failures", "Not computed", (said("failures"),), tables=(table,))]
+
+
+def misses(results: Results) -> list[str]:
+    """Say which wanted figures have errors above the scene's tolerance, and what solvers have to report."""
+    values, wants, tolerance = results.values, results.scene.wants, results.scene.tolerance
+    film, roots = values.get("film"), values.get("root stress")
+    cycle = values.get("dry cycle") if film is None else film
+    errors: dict[str, float | None] = {}
+    if cycle is not None and "stiffness" in wants:
+        errors["mean mesh stiffness"] = cycle.mean_error
+    if film is not None and "film" in wants:
+        errors["film thickness"] = film.film.error
+    if roots is not None:
+        errors["greatest root stress"] = roots.error
+    above = [
+        f"{name}: its error of {percent(error)} is above the tolerance of {percent(tolerance)}"
+        for name, error in errors.items()
+        if error is not None and not error <= tolerance
+    ]
+    doubted = [name for name in results.runs if getattr(values.get(name), "converged", True) is False]
+    return above + [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
 
 
 def _known(text: Callable[[float], str], value: float | None) -> str:
@@ -86,7 +128,8 @@ def decisions(results: Results) -> list[Part]:
     """What was decided, how the tolerance was split, and what was warned of; no section without any of it."""
     plan, decided = results.plan, results.decisions
     warned = [f"{run.title}: {text}" for run in results.runs.values() for text in run.warnings]
-    lines = (*(d.line for d in decided), *([] if plan is None else [plan.line]), *warned)
+    planned = [] if plan is None else [plan.line]
+    lines = (*misses(results), *(d.line for d in decided), *planned, *warned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])

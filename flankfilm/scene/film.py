@@ -25,8 +25,11 @@ _OIL = {
     "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa"),
     "density": Limit(100.0, 5000.0, "kg/m3"),
 }
+_DRAWN = Limit(1e-9, 1e-4, "m")
 _ROUGHNESS = {
     "deviation": Limit(1e-10, 1e-4, "m"),
+    "mean": _DRAWN,
+    "peaks": _DRAWN,
     "density": Limit(1e6, 1e15, "1/m2"),
     "tip_radius": Limit(1e-9, 0.1, "m"),
 }
@@ -107,19 +110,58 @@ class LubricantSection(Section):
 
 
 class RoughnessSection(Section):
-    """Roughness of both flanks together: makes the film mixed."""
+    """Roughness of the flanks, as drawings have it or as a standard deviation: makes the film mixed."""
 
     ground = ROUGHNESS | _ROUGHNESS
 
-    sigma_um: float = key("standard deviation of heights, both flanks together", of="deviation", example=0.3)
-    density_per_mm2: float = key("asperities per area", example=25000)
-    tip_radius_um: float = key("radius of the asperities' tips", example=10)
+    Ra_um: float | None = key(
+        "mean roughness Ra of each flank; of the pinion's alone beside wheel_Ra_um",
+        None,
+        of="mean",
+        example=0.4,
+    )
+    wheel_Ra_um: float | None = key(
+        "mean roughness Ra of the wheel's flanks, where it is another", None, of="mean", such_as=0.8
+    )
+    Rz_um: float | None = key(
+        "mean peak-to-valley height Rz of each flank, instead of Ra; of the pinion's alone beside wheel_Rz_um",
+        None,
+        of="peaks",
+        such_as=2.4,
+    )
+    wheel_Rz_um: float | None = key(
+        "the same of the wheel's flanks, where it is another", None, of="peaks", such_as=4.8
+    )
+    sigma_um: float | None = key(
+        "standard deviation of heights, both flanks together, instead of Ra and Rz",
+        None,
+        of="deviation",
+        such_as=0.7,
+    )
+    density_per_mm2: float | None = key(
+        "asperities per area; if left out such that density, tip radius and sigma multiply to 0.04",
+        None,
+        such_as=80,
+    )
+    tip_radius_um: float | None = key(
+        "radius of the asperities' tips; a thousand times sigma if left out", None, such_as=700
+    )
     law: Literal["greenwood-tripp", "greenwood-williamson"] = key(
         "law of the asperities, for two rough flanks or for one", "greenwood-tripp"
     )
     mean_plane_offset: float = key(
         "from the mean plane of heights to that of the asperities, times sigma", 1.15, of="offset"
     )
+
+    @model_validator(mode="after")
+    def _one_measure_of_height(self) -> RoughnessSection:
+        given = self.given("Ra_um", "Rz_um", "sigma_um")
+        if len(given) != 1:
+            raise refused(f"must have one of Ra_um, Rz_um and sigma_um, not {' and '.join(given) or 'none'}")
+        for name in ("Ra_um", "Rz_um"):
+            if self.given(f"wheel_{name}") and not self.given(name):
+                raise refused(f"must have {name} of the pinion beside wheel_{name}")
+        return self
 
 
 class FilmSection(Section):

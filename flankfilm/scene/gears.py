@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import ClassVar, Literal
 
 from pydantic import model_validator
@@ -14,6 +15,8 @@ from gears.blank import LIMITS as BLANK
 from gears.gear import LIMITS as GEAR
 from gears.gear import RELIEF_LIMITS as RELIEF
 from gears.material import LIMITS as MATERIAL
+from gears.material import Material
+from gears.named_materials import MATERIALS, named_material
 from gears.pair import BACKLASH
 from gears.pair import LIMITS as PAIR
 from gears.rack import LIMITS as RACK
@@ -28,6 +31,20 @@ class RackSection(Section):
     h_fP: float = key("dedendum, times the module", example=1.25)
     rho_fP: float = key("radius of the fillet, times the module", example=0.38)
     alpha_deg: float = key("pressure angle", 20.0)
+
+
+class ToolSection(Section):
+    """Rack-shaped tool that cuts both gears, in place of dedendum and fillet radius of the rack."""
+
+    ground: ClassVar[Limits] = {**RACK, "protuberance": Limit(-1.0, 1.0, "m")}
+
+    h_aP0: float = key(
+        "addendum of the tool, times the module: the rack's dedendum h_fP", of="h_fP", example=1.25
+    )
+    rho_aP0: float = key("radius of the tool's tip, times the module", of="rho_fP", example=0.38)
+    protuberance_um: float = key(
+        "protuberance of the tool; only 0, since fillets are those of a tool with straight flanks", 0.0
+    )
 
 
 class ReliefSection(Section):
@@ -94,6 +111,12 @@ class GearSection(Section):
         "diameter of the bore; half the root diameter if left out", None, diameter="bore_radius", such_as=33.5
     )
     blank: BlankSection | None = key("rim, web and hub; a disc as wide as the face if left out", None)
+    generating_shift: float | None = key(
+        "shift at which the tool cuts the gear, times the module: thins the teeth and deepens the roots where it is "
+        "less than profile_shift, to which it is equal if left out",
+        None,
+        such_as=0.0,
+    )
     tip_alteration: float = key("moves the tip outwards, times the module", 0.0)
     thickness_allowance_um: float = key("thins each tooth, arc at the reference circle", 0.0)
     tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
@@ -138,6 +161,9 @@ class PairSection(Section):
     rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = key(
         "basic rack of both gears, or a table of its own dimensions", "ISO 53 A", of=None, shown=True
     )
+    tool: ToolSection | None = key(
+        "tool that cuts both gears, in place of the rack's dedendum and fillet radius", None
+    )
     pinion: GearSection = key(
         "the driving gear", example={"teeth": 36, "profile_shift": 0.0, "bore_mm": 33.5}
     )
@@ -152,7 +178,10 @@ class PairSection(Section):
         example=50,
     )
     centre_distance_mm: float | None = key(
-        "distance of the axes, if not by the backlash, which then follows", None, such_as=76.0
+        "distance of the axes, if not by the backlash, which then follows; one that is short of no backlash by a "
+        "rounded digit, up to 0.002 modules, is taken for that of none",
+        None,
+        such_as=76.0,
     )
 
     tight: bool = key(
@@ -166,14 +195,48 @@ class PairSection(Section):
 
 
 class ElasticSection(Section):
-    """Elastic constants and density of one material."""
+    """Elastic constants and density of one material, by its name or each by itself."""
 
     ground = MATERIAL
 
-    youngs_modulus_GPa: float = key("Young's modulus", example=206)
-    poisson_ratio: float = key("Poisson's ratio", example=0.3)
-    density_kg_per_m3: float = key("density, for the moments of inertia", 7850.0, example=7850)
-    thermal_expansion_per_K: float = key("coefficient of linear expansion by heat", 11.5e-6, such_as=11.5e-6)
+    name: str | None = key(
+        "of the list of materials, of which the other keys change single constants",
+        None,
+        of=None,
+        such_as="steel",
+    )
+    youngs_modulus_GPa: float | None = key("Young's modulus", None, example=206)
+    poisson_ratio: float | None = key("Poisson's ratio", None, example=0.3)
+    density_kg_per_m3: float | None = key(
+        "density, for the moments of inertia; 7850 if left out without a name", None, example=7850
+    )
+    thermal_expansion_per_K: float | None = key(
+        "coefficient of linear expansion by heat; 11.5e-6 of steel if left out without a name",
+        None,
+        such_as=11.5e-6,
+    )
+
+    @model_validator(mode="after")
+    def _by_name_or_by_constants(self) -> ElasticSection:
+        _refuse_unknown(self.name)
+        if self.name is None and len(self.given("youngs_modulus_GPa", "poisson_ratio")) < 2:
+            raise refused("must have youngs_modulus_GPa and poisson_ratio, or a name")
+        return self
+
+    def material(self) -> Material:
+        """Material in SI."""
+        if self.name is not None:
+            return replace(named_material(self.name), **self.si())
+        return Material(**{"density": 7850.0, **self.si()})
+
+
+def _refuse_unknown(name: str | None) -> None:
+    """Refuse a name that is not in the list of materials."""
+    if name is not None and name not in MATERIALS:
+        listed = ", ".join(MATERIALS)
+        raise refused(
+            "must be a name of the list of materials", f"One of {listed}", where="name", value=repr(name)
+        )
 
 
 class MaterialSection(Section):
@@ -181,6 +244,12 @@ class MaterialSection(Section):
 
     ground = MATERIAL
 
+    name: str | None = key(
+        "of both gears in the list of materials, of which the next keys change single constants",
+        None,
+        of=None,
+        such_as="steel 16MnCr5",
+    )
     youngs_modulus_GPa: float | None = key("Young's modulus of both gears", None, example=206)
     poisson_ratio: float | None = key("Poisson's ratio of both gears", None, example=0.3)
     density_kg_per_m3: float | None = key("density of both gears; 7850 if left out", None, example=7850)
@@ -192,13 +261,14 @@ class MaterialSection(Section):
 
     @model_validator(mode="after")
     def _one_material_or_two(self) -> MaterialSection:
-        common = len(self.given("youngs_modulus_GPa", "poisson_ratio")) == 2
+        _refuse_unknown(self.name)
+        common = self.name is not None or len(self.given("youngs_modulus_GPa", "poisson_ratio")) == 2
         if not common and len(self.given("pinion", "wheel")) < 2:
             raise refused(
-                "must have youngs_modulus_GPa and poisson_ratio for both gears, "
+                "must have a name, or youngs_modulus_GPa and poisson_ratio, for both gears, "
                 "or both [material.pinion] and [material.wheel]"
             )
-        if self.si() and self.given("pinion", "wheel"):
+        if (self.si() or self.name) and self.given("pinion", "wheel"):
             raise refused(
                 "must be one material for both gears or one each, not both at once", "Leave one out"
             )

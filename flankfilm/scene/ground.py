@@ -85,6 +85,6 @@ def _in_unit(text: str, about: Key, unit: str) -> str:
         return text
     return re.sub(
         rf"({_NUMBER}) {re.escape(unit)}(?![\w/])",
-        lambda found: f"{about.user(float(found[1])):.6g} {about.unit}",
+        lambda found: f"{about.user(float(found[1])):.7g} {about.unit}",
         text,
     )

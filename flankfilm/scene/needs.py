@@ -62,7 +62,7 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
         yield "dynamics", f"wants = [{_quoted(moving)}]"
     if physical:
         yield from ((name, "a [dynamics] in physical units") for name in ("pair", "material", "operating"))
-    if (geared or meshed) and listed != {"geometry"}:
+    if (geared or meshed) and not listed <= {"geometry", "report"}:
         yield from ((name, f"wants = [{_quoted(listed)}]") for name in ("material", "operating"))
     model = film.get("model", "auto")
     if "film" in listed:

@@ -16,6 +16,9 @@ TORQUE = Limit(-1e9, 1e9, "N m")
 LEAST = 1e-9
 """Least torque of either sign [N m]."""
 
+AMPLITUDE = Limit(-1000.0, 1000.0)
+"""Of a given stiffness over its mean: no mesh has 1, and no motion is followed with a million."""
+
 GIVEN = ("mean_N_per_m", "amplitudes", "phases_deg")
 """Keys of a given stiffness."""
 
@@ -89,7 +92,7 @@ class StiffnessSection(Section):
     mean_N_per_m: float | None = key(
         "mean of a given stiffness; 1 if left out", None, limit=Limit(1.0, 1e15, "N/m"), such_as=7.6e8
     )
-    amplitudes: Annotated[tuple[float, ...], Field(strict=False)] | None = key(
+    amplitudes: Annotated[tuple[Annotated[float, within(AMPLITUDE)], ...], Field(strict=False)] | None = key(
         "harmonics of a given stiffness, each over the mean", None, such_as=(0.18,), max_length=50
     )
     phases_deg: Annotated[tuple[float, ...], Field(strict=False)] | None = key(

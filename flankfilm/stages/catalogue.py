@@ -1,18 +1,14 @@
-"""All stages, each from the scene to plain arguments.
+"""The stages of the gears and their film, each from the scene to plain arguments; `stages.motion` goes on from there.
 
 What a stage depends on stands with it: sections of the scene, other stages, decisions, packages.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
-import numpy as np
-
-import dynamics
 import fem
 import gears
 from flankfilm import coupling
@@ -24,23 +20,20 @@ from flankfilm.coupling.loaded_teeth import contacts_move
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
-from flankfilm.scene.dynamics import OSCILLATOR, DynamicsSection
 from flankfilm.scene.ground import under_keys
-from flankfilm.scene.operating import GIVEN
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
-from flankfilm.scene.section import required
 from flankfilm.stages.engine import Engine, stage
 
 TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact operating heat tolerance"
 """Keys of all that is loaded."""
 
 
-def _decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Mapping[str, Any]]:
+def decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Mapping[str, Any]]:
     """Settings from the plan; a scene with a given stiffness has none."""
     return lambda run: {} if run.scene.stiffness.model == "given" else what(run[PLAN])
 
 
-_TEETH_DECIDED = _decided(
+_TEETH_DECIDED = decided(
     lambda plan: {"stiffness model": plan.stiffness.choice, "sampling": plan.resolution.sampling}
 )
 
@@ -90,7 +83,7 @@ def PLAN(run: Engine) -> Plan:
     kept="gears meshes fem",
     by_parts=True,
     of=plain_flanks,
-    settings=_decided(lambda plan: {"compliance": plan.resolution.compliance}),
+    settings=decided(lambda plan: {"compliance": plan.resolution.compliance}),
 )
 def BODIES(run: Engine) -> fem.Compliance:
     """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges.
@@ -186,7 +179,16 @@ def REVOLUTION(run: Engine) -> fem.MeshCycle:
 @stage("other cycles", "mesh cycle by the other models", TEETH, DRY_CYCLE)
 def OTHER_CYCLES(run: Engine) -> tuple[coupling.MeshCycle, ...]:
     """Mesh cycles by the models that the scene did not choose: independent pairs added, without film."""
-    return loaded_teeth(run).others(run[DRY_CYCLE].position.size)
+    return tuple(map(with_arcs, loaded_teeth(run).others(run[DRY_CYCLE].position.size)))
+
+
+C = TypeVar("C", bound=coupling.MeshCycle)
+
+
+def with_arcs(cycle: C) -> C:
+    """Cycle whose arcs are there: a contact without a solution between the positions fails here, not in its files."""
+    _ = cycle.arcs
+    return cycle
 
 
 @stage(
@@ -195,7 +197,7 @@ def OTHER_CYCLES(run: Engine) -> tuple[coupling.MeshCycle, ...]:
     "film lubricant roughness operating tolerance",
     DRY_CYCLE,
     kept="gears meshes fem ehl flankfilm",
-    settings=_decided(lambda plan: {"model": plan.film.choice, "film": plan.film_tolerance}),
+    settings=decided(lambda plan: {"model": plan.film.choice, "film": plan.film_tolerance}),
 )
 def FILM(run: Engine) -> coupling.LubricatedCycle:
     """Films and load share in agreement, and the mesh cycle with them."""
@@ -203,7 +205,8 @@ def FILM(run: Engine) -> coupling.LubricatedCycle:
     model = film_model(scene, plan.film.choice)
     oil, speed = lubricant(scene), pinion_speed(scene)
     with under_keys(scene.film, "film"):
-        return coupling.lubricate(teeth, dry, speed, oil, plan.resolution, model)
+        found = coupling.lubricate(teeth, dry, speed, oil, plan.resolution, model)
+    return with_arcs(found)
 
 
 @stage(
@@ -212,7 +215,7 @@ def FILM(run: Engine) -> coupling.LubricatedCycle:
     "",
     DRY_CYCLE,
     FILM,
-    settings=_decided(lambda plan: {"model": plan.film.choice}),
+    settings=decided(lambda plan: {"model": plan.film.choice}),
 )
 def MESH(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness that the motion uses: with the film where there is one."""
@@ -252,96 +255,3 @@ def loaded_contact(run: Engine) -> fem.MeshCycle:
     contact = run[MESH].contact
     assert contact is not None
     return contact
-
-
-@stage(
-    "fourier",
-    "Fourier stiffness",
-    "stiffness dynamics",
-    MESH,
-    settings=_decided(lambda plan: {"series": plan.series}),
-)
-def FOURIER(run: Engine) -> coupling.MeshSeries:
-    """Series of the mesh stiffness, or the given one."""
-    scene, section = run.scene, run.scene.dynamics
-    if scene.stiffness.model == "given":
-        return coupling.given_series(**scene.stiffness.si(*GIVEN))
-    if section is None:
-        return coupling.mesh_series(moving_mesh(run), order=1)
-    order = None if section.fourier_order == "auto" else section.fourier_order
-    share, bounds = run[PLAN].series or scene.tolerance, _frequency_range(run, section)
-    mesh = moving_mesh(run)
-    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, section.damping_ratio)
-
-
-def moving_mesh(run: Engine) -> coupling.MeshCycle:
-    """Mesh cycle that the motion uses, its deflection measured against what the scene asks for: the bodies."""
-    cycle, section = run[MESH], run.scene.dynamics
-    if cycle.contact is None:
-        return cycle
-    if section is None:
-        return cycle.against("body")
-    return cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
-
-
-def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
-    """Range of the mesh frequency over the natural one that sweep and diagram cover; None without either."""
-    asked = [ranged for ranged in (section.sweep, section.diagram) if ranged is not None]
-    if not asked or not {"sweep", "diagram"} & set(run.scene.wants):
-        return None
-    ends = [end for ranged in asked for end in ranged.frequency or ()]
-    if not section.dimensionless:
-        mean = moving_mesh(run).mean(section.stiffness)
-        extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
-        scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
-        ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
-    return min(ends), max(ends)
-
-
-@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER)
-def SCALING(run: Engine) -> coupling.PairOscillator:
-    """Oscillator of the scene at its speed, or at the start of the sweep."""
-    section, series, operating = _dynamics(run), run[FOURIER], run.scene.operating
-    ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
-    if section.dimensionless:
-        start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
-        oscillator = dynamics.GearOscillator(
-            stiffness=series.stiffness.normalised(), frequency=start, **given
-        )
-        return coupling.PairOscillator(oscillator, None, series)
-    rpm = operating.pinion_speed_rpm if operating else None
-    if rpm is None:
-        rpm = ranged.speed_rpm[0] if ranged and ranged.speed_rpm else 60.0
-    given["extra_inertia"] = section.extra_inertia_kg_m2.each
-    given["reference"] = section.stiffness_reference or "body"
-    return coupling.pair_oscillator(
-        run[PAIR], series, pinion_torque(run.scene), rpm * math.pi / 30.0, **given
-    )
-
-
-def _dynamics(run: Engine) -> DynamicsSection:
-    return required(run.scene.dynamics, "[dynamics]", "the motion")
-
-
-@stage("sweep", "sweep up and down", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm")
-def SWEEP(run: Engine) -> coupling.SpeedSweep:
-    """Sweep of the speed up and down over the scene's range."""
-    section, motion = _dynamics(run), run[SCALING]
-    asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
-    wanted = list(section.portraits_frequency)
-    if motion.scales is not None:
-        wanted += [motion.scales.frequency_from_rpm(rpm) for rpm in section.portraits_rpm]
-    values = np.linspace(*asked.ends, asked.points)
-    if asked.frequency is not None:
-        return coupling.speed_sweep(motion, frequency=values, portraits=wanted)
-    return coupling.speed_sweep(motion, values * math.pi / 30.0, portraits=wanted)
-
-
-@stage("diagram", "every branch of motions", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm gears")
-def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
-    """Every branch of motions over the scene's range, with the jumps."""
-    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
-    speed = asked.speed_rpm and (asked.speed_rpm[0] * math.pi / 30.0, asked.speed_rpm[1] * math.pi / 30.0)
-    return coupling.jump_speeds(
-        run[SCALING], speed, frequency=asked.frequency, searches=asked.searches, max_period=asked.max_period
-    )

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, is_dataclass
 from functools import reduce
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_type_hints
 
+from base import InputError, SolverError
 from flankfilm.cache import Cache
 from flankfilm.coupling.warned import distinct
 from flankfilm.scene import Scene
 from flankfilm.scene.section import Section
+from flankfilm.stages.failures import Failure, failure_of
 
 T = TypeVar("T")
 
@@ -99,7 +102,7 @@ class StageRun:
     cached : bool
         Whether the result, or all kept parts that it asked for, were read from the cache.
     warnings : tuple of str
-        What the ground floors warned of meanwhile.
+        What the ground floors warned of meanwhile; kept with the result.
     """
 
     name: str
@@ -133,6 +136,8 @@ class KeptPart:
         """Part of a name with plain inputs, from the cache or computed."""
         key = self.cache.key(name, inputs, self.packages)
         value: T | None = self.cache.get(key)
+        if not _record_of(value, self.packages):  # somebody put it there
+            value = None
         if value is None and all(self.found):
             self.on_start()
         self.found.append(value is not None)
@@ -150,14 +155,18 @@ class Engine:
     cache: Cache
     on_start: Callable[[Stage[Any]], None] = lambda stage: None
     runs: dict[str, StageRun] = field(default_factory=dict)
+    failures: dict[str, Failure] = field(default_factory=dict)
     _values: dict[str, Any] = field(default_factory=dict)
     _elsewhere: list[float] = field(default_factory=list)
     _parts: list[KeptPart] = field(default_factory=list)
 
     def __getitem__(self, stage: Stage[T]) -> T:
-        """Return the result of a stage, computed when first asked for."""
+        """Return the result of a stage, computed when first asked for; one that failed raises its error again."""
+        if (failed := self.failures.get(stage.name)) is not None:
+            raise failed.error
         if stage.name not in self._values:
-            self._values[stage.name] = self._obtain(stage)
+            with self._noting(stage.name, stage.title):
+                self._values[stage.name] = self._obtain(stage)
         found: T = self._values[stage.name]
         return found
 
@@ -171,10 +180,20 @@ class Engine:
         """Results that have been asked for so far, by the names of their stages."""
         return dict(self._values)
 
+    @contextmanager
+    def _noting(self, name: str, title: str) -> Iterator[None]:
+        """Note a part that fails, and what it failed by."""
+        try:
+            yield
+        except (InputError, SolverError) as error:
+            self.failures[name] = failure_of(name, title, error, self.failures)
+            raise
+
     def timed(self, name: str, title: str, work: Callable[[], T]) -> T:
-        """Do work that is no stage, such as writing files, and note its cost beside the stages'."""
+        """Do work that is no stage, such as writing files, and note its cost, or its failure, beside the stages'."""
         start = time.perf_counter()
-        done = work()
+        with self._noting(name, title):
+            done = work()
         self.runs[name] = StageRun(name, title, time.perf_counter() - start, cached=False)
         return done
 
@@ -184,31 +203,53 @@ class Engine:
         return self._parts[-1]
 
     def _obtain(self, stage: Stage[T]) -> T:
+        packages = packages_of(stage)
+        part = KeptPart(self.cache, packages, lambda: self.on_start(stage))
         start = time.perf_counter()
         self._elsewhere.append(0.0)
-        packages, whole_kept = packages_of(stage), bool(stage.kept) and not stage.by_parts
-        self._parts.append(KeptPart(self.cache, packages, lambda: self.on_start(stage)))
-        key = self.cache.key(stage.name, self.inputs(stage), packages) if whole_kept else ""
-        value: T | None = self.cache.get(key) if whole_kept else None
-        cached = value is not None
-        caught: list[warnings.WarningMessage] = []
-        if value is None:
-            if not stage.by_parts:
-                self.on_start(stage)
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always")
-                value = stage.compute(self)
-            if whole_kept:
-                self.cache.put(key, value)
-        found = self._parts.pop().found
-        cached = cached or (bool(found) and all(found))
-        whole = time.perf_counter() - start
-        own = whole - self._elsewhere.pop()
-        if self._elsewhere:
-            self._elsewhere[-1] += whole
-        heard = tuple(str(warning.message) for warning in distinct(caught))
+        self._parts.append(part)
+        try:
+            (value, heard), cached = self._found(stage, packages)
+        finally:  # a stage that fails leaves the clocks of the others right
+            self._parts.pop()
+            whole = time.perf_counter() - start
+            own = whole - self._elsewhere.pop()
+            if self._elsewhere:
+                self._elsewhere[-1] += whole
+        cached = cached or (bool(part.found) and all(part.found))
         self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, heard)
         return value
+
+    def _found(self, stage: Stage[T], packages: tuple[str, ...]) -> tuple[tuple[T, tuple[str, ...]], bool]:
+        """Result of a stage with what was warned of, and whether the cache held it."""
+        whole_kept = bool(stage.kept) and not stage.by_parts
+        key = self.cache.key(stage.name, self.inputs(stage), packages) if whole_kept else ""
+        kept = _believed(stage, self.cache.get(key)) if whole_kept else None
+        if kept is not None:
+            return kept, True
+        if not stage.by_parts:
+            self.on_start(stage)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            value = stage.compute(self)
+        computed = value, tuple(str(warning.message) for warning in distinct(caught))
+        if whole_kept:
+            self.cache.put(key, computed)
+        return computed, False
+
+
+def _believed(stage: Stage[T], entry: Any) -> tuple[T, tuple[str, ...]] | None:
+    """Result and warnings that the cache holds of a stage; None where somebody put something else there."""
+    if not (isinstance(entry, tuple) and len(entry) == 2 and isinstance(entry[1], tuple)):
+        return None
+    value, heard = entry
+    of_type = isinstance(value, get_type_hints(stage.compute)["return"])
+    return (value, heard) if of_type and all(isinstance(text, str) for text in heard) else None
+
+
+def _record_of(value: object, packages: tuple[str, ...]) -> bool:
+    """Whether a value is a record of one of these packages, as parts of results are."""
+    return is_dataclass(value) and type(value).__module__.partition(".")[0] in packages
 
 
 def packages_of(stage: Stage[Any]) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from flankfilm.scene import Scene
 from flankfilm.stages import catalogue as of
+from flankfilm.stages import motion
 from flankfilm.stages.engine import Stage
 
 
@@ -32,9 +33,9 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "root-stress" in wants:
         yield of.ROOT_STRESS
     if wants & {"fourier", "sweep", "diagram"}:
-        yield of.FOURIER
-    for wanted in (of.SWEEP, of.DIAGRAM):
+        yield motion.FOURIER
+    for wanted in (motion.SWEEP, motion.DIAGRAM):
         if wanted.name in wants:
-            yield from (of.SCALING, wanted)
+            yield from (motion.SCALING, wanted)
     if "vtk" in wants:
         yield of.FIELDS

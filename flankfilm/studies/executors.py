@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 from collections.abc import Callable, Iterator
@@ -88,9 +89,24 @@ def _dask(workers: int) -> Iterator[Pool]:
         raise _missing("dask", "distributed") from fault
     address = os.environ.get("DASK_SCHEDULER_ADDRESS")
     with environment(**ONE_THREAD):
-        client = Client(address) if address else Client(n_workers=workers, threads_per_worker=1)
-        with client:
-            yield Pool(client.get_executor(), lambda: len(client.nthreads()))
+        here = {"n_workers": workers, "threads_per_worker": 1, "preload": "flankfilm.children"}
+        client = Client(address) if address else Client(**here)
+        with _logging_as_before(), client:
+            try:
+                yield Pool(client.get_executor(), lambda: len(client.nthreads()))
+            except BaseException:
+                logging.disable()  # what dask makes, with tracebacks, of rows that nobody waits for any more
+                raise
+
+
+@contextmanager
+def _logging_as_before() -> Iterator[None]:
+    """Take back, at the end, that nothing is logged."""
+    before = logging.root.manager.disable
+    try:
+        yield
+    finally:
+        logging.disable(before)
 
 
 def _mpi() -> Iterator[Pool]:

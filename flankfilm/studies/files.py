@@ -12,9 +12,9 @@ import numpy as np
 from base.units import unit_of
 from flankfilm.output.files import provenance, write_netcdf
 from flankfilm.studies.outputs import OUTPUTS
-from flankfilm.studies.plan import Value
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
+from flankfilm.studies.study_file import Value
 
 if TYPE_CHECKING:
     import xarray as xr

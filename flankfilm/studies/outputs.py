@@ -5,87 +5,35 @@ An output is a figure of a stage's result, or its least, largest or mean value; 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import product
 from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
 
+import gears
 from base import Figure
 from base.results import figures
-from base.units import factor
-from flankfilm.build import pinion_speed
+from flankfilm.build import pinion_speed, pinion_torque
 from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.lubricated import LubricatedCycle
 from flankfilm.coupling.single_pairs import CLOSED_FORMS
 from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE
-from flankfilm.output.tables import spelt
 from flankfilm.output.variables import sentence
 from flankfilm.stages.catalogue import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
-from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.engine import Engine
+from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
+from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
 from gears import GearPair, WarmPair
-
-
-@dataclass(frozen=True)
-class Output:
-    """One number of a row.
-
-    Attributes
-    ----------
-    unit, meaning : str
-    wants : tuple of str
-        The scene's wants that stand for it: they decide which sections a scene must have.
-    value : callable
-        Gives the number from a row's engine.
-    """
-
-    unit: str
-    meaning: str
-    wants: tuple[str, ...]
-    value: Callable[[Engine], float]
-
-
-Named = tuple[str, Output]
-Take = Callable[[Any], Any]
-
-
-def _output(name: str, figure: Figure, want: str, value: Callable[[Engine], Any], said: str = "{}") -> Named:
-    """An output by its name, from a function that gives its value in SI; None stands for nan."""
-
-    def of(engine: Engine) -> float:
-        found = value(engine)
-        return float("nan") if found is None else float(found) / factor(figure.read_in)
-
-    meaning = sentence(figure.meaning)
-    if said != "{}":
-        meaning = said.format(re.split("[:,;]", meaning, maxsplit=1)[0])
-    return spelt(name, figure.read_in), Output(figure.read_in, meaning, (want,), of)
-
-
-def _from(stage: Callable[[Engine], Any], kind: type, want: str) -> Callable[..., Named]:
-    """Maker of outputs from the figures of a stage's result."""
-
-    def make(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
-        about = figures(kind)[figure]
-
-        def value(engine: Engine) -> Any:
-            found = getattr(stage(engine), figure)
-            return None if found is None else take(found)
-
-        return _output(name or figure, about, want, value, said)
-
-    return make
 
 
 def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
     """Stiffness of the mesh per face width, with the film where the scene has one."""
     about = Figure("N/m", figures(MeshCycle)[figure].meaning, shown=PER_FACE)
-    return _output(
+    return output_of(
         name or figure,
         about,
         "stiffness",
@@ -94,11 +42,11 @@ def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}")
     )
 
 
-_pair = _from(lambda engine: engine[PAIR], GearPair, "geometry")
-_heat = _from(lambda engine: engine[HEAT], WarmPair, "geometry")
-_mesh = _from(lambda engine: engine[MESH], MeshCycle, "stiffness")
-_film = _from(lambda engine: engine[FILM].film, FilmAlongPath, "film")
-_lubricated = _from(lambda engine: engine[FILM], LubricatedCycle, "film")
+_pair = outputs_from(lambda engine: engine[PAIR], GearPair, "geometry")
+_heat = outputs_from(lambda engine: engine[HEAT], WarmPair, "geometry")
+_mesh = outputs_from(lambda engine: engine[MESH], MeshCycle, "stiffness")
+_film = outputs_from(lambda engine: engine[FILM].film, FilmAlongPath, "film")
+_lubricated = outputs_from(lambda engine: engine[FILM], LubricatedCycle, "film")
 
 
 def _ends(engine: Engine) -> Any:
@@ -128,7 +76,7 @@ def _at_points() -> Iterator[Named]:
     for name, figure in (("least_film", "minimum_thickness"), ("hertz_pressure", "hertz_pressure")):
         about = figures(FilmAlongPath)[figure]
         for point in "ABCDE":
-            yield _output(f"{name}_at_{point}", about, "film", _at_point(point, figure), f"{{}} at {point}")
+            yield output_of(f"{name}_at_{point}", about, "film", _at_point(point, figure), f"{{}} at {point}")
 
 
 def _through(name: str, figure: Figure, value: Take) -> Named:
@@ -138,7 +86,7 @@ def _through(name: str, figure: Figure, value: Take) -> Named:
         film = engine[FILM].film.profiles.get("C")
         return None if film is None else value(film)
 
-    return _output(f"{name}_at_C", figure, "film", of)
+    return output_of(f"{name}_at_C", figure, "film", of)
 
 
 def _of_spike(value: Callable[[Any, Any], float]) -> Take:
@@ -151,17 +99,13 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
     return of
 
 
-def _of(stage: Stage[Any], value: Take) -> Callable[[Engine], Any]:
-    return lambda engine: value(engine[stage])
-
-
 def _roots() -> Iterator[Named]:
     """Greatest stresses along the fillets."""
     for gear, kind in product(("pinion", "wheel"), ("tension", "compression")):
         meaning = f"greatest {kind} along the fillets of the {gear}"
         about = Figure("Pa", meaning, shown="MPa")
         stress = attrgetter(f"stress.{gear}.greatest_{kind}.stress_Pa")
-        yield _output(f"root_{kind}_{gear}", about, "root-stress", _of(ROOT_STRESS, stress))
+        yield output_of(f"root_{kind}_{gear}", about, "root-stress", in_result(ROOT_STRESS, stress))
 
 
 def _differences() -> Iterator[Named]:
@@ -170,29 +114,29 @@ def _differences() -> Iterator[Named]:
     ends = {"": "held to the path", "_like_for_like": "without hub wind-up and coupling"}
     for (end, reference), (name, model) in product(ends.items(), forms.items()):
         meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
-        value = _of(VERIFICATION, methodcaller("difference", model, reference))
-        yield _output(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value)
+        value = in_result(VERIFICATION, methodcaller("difference", model, reference))
+        yield output_of(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value)
 
 
 def _harmonic(order: int) -> Named:
     about = Figure("1", f"amplitude of harmonic {order} of the secant stiffness over its mean")
-    return _output(
+    return output_of(
         f"harmonic_{order}",
         about,
         "stiffness",
-        _of(MESH, lambda cycle: cycle.secant_stiffness_harmonics[order - 1]),
+        in_result(MESH, lambda cycle: cycle.secant_stiffness_harmonics[order - 1]),
     )
 
 
 def _tangent_harmonic(order: int) -> Named:
     about = Figure("1", f"amplitude of harmonic {order} of the tangent stiffness over its mean")
-    value = _of(MESH, lambda cycle: cycle.stiffness_harmonics[order - 1])
-    return _output(f"tangent_harmonic_{order}", about, "stiffness", value)
+    value = in_result(MESH, lambda cycle: cycle.stiffness_harmonics[order - 1])
+    return output_of(f"tangent_harmonic_{order}", about, "stiffness", value)
 
 
 def _error_of(figure: str, name: str) -> Named:
     about = Figure("1", f"estimated relative error: {sentence(figures(MeshCycle)[figure].meaning)}")
-    return _output(name, about, "stiffness", _of(MESH, lambda cycle: cycle.errors[figure]))
+    return output_of(name, about, "stiffness", in_result(MESH, lambda cycle: cycle.errors[figure]))
 
 
 def _harmonics_error(curve: str, name: str) -> Named:
@@ -204,7 +148,7 @@ def _harmonics_error(curve: str, name: str) -> Named:
         errors = getattr(cycle, f"{curve}_harmonics_error")
         return None if errors is None else np.max(errors[:5])
 
-    return _output(f"{name}_harmonics_error", about, "stiffness", _of(MESH, largest))
+    return output_of(f"{name}_harmonics_error", about, "stiffness", in_result(MESH, largest))
 
 
 OUTPUTS: Mapping[str, Output] = dict(
@@ -214,13 +158,13 @@ OUTPUTS: Mapping[str, Output] = dict(
         _heat("base_pitch_difference"),
         _pair("working_centre_distance", name="centre_distance"),
         _pair("working_pressure_angle"),
-        _output(
+        output_of(
             "specific_sliding",
             Figure("1", "largest specific sliding of both flanks, A to E"),
             "geometry",
             lambda engine: max(np.abs(part).max() for part in _ends(engine).specific_sliding),
         ),
-        _output(
+        output_of(
             "sliding_speed",
             SLIDING,
             "geometry",
@@ -240,16 +184,24 @@ OUTPUTS: Mapping[str, Output] = dict(
         _harmonics_error("secant_stiffness", "secant"),
         _harmonics_error("stiffness", "tangent"),
         *_roots(),
-        _output(
+        output_of(
+            "iso_contact_stress",
+            Figure("Pa", "nominal contact stress sigma_H0 by ISO 6336-2", shown="MPa"),
+            "closed-forms",
+            lambda engine: gears.closed_form.iso6336_2(
+                engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
+            ).stresses[0],
+        ),
+        output_of(
             "efficiency",
             Figure("1", "power out over power in"),
             "stiffness",
-            _of(MESH, lambda cycle: getattr(cycle.contact, "efficiency", None)),
+            in_result(MESH, lambda cycle: getattr(cycle.contact, "efficiency", None)),
             "{}, sliding of the dry contacts alone",
         ),
         _film("least_film"),
         _film("central_thickness", np.min, "least_central_film", "least {} along the path"),
-        _output(
+        output_of(
             "film_at_C",
             figures(FilmAlongPath)["central_thickness"],
             "film",
@@ -293,13 +245,14 @@ OUTPUTS: Mapping[str, Output] = dict(
         _film("least_film_ratio", name="film_ratio", said="{}; nan if smooth"),
         _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
         _film("starvation", np.min, said="least {} along the path; nan if flooded"),
-        _output(
+        output_of(
             "film_error",
             Figure("1", "largest estimated relative error of the films; nan where unknown"),
             "film",
-            _of(FILM, attrgetter("film.error")),
+            in_result(FILM, attrgetter("film.error")),
         ),
         *_differences(),
+        *MOTION_OUTPUTS,
     )
 )
 """Outputs by the name that a study file gives them; the unit is part of it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import traceback
 import warnings
@@ -38,17 +39,22 @@ class RowResult:
     ----------
     index : int
     values : tuple of float
-        Outputs in the order asked for; NaN throughout where the row failed.
+        Outputs in the order asked for; NaN where they failed, throughout where the row did.
     seconds : float
         Cost [s].
     fault : str
-        Why it failed; empty where it did not.
+        Why it failed, or the outputs that did, each named where others are there; empty where none did.
     """
 
     index: int
     values: tuple[float, ...]
     seconds: float
     fault: str = ""
+
+    @property
+    def lost(self) -> bool:
+        """Whether it failed with all its outputs."""
+        return bool(self.fault) and all(map(math.isnan, self.values))
 
     @property
     def worth_another_try(self) -> bool:
@@ -66,7 +72,7 @@ def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
 
 
 def compute_row(row: Row) -> RowResult:
-    """Compute the outputs of a row; whatever goes wrong becomes its fault."""
+    """Compute the outputs of a row; whatever goes wrong becomes its fault, and leaves the other outputs."""
     from base import InputError, SolverError
     from flankfilm.cache import keep_compiled_code, results_cache
 
@@ -80,7 +86,13 @@ def compute_row(row: Row) -> RowResult:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a scene's own run shows them
             engine = Engine(validated(dict(row.scene)), results_cache(row.use_cache))
-            values = tuple(OUTPUTS[name].value(engine) for name in row.outputs)
+            values, faults = [], {}
+            for name in row.outputs:
+                try:
+                    values.append(OUTPUTS[name].value(engine))
+                except (InputError, SolverError) as fault:
+                    values.append(math.nan)
+                    faults[name] = str(fault)
     except (InputError, SolverError) as fault:
         return failed(row, str(fault), time.perf_counter() - start)
     except (MemoryError, OSError) as fault:
@@ -90,4 +102,14 @@ def compute_row(row: Row) -> RowResult:
         place = traceback.extract_tb(fault.__traceback__)[-1]
         where = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"
         return failed(row, where, time.perf_counter() - start)
-    return RowResult(row.index, values, time.perf_counter() - start)
+    return RowResult(row.index, tuple(values), time.perf_counter() - start, _joined(faults, len(values)))
+
+
+def _joined(faults: Mapping[str, str], outputs: int) -> str:
+    """Why outputs failed, each reason once, with their names where others did not."""
+    names: dict[str, list[str]] = {}
+    for name, fault in faults.items():
+        names.setdefault(" ".join(fault.split()), []).append(name)
+    if len(faults) == outputs and len(names) == 1:
+        return next(iter(names))
+    return "; ".join(f"{', '.join(failed)}: {fault}" for fault, failed in names.items())

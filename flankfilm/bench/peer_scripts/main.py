@@ -1,4 +1,4 @@
-"""Runs one peer's work in the peer's environment, with nothing of ours: ``python main.py PEER``.
+"""Runs one peer's work in the peer's environment, with nothing of ours: ``python main.py PEER PARENT``.
 
 The file PEER.py beside this one imports the program and holds
 
@@ -9,7 +9,10 @@ The file PEER.py beside this one imports the program and holds
 The work is read as JSON from standard input; what was found is printed as JSON.
 """
 
+import ctypes
 import json
+import os
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -22,6 +25,14 @@ def timed(call: Callable[[], Any]) -> tuple[Any, float]:
     began = time.process_time()
     result = call()
     return result, time.process_time() - began
+
+
+def end_with(parent: int) -> None:
+    """End this process when its parent has died, which is what the 1 stands for; on Linux alone."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+        if os.getppid() != parent:
+            sys.exit("its parent has ended")
 
 
 def main(name: str) -> None:
@@ -41,4 +52,5 @@ def main(name: str) -> None:
 
 
 if __name__ == "__main__":
+    end_with(int(sys.argv[2]))
     main(sys.argv[1])

@@ -1,0 +1,72 @@
+"""Sections of the report about the geometry of the pair and its growth by heat; the geometry on the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from base.results import quantities
+from flankfilm.figures.reading import read, read_figure, travel
+from flankfilm.output.geometry import Row, geometry_rows
+from flankfilm.report.page import Headline, Part, Table, pictures
+from flankfilm.report.text import number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from gears import GearPair, WarmPair
+
+DIGITS = 7
+"""Of lengths: a tenth of a micrometre on a gear of a metre."""
+
+HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle", "backlash")
+"""Figures of the pair for the head of a page without any others."""
+
+
+def headlines(pair: GearPair) -> list[Headline]:
+    """Numbers for the page's head."""
+    found = (read_figure(pair, name) for name in HEADLINES)
+    note = "closed form, exact to rounding"
+    return [
+        Headline(one.meaning, number(float(one.values), 6), note, "" if one.unit == "-" else one.unit)
+        for one in found
+    ]
+
+
+def geometry(pair: GearPair, results: xr.Dataset) -> Part:
+    """Geometry with drawing and tables."""
+    rows = list(geometry_rows(results))
+    undercut = ("yes" if tooth.undercut else "no" for tooth in pair.teeth_profiles)
+    cells = [(read(results, row.name).label, *_cells(row)) for row in rows]
+    path = ("path of contact A to E [mm]", number(float(travel(results, "path_point_rho1")[-1]), DIGITS))
+    common = (*(row for row in cells if len(row) == 2), path)
+    both = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
+    drawn = pictures(results, "gears_in_mesh", "kinematics")
+    tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), both)
+    note = (
+        "Thicknesses, span and size over pins are of teeth thinned as they are; spans and pins touch near d + 2 x m, "
+        "on the involute below any tip relief."
+    )
+    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,))
+
+
+def printed(results: xr.Dataset) -> list[str]:
+    """Lines for the terminal: figures of the pair, then those of pinion and wheel beside each other."""
+    rows = [(" ".join(read(results, row.name).label.split()), _cells(row)) for row in geometry_rows(results)]
+    wide = max((len(name) for name, _ in rows), default=0)
+    return [f"{name:<{wide}}" + "".join(f"{cell:>12}" for cell in cells) for name, cells in rows]
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    return tuple(number(value, DIGITS) for value in row.values)
+
+
+def heat(warm: WarmPair) -> Part:
+    """Cold and warm backlash, pressure angle and base pitches."""
+    names = [one.name for one in quantities(warm).values()]
+    found = [read_figure(warm, name) for name in names]
+    rows = tuple((figure.label, number(float(figure.values), 6)) for figure in found)
+    note = (
+        "All other figures are of the gears grown to their temperatures. Unequal base pitches act as a gap that grows "
+        "along the path of contact, in the loaded contact by finite elements of coupled pairs."
+    )
+    return Part("heat", "Growth by heat", notes=(note,), tables=(Table(("pair", ""), rows),))

@@ -1,0 +1,182 @@
+"""The stages of the motion, from the mesh cycle's stiffness to sweeps and diagrams."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+import dynamics
+from flankfilm import coupling
+from flankfilm.build import pinion_torque
+from flankfilm.scene.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
+from flankfilm.scene.operating import GIVEN
+from flankfilm.scene.section import required
+from flankfilm.slow_motion import followed_speed
+from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
+from flankfilm.stages.engine import Engine, stage
+
+
+@stage(
+    "curve series",
+    "Fourier stiffness by its curve",
+    "stiffness dynamics",
+    MESH,
+    settings=decided(lambda plan: {"series": plan.series}),
+)
+def CURVE_SERIES(run: Engine) -> coupling.MeshSeries:
+    """Series of the mesh stiffness whose order is that of the curve and the motion."""
+    return _series(run)
+
+
+def _series(run: Engine) -> coupling.MeshSeries:
+    """Series of the mesh stiffness, or the given one; an order to be found is that of the curve and the motion."""
+    scene, section = run.scene, run.scene.dynamics
+    if scene.stiffness.model == "given":
+        return coupling.given_series(**scene.stiffness.si(*GIVEN))
+    if section is None:
+        return coupling.mesh_series(moving_mesh(run), order=1)
+    order = None if section.fourier_order == "auto" else section.fourier_order
+    share, bounds = run[PLAN].series or scene.tolerance, _frequency_range(run, section)
+    mesh = moving_mesh(run)
+    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, section.damping_ratio)
+
+
+@stage(
+    "branches",
+    "every branch of motions, with the harmonics that its jumps need",
+    "operating dynamics pair material heat wants",
+    CURVE_SERIES,
+    kept="dynamics flankfilm gears",
+    settings=lambda run: {"tolerance": run.scene.tolerance} if _by_jumps(run) else {},
+)
+def BRANCHES(run: Engine) -> coupling.OrderedJumps:
+    """Branches with the least order of the series that the jump speeds allow, for an order to be found."""
+    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
+    return coupling.jumps_to_tolerance(
+        lambda series: _oscillator(run, series), run[CURVE_SERIES], run.scene.tolerance, **_ranged(asked)
+    )
+
+
+@stage(
+    "fourier",
+    "Fourier stiffness",
+    "stiffness dynamics",
+    MESH,
+    CURVE_SERIES,
+    BRANCHES,
+    settings=decided(lambda plan: {"series": plan.series}),
+)
+def FOURIER(run: Engine) -> coupling.MeshSeries:
+    """Series of the mesh stiffness, or the given one; with a wanted diagram of the order that its jumps need."""
+    if not _by_jumps(run):
+        return _series(run)  # no stage of its own, which a run would list beside this one
+    series, found = run[CURVE_SERIES], run[BRANCHES]
+    if found.order == series.order or series.cycle is None:
+        return series
+    more = coupling.mesh_series(series.cycle, series.kind, found.order)
+    return replace(more, left_out=series.left_out, share=series.share, tried=found.tried)
+
+
+def _by_jumps(run: Engine) -> bool:
+    """Whether an order is to be found for a diagram."""
+    scene, section = run.scene, run.scene.dynamics
+    if scene.stiffness.model == "given" or section is None or section.diagram is None:
+        return False
+    return section.fourier_order == "auto" and "diagram" in scene.wants
+
+
+def moving_mesh(run: Engine) -> coupling.MeshCycle:
+    """Mesh cycle that the motion uses, its deflection measured against what the scene asks for: the bodies."""
+    cycle, section = run[MESH], run.scene.dynamics
+    if cycle.contact is None:
+        return cycle
+    if section is None:
+        return cycle.against("body")
+    return cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
+
+
+def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
+    """Range of the mesh frequency over the natural one that sweep and diagram cover; None without either."""
+    asked = [ranged for ranged in (section.sweep, section.diagram) if ranged is not None]
+    if not asked or not {"sweep", "diagram"} & set(run.scene.wants):
+        return None
+    ends = [end for ranged in asked for end in ranged.frequency or ()]
+    if not section.dimensionless:
+        mean = moving_mesh(run).mean(section.stiffness)
+        extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
+        scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
+        ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
+    return min(ends), max(ends)
+
+
+@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER)
+def SCALING(run: Engine) -> coupling.PairOscillator:
+    """Oscillator of the scene at its speed, or at the start of the sweep."""
+    return _oscillator(run, run[FOURIER])
+
+
+def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscillator:
+    """Oscillator of the scene with a series of its stiffness."""
+    section = _dynamics(run)
+    ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
+    if section.dimensionless:
+        start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
+        oscillator = dynamics.GearOscillator(
+            stiffness=series.stiffness.normalised(), frequency=start, **given
+        )
+        return coupling.PairOscillator(oscillator, None, series)
+    rpm = followed_speed(run.scene, run[PAIR], series)
+    given["extra_inertia"] = section.extra_inertia_kg_m2.each
+    given["reference"] = section.stiffness_reference or "body"
+    return coupling.pair_oscillator(
+        run[PAIR], series, pinion_torque(run.scene), rpm * math.pi / 30.0, **given
+    )
+
+
+def _dynamics(run: Engine) -> DynamicsSection:
+    return required(run.scene.dynamics, "[dynamics]", "the motion")
+
+
+@stage("sweep", "sweep up and down", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm")
+def SWEEP(run: Engine) -> coupling.SpeedSweep:
+    """Sweep of the speed up and down over the scene's range."""
+    section, motion = _dynamics(run), run[SCALING]
+    asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
+    wanted = list(section.portraits_frequency)
+    if motion.scales is not None:
+        wanted += [motion.scales.frequency_from_rpm(rpm) for rpm in section.portraits_rpm]
+    values = np.linspace(*asked.ends, asked.points)
+    if asked.frequency is not None:
+        return coupling.speed_sweep(motion, frequency=values, portraits=wanted)
+    return coupling.speed_sweep(motion, values * math.pi / 30.0, portraits=wanted)
+
+
+@stage(
+    "diagram",
+    "every branch of motions",
+    "dynamics",
+    FOURIER,
+    SCALING,
+    BRANCHES,
+    kept="dynamics flankfilm gears",
+)
+def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
+    """Every branch of motions over the scene's range, with the jumps."""
+    if _by_jumps(run):
+        return run[BRANCHES].diagram
+    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
+    return coupling.jump_speeds(run[SCALING], **_ranged(asked))
+
+
+def _ranged(asked: DiagramSection) -> dict[str, Any]:
+    """Range of a diagram with its searches, as arguments."""
+    speed = asked.speed_rpm and (asked.speed_rpm[0] * math.pi / 30.0, asked.speed_rpm[1] * math.pi / 30.0)
+    return {
+        "speed": speed,
+        "frequency": asked.frequency,
+        "searches": asked.searches,
+        "max_period": asked.max_period,
+    }

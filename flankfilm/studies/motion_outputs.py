@@ -1,0 +1,151 @@
+"""What a study can ask of a row's motion: natural frequency, loss of contact, forces, jumps, each with its error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import product
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from base import Array, Figure
+from flankfilm.coupling.oscillator import PairOscillator
+from flankfilm.coupling.series import MEANS
+from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
+from flankfilm.studies.output import Named, in_result, output_of, outputs_from
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.jumps import SpeedDiagram
+    from flankfilm.coupling.motion import SpeedSweep
+
+_oscillator = outputs_from(lambda engine: engine[SCALING], PairOscillator, "fourier")
+
+
+def _resonance(motion: PairOscillator) -> float | None:
+    """Pinion speed at which the mesh frequency is the natural one."""
+    return None if motion.scales is None else motion.scales.speed(1.0)
+
+
+def _half_mean_error(motion: PairOscillator) -> float | None:
+    """The natural frequency goes with the root of the mean stiffness."""
+    cycle = motion.series.cycle
+    found = None if cycle is None else cycle.errors[MEANS[motion.series.kind]]
+    return None if found is None else 0.5 * found
+
+
+def _greatest(values: Mapping[str, Array] | None) -> float | None:
+    """Greatest of both directions of a sweep, of the motions that are known; None without any."""
+    known = [one[~np.isnan(one)] for one in (values or {}).values()]
+    joined = np.concatenate(known) if known else np.zeros(0)
+    return float(joined.max()) if joined.size else None
+
+
+def _swept(name: str, figure: Figure, value: Callable[[SpeedSweep], Any]) -> Named:
+    return output_of(name, figure, "sweep", in_result(SWEEP, value))
+
+
+def _force_error(found: SpeedSweep) -> float | None:
+    """Sampling, and what more harmonics change at the values that were looked at; None for a given series."""
+    truncation = _greatest(found.force_change)
+    return None if truncation is None else truncation + found.sampling_error
+
+
+def _loss_speed(found: SpeedSweep) -> float | None:
+    """Least pinion speed at which contact is lost, by the sweep's own speed over frequency."""
+    least = found.least_grazing
+    if least is None or found.speed is None:
+        return None
+    return float(found.speed[0] / found.frequency[0]) * least
+
+
+def _first(rising: bool, curve: str) -> Callable[[SpeedDiagram], float | None]:
+    """Figure of the first jump that a rising, or a falling, speed comes to; None where no motion ends."""
+
+    def of(found: SpeedDiagram) -> float | None:
+        values = getattr(found, curve)
+        met = [at for at, jump in enumerate(found.jumps) if jump.rising is rising]
+        return None if values is None or not met else float(values[met[0] if rising else met[-1]])
+
+    return of
+
+
+def _jumps() -> list[Named]:
+    ways = {"rising": ("least", "rises"), "falling": ("greatest", "falls")}
+    shown = {
+        "jump_speed": (
+            "rad/s",
+            "rpm",
+            "{} pinion speed at which a motion ends as the speed {}; nan without one",
+        ),
+        "jump_frequency": ("1", "", "{} frequency at which a motion ends as it {}; nan without one"),
+        "jump_error": ("1", "", "estimated relative error of the {} speed at which a motion ends as it {}"),
+    }
+    return [
+        output_of(
+            f"{curve}_{way}",
+            Figure(unit, meaning.format(*words), shown=shown_in),
+            "diagram",
+            in_result(DIAGRAM, _first(way == "rising", curve)),
+        )
+        for (way, words), (curve, (unit, shown_in, meaning)) in product(ways.items(), shown.items())
+    ]
+
+
+MOTION_OUTPUTS: tuple[Named, ...] = (
+    _oscillator("natural_frequency"),
+    output_of(
+        "resonance_speed",
+        Figure("rad/s", "pinion speed at which the mesh frequency is the natural one", shown="rpm"),
+        "fourier",
+        in_result(SCALING, _resonance),
+    ),
+    output_of(
+        "natural_frequency_error",
+        Figure(
+            "1", "estimated relative error of natural frequency and resonance speed, by the mean stiffness"
+        ),
+        "fourier",
+        in_result(SCALING, _half_mean_error),
+    ),
+    _swept(
+        "greatest_force_factor",
+        Figure("1", "greatest force over the mean force, of all motions of the sweep"),
+        lambda found: _greatest(found.force_factor),
+    ),
+    _swept(
+        "greatest_force_factor_error",
+        Figure("1", "its estimated relative error by samples and the series' order; nan for a given series"),
+        _force_error,
+    ),
+    _swept(
+        "separated",
+        Figure("1", "largest part of the time without contact, of all motions of the sweep", shown="%"),
+        lambda found: _greatest(found.separated),
+    ),
+    _swept(
+        "contact_loss_speed",
+        Figure("rad/s", "least pinion speed at which contact is lost; nan where it never is", shown="rpm"),
+        _loss_speed,
+    ),
+    _swept(
+        "contact_loss_error",
+        Figure("1", "estimated relative error of that speed; nan where unknown"),
+        attrgetter("least_grazing_error"),
+    ),
+    *_jumps(),
+    output_of(
+        "greatest_K_v",
+        Figure("1", "greatest dynamic factor K_v by ISO 6336-1, method B, over the diagram's range"),
+        "diagram",
+        in_result(
+            DIAGRAM,
+            lambda found: (
+                np.nanmax(found.force_factor_iso6336)
+                if np.isfinite(found.force_factor_iso6336).any()
+                else None
+            ),
+        ),
+    ),
+)
+"""Outputs of the motion, with the names that a study file gives them."""
