@@ -92,6 +92,7 @@ RESULTS = {
     "potential energy": lambda: gears.closed_form.potential_energy(PAIR, PAIR.path_of_contact(n=99)),
     "Weber-Banaschek": lambda: gears.closed_form.weber_banaschek(PAIR, PAIR.path_of_contact(n=99), FORCE),
     "ISO 6336-1": lambda: gears.closed_form.iso6336(PAIR, FORCE),
+    "ISO 6336-2": lambda: gears.closed_form.iso6336_2(PAIR, FORCE),
     "ISO 6336-3": lambda: gears.closed_form.iso6336_3(PAIR, FORCE),
     "oil": lambda: OIL,
     "film": film,

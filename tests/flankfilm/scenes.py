@@ -21,6 +21,20 @@ pairs = "independent"
 """
 """Nothing that numba compiles, which would take most of the time."""
 
+CLOSED_FORMS_WITH_FILM = (
+    ISHIKAWA.replace("[WANTS]", '["geometry", "stiffness", "film", "fourier"]').replace(
+        "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 2000"
+    )
+    + """
+[lubricant]
+viscosity_Pa_s = 0.075
+pressure_viscosity_per_GPa = 19.6
+[film]
+model = "dowson"
+"""
+)
+"""Closed forms with a film by formula, which no solver takes part in."""
+
 ARTICLE = """
 [pair]
 module_mm = 2.0

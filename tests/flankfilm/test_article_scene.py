@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tests.flankfilm.explained import unexplained
 from tests.flankfilm.program import EXAMPLES, flankfilm
 
 pytestmark = pytest.mark.xdist_group("article")
@@ -27,6 +28,20 @@ def folder(tmp_path_factory):
 def results(folder):
     with xr.open_dataset(folder / "first" / "results.nc", engine="h5netcdf") as dataset:
         yield dataset.load()
+
+
+def test_every_figure_has_an_error_or_says_why_not(results):
+    assert not unexplained(results)
+
+
+def test_a_figure_has_its_own_error_and_not_another_ones(results):
+    mean = results.fourier_mean.attrs["error"]
+    # of the same meshes and films, but against the bodies instead of the bores
+    assert mean == pytest.approx(results.lubricated_mean_secant_stiffness.attrs["error"], rel=0.3)
+    assert mean < 0.5 * results.fourier_remainder  # which is what the series leaves out of the curve
+    assert results.fourier_amplitude.attrs["error_variable"] == "fourier_harmonic_error"
+    assert results.reference_iso_mesh_stiffness.attrs["error_note"].startswith("unknown")
+    assert results.dry_mean_stiffness.attrs["converged"] == 1
 
 
 def test_films_are_in_series_with_the_teeth_before_load_sharing(results):
@@ -87,10 +102,13 @@ def test_fields_open_in_vtk_with_sensible_names(folder):
     assert 2e8 < float(done.stdout.split()[-1]) < 2e9
 
 
+@pytest.mark.slow
 def test_a_second_run_takes_the_stages_from_the_cache_and_gives_the_same_numbers(folder, results):
     cache = str(folder / "cache")
     done = flankfilm("run", EXAMPLES / "article.toml", "--out", folder / "second", FLANKFILM_CACHE=cache)
-    assert done.stderr == ""
+    announced = [line.split("s  ", 1)[1] for line in done.stderr.splitlines()]
+    assert "oil film in series with the teeth" not in announced
+    assert announced[-1] == "writing the report"
     assert "kept from an earlier run" in (folder / "second" / "report.html").read_text(encoding="utf-8")
     with xr.open_dataset(folder / "second" / "results.nc", engine="h5netcdf") as again:
         xr.testing.assert_identical(again.load(), results)

@@ -202,7 +202,7 @@ def interpreter(folder: Path, body: str) -> Path:
 )
 def test_peers_that_are_missing_or_fail_are_told_by_name(tmp_path, body: str, reason: str):
     case = second_order(peers=(PeerWork("ross_stiffness", {"n": 5}, "integral"),))
-    found = ask(interpreter(tmp_path, body), case, 1, longest=0.5)
+    found = ask(interpreter(tmp_path, body), case, 1, longest=0.5 if "sleep" in body else 60.0)
     assert [(row.peer, row.failure) for row in found] == [("ross_stiffness", reason)]
     assert remarks(replace(bench_of(case), peers=tuple(found))) == [f"ross_stiffness: {reason}"]
 
@@ -215,6 +215,7 @@ def test_a_peer_gets_the_work_and_its_values_are_compared(tmp_path):
     assert found.error == pytest.approx(3.0 / (math.e - 1.0) - 1.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_script_for_scipy_agrees_with_the_exact_flow():
     flow = next(case for case in SOLVERS["motion"](True) if case.key == "motion_flow")
     rows = ask(Path(sys.executable), flow, 1)
@@ -239,11 +240,12 @@ def test_solvers_whose_work_no_other_program_knows_are_told(tmp_path):
         bench(tmp_path / "new", ["gears"], against=sys.executable)
 
 
+@pytest.mark.slow
 def test_the_command_measures_and_writes(tmp_path):
     done = flankfilm(
         "bench", "--quick", "--only", "gears", "mesh", "--repeat", "1", "--out", "out", cwd=tmp_path
     )
-    assert done.stderr == ""
+    assert "preparing gears" in done.stderr
     assert "Closed forms" in done.stdout
     found = json.loads((tmp_path / "out" / "bench.json").read_text())
     assert [case["solver"] for case in found["cases"]] == ["gears", "mesh"]
@@ -266,6 +268,7 @@ def test_faults_of_the_command_give_status_2_and_no_traceback(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_curved_sides_and_higher_orders_are_nearer_to_the_finest_energy():
     rows = measure("elements", elements(True), repeat=1).rows
     finer = {row.series: row.error for row in rows if row.level == "refined 1 times"}
@@ -281,6 +284,7 @@ def test_steps_of_a_contact_with_exponent_1_agree_with_the_exact_flow():
     assert true_error(found[1], exact) < 1e-12 < true_error(found[0], exact) < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("build", [work_geometry, work_contact, work_film])
 def test_works_whose_time_alone_counts_have_rows_without_errors(build):
     found = measure("work", build(), repeat=1)

@@ -111,6 +111,22 @@ def test_only_records_of_ours_are_made(module, name):
         read(len(head).to_bytes(8, "little") + head, PACKAGES)
 
 
+@pytest.mark.parametrize(
+    ("dtype", "shape"),
+    [
+        *(("<f8", shape) for shape in ([10**30], [0, 10**30], [-1], [2**63])),
+        *(
+            (dtype, [0])
+            for dtype in ("O", "|O8", "(f8", "f8,(1", "V8", "", 8, None, "<U99999999999", "<f8, <f8")
+        ),
+    ],
+)
+def test_an_array_of_no_possible_shape_or_type_is_refused(dtype, shape):
+    head = json.dumps({"root": [0], "nodes": [["array", dtype, shape, "C", True, 0]]}).encode()
+    with pytest.raises(NotPlainDataError):
+        read(len(head).to_bytes(8, "little") + head, ())
+
+
 PLAIN = st.recursive(
     st.none()
     | st.booleans()
@@ -175,6 +191,12 @@ def test_records_arrays_and_shared_parts_come_back_as_they_were(article_pair):
         written(article_pair, ("ehl",))
     with pytest.raises(NotPlainDataError, match="no data"):
         written(np.array([object()]), PACKAGES)
+
+
+def test_a_record_without_fields_comes_back():
+    from ehl.rheology import DowsonHigginson
+
+    assert read(written({"law": DowsonHigginson()}, PACKAGES), PACKAGES) == {"law": DowsonHigginson()}
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of folders")

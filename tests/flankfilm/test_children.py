@@ -11,8 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from flankfilm.children import Ended, answering_signals, environment, python
+from flankfilm.children import Ended, answering_signals, environment, module, python
 from tests.flankfilm.program import SCRIPT
+from tests.processes import MARK, PATIENCE, left_after, marked, new_mark
+
+ROOT = Path(__file__).parents[2]
 
 STUDY = """
 outputs = ["contact_ratio"]
@@ -27,27 +30,18 @@ pinion = { teeth = 36 }
 wheel = { teeth = 40 }
 """
 
-PATIENCE = 10.0
-"""Seconds within which no process may remain."""
-
-
-def of_session(leader: int) -> list[int]:
-    """Processes of a session, zombies left out."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        try:
-            fields = (entry / "stat").read_text().rpartition(")")[2].split()
-        except (OSError, ValueError):
-            continue
-        if entry.name.isdigit() and int(fields[3]) == leader and fields[0] != "Z":
-            found.append(int(entry.name))
-    return found
-
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are read from /proc")
 @pytest.mark.parametrize(
     ("name", "status"),
-    [("SIGTERM", 143), ("SIGHUP", 129), ("SIGINT", 130), ("SIGQUIT", -3), ("SIGKILL", -9)],
+    [
+        ("SIGTERM", 143),
+        ("SIGKILL", -9),
+        *(
+            pytest.param(*one, marks=pytest.mark.slow)
+            for one in (("SIGHUP", 129), ("SIGINT", 130), ("SIGQUIT", -3))
+        ),
+    ],
 )
 def test_no_worker_outlives_a_study_that_is_ended(tmp_path, name, status):
     path, rows = tmp_path / "study.toml", tmp_path / "out" / "rows.csv"
@@ -56,22 +50,19 @@ def test_no_worker_outlives_a_study_that_is_ended(tmp_path, name, status):
         [str(SCRIPT), "study", str(path), "--out", str(tmp_path / "out"), "--workers", "2"],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
-        start_new_session=True,
+        env={**os.environ, MARK: (mark := new_mark())},
     )
     until = time.monotonic() + 60
     while not (rows.exists() and rows.read_bytes().count(b"\n") > 5) and time.monotonic() < until:
         time.sleep(0.01)
-    assert len(of_session(study.pid)) >= 3  # two workers
+    assert len(marked(mark)) >= 3  # two workers
     study.send_signal(getattr(signal, name))
     said = study.communicate(timeout=PATIENCE)[1].decode()
     assert study.returncode == status
     assert "Traceback" not in said
     if status > 0:
         assert "next run resumes" in said
-    until = time.monotonic() + PATIENCE
-    while (left := of_session(study.pid)) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not left
+    assert not left_after(mark)
     kept = rows.read_text(encoding="utf-8").splitlines()
     assert kept[0].startswith("row,")
     assert len({line.split(",")[0] for line in kept[1:]}) == len(kept) - 1 > 4
@@ -79,8 +70,8 @@ def test_no_worker_outlives_a_study_that_is_ended(tmp_path, name, status):
 
 def test_workers_import_nothing_from_the_current_folder(tmp_path):
     (tmp_path / "study.toml").write_text(STUDY.replace("3000", "2"))
-    for module in ("numpy", "pickle", "multiprocessing", "flankfilm", "json"):
-        (tmp_path / f"{module}.py").write_text("open('executed', 'w').close()\n")
+    for name in ("numpy", "pickle", "multiprocessing", "flankfilm", "json"):
+        (tmp_path / f"{name}.py").write_text("open('executed', 'w').close()\n")
     subprocess.run(
         [str(SCRIPT), "study", "study.toml", "--out", "out", "--workers", "1"],
         cwd=tmp_path,
@@ -117,6 +108,9 @@ def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
 
     monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
     monkeypatch.setattr("sys.unraisablehook", lambda note: None)
+    before = signal.signal(
+        signal.SIGINT, signal.default_int_handler
+    )  # a shell may ignore it in the background
 
     def work() -> None:
         with answering_signals():
@@ -124,34 +118,103 @@ def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
             time.sleep(5.0)
 
     began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        work()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert time.monotonic() - began < 3.0
 
 
-def test_a_child_ends_with_its_parent(tmp_path):
-    """A command that watches its parent, whose parent is killed."""
-    child = "from flankfilm.children import end_with_parent; import time; end_with_parent(); time.sleep(60)"
-    parent = (
-        "import subprocess, sys, time; from flankfilm.children import python; "
-        f"print(subprocess.Popen(python('-c', {child!r})).pid, flush=True); time.sleep(60)"
+HOLDS = """
+import ctypes, multiprocessing, os, signal, sys, time
+from flankfilm.studies.executors import executor
+
+def hold() -> None:  # a call that keeps the interpreter, as compiled code does
+    print(os.getpid(), flush=True)
+    ctypes.PyDLL(None).sleep(60)
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may ignore it in the background
+    with executor("processes", 2) as pool:
+        for _ in range(2):
+            pool.executor.submit(hold)
+        time.sleep(60)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends a process that does not listen")
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_workers_end_that_are_busy_in_compiled_code(tmp_path, how):
+    """Those of a parent that was killed, and of one that wants them to end."""
+    (tmp_path / "holds.py").write_text(HOLDS)
+    mark = new_mark()
+    parent = subprocess.Popen(
+        [sys.executable, str(tmp_path / "holds.py")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        env={**os.environ, MARK: mark},
     )
-    started = subprocess.Popen(python("-c", parent), stdout=subprocess.PIPE, text=True)
+    assert parent.stdout is not None
+    for _ in range(2):
+        parent.stdout.readline()
+    parent.send_signal(how)
+    parent.wait(PATIENCE)
+    parent.stdout.close()
+    assert not left_after(mark)
+
+
+READS = ("timeit", "-n", "1", "-s", "import time; print(1, flush=True)", "time.sleep(60)")
+"""A module of the standard library that is at work until it is ended."""
+
+
+def test_a_module_that_is_run_ends_with_its_parent():
+    mark = new_mark()
+    parent = (
+        "import subprocess, time; from flankfilm.children import module, python; "
+        f"child = subprocess.Popen(python(*module(*{READS}))); time.sleep(60)"
+    )
+    started = subprocess.Popen(
+        python("-c", parent), stdout=subprocess.PIPE, text=True, env={**os.environ, MARK: mark}
+    )
     assert started.stdout is not None
-    number = int(started.stdout.readline())
-    time.sleep(1.0)  # the child begins to watch
+    assert started.stdout.readline() == "1\n"
+    assert len(marked(mark)) == 2
     started.kill()
-    started.wait()
-    until = time.monotonic() + PATIENCE
-    while _alive(number) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not _alive(number)
+    started.wait(PATIENCE)
+    started.stdout.close()
+    assert not left_after(mark)
 
 
-def _alive(number: int) -> bool:
-    try:
-        os.kill(number, 0)
-    except ProcessLookupError:
-        return False
-    stat = Path(f"/proc/{number}/stat")
-    return not (stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z")
+def test_a_module_whose_parent_died_before_it_began_ends_at_once():
+    parent, *rest = module(*READS)[2:]
+    assert parent == str(os.getpid())
+    begun = subprocess.run(python("-m", "flankfilm.children", "1", *rest), timeout=PATIENCE, check=False)
+    assert begun.returncode == 1
+
+
+def test_a_session_that_leaves_processes_behind_fails_and_names_them(tmp_path):
+    (tmp_path / "conftest.py").write_text(
+        "import tests.processes\n"
+        "from tests.processes import pytest_configure, pytest_sessionfinish\n"
+        "tests.processes.left_after.__defaults__ = (0.2,)\n"
+    )
+    (tmp_path / "test_it.py").write_text(
+        "import subprocess, sys\n"
+        "def test_it():\n"
+        "    global child\n"
+        "    child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(8)'])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "1 passed" in done.stdout
+    assert done.returncode == 1
+    assert "left behind" in done.stderr
+    assert "time.sleep(8)" in done.stderr

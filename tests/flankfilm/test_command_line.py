@@ -184,7 +184,10 @@ def test_a_folder_without_a_name_is_refused(tmp_path, name):
     assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
 
 
-@pytest.mark.parametrize("closed", ["2>&-", ">&-", "<&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize(
+    "closed",
+    ["<&- >&- 2>&-", *(pytest.param(one, marks=pytest.mark.slow) for one in ("2>&-", ">&-", "<&-"))],
+)
 def test_closed_streams_change_nothing(tmp_path, closed):
     (tmp_path / "scene.toml").write_text(ishikawa("X", "closed-forms"), encoding="utf-8")
     for command, status in ((f"'{SCRIPT}' run scene.toml --out out", 0), (f"'{SCRIPT}' run none.toml", 2)):

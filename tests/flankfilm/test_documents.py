@@ -16,6 +16,7 @@ import sys
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 import xarray as xr
@@ -80,7 +81,12 @@ def pages_with(slow: bool) -> list[Path]:
     return [page for page in PAGES if python_of(page, slow)]
 
 
-@pytest.mark.parametrize("page", pages_with(slow=False), ids=name)
+def heavy(page: Path) -> Any:
+    """The page of all calls takes as long as a hundred tests."""
+    return pytest.param(page, marks=pytest.mark.slow) if page.match("howto/python.md") else page
+
+
+@pytest.mark.parametrize("page", [heavy(page) for page in pages_with(slow=False)], ids=name)
 def test_python_runs(page: Path, tmp_path: Path):
     run_python(python_of(page, slow=False), tmp_path)
 
@@ -222,6 +228,7 @@ def test_all_examples_are_valid_scenes_and_studies_stand_apart():
         flankfilm("check", scene)
 
 
+@pytest.mark.slow
 def test_the_way_of_many_papers_runs(tmp_path):
     scene, cache = EXAMPLES / "independent_pairs.toml", str(tmp_path / "cache")
     done = flankfilm("run", scene, "--out", "out", cwd=tmp_path, FLANKFILM_CACHE=cache)

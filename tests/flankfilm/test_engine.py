@@ -11,9 +11,9 @@ import pytest
 from flankfilm.cache import Cache
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.scene import Scene, parse_scene, template
-from flankfilm.stages import catalogue
+from flankfilm.stages import catalogue, motion
 from flankfilm.stages.catalogue import FILM
-from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.engine import Engine, KeptPart, Stage, StageRun
 from flankfilm.stages.goals import goals
 
 
@@ -112,8 +112,8 @@ def test_warnings_are_gathered_once_each():
 
 
 def test_each_stage_comes_after_what_it_needs_and_has_a_name_of_its_own():
-    stages = [stage for stage in vars(catalogue).values() if isinstance(stage, Stage)]
-    assert len({stage.name for stage in stages}) == len(stages) == 22
+    stages = [stage for stage in (vars(catalogue) | vars(motion)).values() if isinstance(stage, Stage)]
+    assert len({stage.name for stage in stages}) == len(stages) == 24
     for number, stage in enumerate(stages):
         assert set(stage.needs) <= set(stages[:number])
 
@@ -153,6 +153,7 @@ def test_the_film_law_meets_value_and_slope_and_stays_positive():
     assert np.all(np.isfinite(law(between, np.zeros((1, 4)))[0]))
 
 
+@pytest.mark.slow
 def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
     changes = []
     for positions in (40, 120):
@@ -170,11 +171,12 @@ def test_parts_of_a_result_are_kept_for_other_scenes(tmp_path):
 
     def compute(run: Engine) -> list[str]:
         def part(name: str) -> str:
-            return run.parts("part", {"of": name}, lambda: computed.append(name) or name.upper())
+            made = StageRun(name.upper(), "", 0.0, cached=False)  # any record
+            return run.parts("part", {"of": name}, lambda: computed.append(name) or made).name
 
         return [part(name) for name in run.scene.title.split()]
 
-    stage = Stage("whole", "whole", compute, lambda s: {}, (), ("gears",), by_parts=True)
+    stage = Stage("whole", "whole", compute, lambda s: {}, (), ("flankfilm",), by_parts=True)
 
     started = []
 
@@ -191,3 +193,24 @@ def test_parts_of_a_result_are_kept_for_other_scenes(tmp_path):
     assert run("c a").runs["whole"].cached
     assert started == []
     assert computed == ["a", "b", "c"]
+
+
+@pytest.mark.parametrize("odd", [3, (1.0, ()), ("text", 1), {"a": 1}])
+def test_an_entry_of_another_type_is_computed_again(tmp_path, odd):
+    """Under the right name and digest, but not what the stage gives, nor what its parts are."""
+    calls: list[str] = []
+    oil = counting(calls)
+    Engine(scene(), Cache(tmp_path))[oil]
+    calls.clear()
+    for path in list(tmp_path.iterdir()):
+        Cache(tmp_path).put(path.name, odd)
+    assert Engine(scene(), Cache(tmp_path))[oil] == "oil+teeth"
+    assert calls == ["oil", "teeth"]
+
+    record = StageRun("oil", "oil", 0.0, cached=False)
+    key = Cache(tmp_path).key("part", {}, ("flankfilm",))
+    Cache(tmp_path).put(key, odd)
+    part = KeptPart(Cache(tmp_path), ("flankfilm",), lambda: None)
+    assert part("part", {}, lambda: record) == record
+    assert part("part", {}, lambda: None) == record  # which is kept now
+    assert part.found == [False, True]

@@ -20,6 +20,7 @@ def export(*arguments, status=0):
     return flankfilm("export", EXAMPLE, *arguments, status=status)
 
 
+@pytest.mark.slow
 def test_both_gears_are_written_with_forces_that_balance_the_torque(tmp_path):
     export("--out", tmp_path, "--refinements", "0")
     text = (tmp_path / "pinion.inp").read_text(encoding="ascii")
@@ -44,6 +45,7 @@ def _block(text, keyword):
     return lines[start:end]
 
 
+@pytest.mark.slow
 def test_meshes_for_gmsh(tmp_path):
     export("--out", tmp_path, "--format", "msh", "--refinements", "0", "--position", "0.1")
     assert (tmp_path / "pinion.msh").read_bytes().startswith(b"$MeshFormat\n4.1")

@@ -6,7 +6,7 @@ import warnings
 
 import pytest
 
-from base import InputError
+from base import InputError, RangeWarning
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import film_model, lubricant, roughness
 from flankfilm.scene import parse_scene, template
@@ -73,7 +73,12 @@ def contact(load: float = 4.434e5) -> LineContact:
         (SUPPLY, 'supply = "dry"', "film.supply", "'meniscus'"),
         (SUPPLY, 'supply = "oil-layer"\noil_layer_um = 0.1\ngrid = "article"', "film", "flooded films"),
         ("[stiffness]", ROUGH.replace("0.3", "-1") + "[stiffness]", "roughness.sigma_um", "at least 0.0001"),
-        ("[stiffness]", ROUGH.replace("tip_", "") + "[stiffness]", "roughness.tip_radius_um", "is required"),
+        (
+            "[stiffness]",
+            ROUGH.replace("tip_", "") + "[stiffness]",
+            "roughness.radius_um",
+            "mean tip_radius_um",
+        ),
     ],
 )
 def test_a_fault_names_key_and_remedy(old: str, new: str, where: str, said: str):
@@ -194,3 +199,36 @@ def test_a_wanted_film_is_solved_without_a_film_section():
     text = template()
     scene = parse_scene(f"{text[: text.index('[film]')]}{text[text.index('[dynamics]') :]}")
     assert Engine(scene, Cache(None))[PLAN].film.choice == "ehl"
+
+
+@pytest.mark.parametrize(
+    ("keys", "sigma_um"),
+    [
+        ("Ra_um = 0.4", 0.4 * 1.2533141 * 2**0.5),
+        ("Ra_um = 0.3\nwheel_Ra_um = 0.4", 0.5 * 1.2533141),
+        ("Rz_um = 2.4", 0.4 * 1.2533141 * 2**0.5),
+        ("sigma_um = 0.7", 0.7),
+    ],
+)
+def test_roughness_as_drawings_have_it(keys: str, sigma_um: float):
+    rough = roughness(parse_scene(f"{template()}\n[roughness]\n{keys}\n"))
+    assert rough is not None
+    assert 1e6 * rough.deviation == pytest.approx(sigma_um, rel=1e-6)
+    assert rough.number == pytest.approx(0.04)
+    given = f"{template()}\n[roughness]\n{keys}\ndensity_per_mm2 = 25000\ntip_radius_um = 10\n"
+    with pytest.warns(RangeWarning, match="sigma beta eta"):
+        known = roughness(parse_scene(given))
+    assert known is not None
+    assert (known.density, known.tip_radius) == pytest.approx((25e9, 10e-6))
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("", "one of Ra_um, Rz_um and sigma_um, not none"),
+        ("Ra_um = 0.4\nsigma_um = 0.5", "not Ra_um and sigma_um"),
+        ("Rz_um = 2.4\nwheel_Ra_um = 0.4", "must have Ra_um of the pinion"),
+    ],
+)
+def test_roughness_has_one_measure(keys: str, said: str):
+    assert said in faults(f"{template()}\n[roughness]\n{keys}\n")["roughness"]

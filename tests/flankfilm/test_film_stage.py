@@ -77,6 +77,7 @@ def test_the_layer_passes_every_contact(starved: LubricatedCycle):
     assert starved.film.minimum_thickness.min() < 0.1e-6
 
 
+@pytest.mark.slow
 def test_with_the_layer_held_the_mesh_tends_to_the_dry_one(
     flooded: LubricatedCycle, starved: LubricatedCycle
 ):
@@ -97,6 +98,7 @@ def test_with_the_meniscus_held_the_same_film_softens_the_mesh(
     assert starved.otherwise["smooth and flooded"].stiffness == pytest.approx(flooded.stiffness, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_held_in_place_or_in_half_widths_it_is_the_same_where_it_is_the_same(starved: LubricatedCycle):
     """The scene's own meniscus where the layer's was: the film, and the softening of the layer's other case."""
     assert starved.film.inlet is not None
@@ -161,6 +163,7 @@ def test_the_stiffness_table_is_of_the_contact_nearest_to_c(flooded: LubricatedC
     assert rows["approach"].loss * film / (1 - rows["approach"].loss) == pytest.approx(16.1 * 40e6, rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_meniscus_at_the_contacts_edge_is_solved(flooded: LubricatedCycle):
     """A thousandth of a half-width ahead: separations fall as the six-hundredth power of the load."""
     tight = stage('supply = "meniscus"\nmeniscus_half_widths = 1.001\n')

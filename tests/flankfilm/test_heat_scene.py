@@ -87,6 +87,7 @@ def test_what_warm_scenes_refuse(old, new, said):
         gear_pair(parse_scene(WARM.replace(old, new)))
 
 
+@pytest.mark.slow
 def test_pressed_teeth_of_a_warm_pair():
     hot = WARM.replace("wheel_temperature_C = 70.0", "wheel_temperature_C = 180.0").replace(
         "[pair]", "[pair]\ntight = true"

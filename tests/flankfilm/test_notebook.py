@@ -12,9 +12,10 @@ from flankfilm.cli import app
 from flankfilm.exchange.commands import completion
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.studies.plan import StudyFile, plan_of
+from flankfilm.studies.plan import plan_of
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
+from flankfilm.studies.study_file import StudyFile
 from tests.flankfilm.scenes import ishikawa
 
 SCENE = ishikawa("<script>alert(1)</script>", "closed-forms", "stiffness")

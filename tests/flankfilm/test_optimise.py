@@ -63,6 +63,7 @@ def test_least_sliding_is_balanced_sliding(tmp_path):
     assert {e.tolerance for e in found.evaluations} == set(task.tolerances)
 
 
+@pytest.mark.slow
 def test_a_limit_is_kept_and_reached(tmp_path):
     wanted = 'maximise = ["specific_sliding"]\nevaluations = 200'
     upper = SHIFT.replace("-0.3", "0.1")  # there sliding grows and the contact ratio falls with the shift
@@ -111,6 +112,7 @@ def test_several_objectives_trade_off(tmp_path):
     assert len(front_values) > 5
 
 
+@pytest.mark.slow
 def test_taken_up_again_it_ends_with_the_same_points(tmp_path):
     path = task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 60')
     task = read_task(path)
@@ -153,6 +155,7 @@ def test_a_wide_tolerance_is_not_narrowed_far_away(tmp_path):
     assert read_task(task_file(tmp_path, 'minimise = ["specific_sliding"]', wide)).tolerances == (0.2, 0.2)
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_scene_that_runs(tmp_path):
     path = task_file(tmp_path, 'minimise = ["specific_sliding"]\nevaluations = 24')
     done = flankfilm("optimise", path, "--out", tmp_path / "out", "--workers", 1)

@@ -145,6 +145,7 @@ class TestResultsReproduceThemselves:
             scene_in(tmp_path / "missing.nc")
 
 
+@pytest.mark.slow
 def test_two_runs_at_once_with_one_cache_end_well(tmp_path, small_run):
     (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
     shared = {"cwd": tmp_path, "wait": False, "FLANKFILM_CACHE": str(tmp_path / "cache")}

@@ -30,9 +30,10 @@ from flankfilm.stages.catalogue import FIELDS, VERIFICATION
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
 from flankfilm.studies.files import dataset as study_dataset
-from flankfilm.studies.plan import StudyFile, plan_of
+from flankfilm.studies.plan import plan_of
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
+from flankfilm.studies.study_file import StudyFile
 from flankfilm.verification.tables import dataset as verify_dataset
 
 SCENE = """
@@ -75,7 +76,7 @@ OF_A_RUN = (
     figures.diagram, figures.film_along_path, figures.film_changes, figures.film_profiles, figures.film_shares,
     figures.film_stiffness, figures.flanks, figures.fourier, figures.gears_in_mesh, figures.kinematics,
     figures.load_share, figures.mesh_stiffness, figures.over_torque, figures.portraits, figures.revolution,
-    figures.root_stress,
+    figures.resonance, figures.root_stress,
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
 OF_OTHERS = {"optimum", "study", "verification"}
@@ -176,6 +177,9 @@ def test_axes_tell_units_legends_cover_no_data_and_nothing_is_cut_off(made):
                 text = not title or title in PURE or re.search(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", title, re.DOTALL)
                 assert text, f"{name}: {title!r} has no unit"
             assert axes.get_ylabel() or axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes)
+        beside = [axes.yaxis.label.get_window_extent(renderer) for axes in panels if axes.get_ylabel()]
+        for one, other in itertools.combinations(beside, 2):
+            assert not one.overlaps(other), f"{name}: labels of two panels overprint"
         whole = figure.get_tightbbox(renderer).padded(-0.02)
         assert whole.x0 >= -0.01, name
         assert whole.y0 >= -0.01, name
@@ -199,6 +203,59 @@ def test_curves_are_those_of_the_file(made):
     assert travel[0] == pytest.approx(1e3 * float(results.film_rho1[0] - results.path_point_rho1[0]))
 
 
+def test_motion_is_in_micrometres_and_newtons(made):
+    results = made.results
+    length, force = (float(results[f"oscillator_{name}"]) for name in ("length_scale", "force"))
+    up = figures.sweep(results).axes[0].lines[0].get_ydata()
+    assert np.allclose(up, 1e6 * length * results.sweep_up.values[:, :, 0].ravel(), rtol=1e-12)
+    panels = figures.resonance(results).axes
+    for axes, name, unit in zip(
+        panels, ("force_factor", "separated", "spread"), (force, 100.0, 1e6 * length), strict=True
+    ):
+        assert np.allclose(axes.lines[0].get_ydata(), unit * results[f"sweep_{name}_up"].values, rtol=1e-12)
+    assert [axes.get_ylabel().split("[")[1] for axes in panels] == ["N]", "%]", "µm]"]
+
+
+def test_points_that_lie_close_together_do_not_overprint(made):
+    places = made.results.path_point_rho1.values.copy()
+    places[1] = places[2] - 1e-5
+    drawn = figures.load_share(made.results.assign(path_point_rho1=(("path_point",), places)))
+    renderer = FigureCanvasAgg(drawn).get_renderer()
+    drawn.draw(renderer)
+    names = [text.get_window_extent(renderer) for text in drawn.axes[0].texts]
+    assert len(names) == 5
+    assert not any(one.overlaps(other) for one, other in itertools.combinations(names, 2))
+
+
+def test_films_are_shown_at_five_points_with_the_hertz_pressure_and_of_rough_flanks_apart(made):
+    smooth = figures.film_profiles(made.results)
+    named = ["near A", "after B", "C", "before D", "near E", "thin: Hertz pressure, dry"]
+    assert [text.get_text() for text in smooth.legends[0].get_texts()] == named
+    dry = float(made.results.film_profile_C_hertz_pressure)
+    assert any(line.get_ydata().max() == pytest.approx(1e-9 * dry) for line in smooth.axes[0].lines[:-1])
+    rough = {}
+    for name in (f"film_profile_{point}" for point in ("near_A", "after_B", "C", "before_D", "near_E")):
+        film = made.results[f"{name}_pressure"]
+        rough[f"{name}_total_pressure"] = (1.25 * film).assign_attrs(film.attrs)
+    total, part, _ = figures.film_profiles(made.results.assign(rough)).axes
+    assert total.lines[0].get_ydata() == pytest.approx(1.25 * part.lines[0].get_ydata())
+
+
+def test_every_card_has_its_error_and_no_key_of_a_file(made):
+    for name, page in made.pages.items():
+        text = page.read_text(encoding="utf-8")
+        cards = re.findall(r'<dl class="card"><dt>(.*?)</dt>(.*?)</dl>', text)
+        assert cards, name
+        for title, rest in cards:
+            assert "_" not in title, name
+            assert "." not in title, name
+            assert 'class="note"' in rest, f"{name}: {title}"
+        if name == "run":
+            silent = [title for title, rest in cards if not re.search("±|error|as given|exact|none", rest)]
+            assert silent == []
+
+
+@pytest.mark.slow
 def test_a_figure_of_the_report_is_drawn_again_from_the_file(made):
     page = made.pages["run"].read_text(encoding="utf-8")
     for name in re.findall(r"flankfilm\.figures\.(\w+)", page):

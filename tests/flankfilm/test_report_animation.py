@@ -109,6 +109,7 @@ def test_faults_are_reported_together(tmp_path):
     assert 'wants "vtk"' in str(caught.value)
 
 
+@pytest.mark.slow
 def test_other_fields_are_drawn_and_an_unknown_one_is_refused(run, tmp_path):
     frame = Frame(size=(240, 160), field="displacement_m", position=0.1)
     moved = np.asarray(
@@ -134,6 +135,7 @@ plotter.screenshot(sys.argv[2])
 """
 
 
+@pytest.mark.slow
 def test_a_notebook_gets_the_same_scene(run, tmp_path):
     file = drawn(tooth_picture, run, tmp_path / "picture.png", frame=Frame(size=(240, 160)))
     # VTK in a process of its own: it ends the one that it is in where OpenGL is missing

@@ -135,6 +135,7 @@ class TestRows:
         kept = pd.read_csv(tmp_path / "out" / "rows.csv").set_index("row")
         assert "tip_alteration" in kept.fault[1]
 
+    @pytest.mark.slow
     def test_a_process_that_dies_costs_its_row_alone(self, tmp_path, monkeypatch):
         """A row that ends its process, as the kernel does for want of memory."""
         monkeypatch.setattr("flankfilm.studies.workers.compute_row", die_or_count)
@@ -208,6 +209,7 @@ class TestFolder:
         with locked(tmp_path), pytest.raises(InputError, match="at work"), locked(tmp_path):
             pass
 
+    @pytest.mark.slow
     def test_killed_at_any_moment_it_goes_on_to_the_same_numbers(self, tmp_path):
         vary = '"pair.pinion.profile_shift" = { from = -0.2, to = 0.4, steps = 60 }'
         path = study_file(tmp_path, vary)
@@ -292,15 +294,18 @@ class TestCommand:
         path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9]')
         assert "row 1 failed" in run(path, "--out", tmp_path / "out", status=4).stdout
 
+    @pytest.mark.slow
     def test_the_study_of_sliding_is_written_and_drawn(self, tmp_path):
         done = run(study_file(tmp_path, SHIFTS), "--out", tmp_path / "out", "--workers", "1")
         assert "4 rows, 4 of them computed" in done.stdout
         assert "<svg" in (tmp_path / "out" / "study.svg").read_text(encoding="utf-8")
 
+    @pytest.mark.slow
     def test_all_rows_failed_is_a_failure(self, tmp_path):
         path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.9, 0.95]')
         assert "row 0 failed" in run(path, "--out", tmp_path / "out", status=3).stdout
 
+    @pytest.mark.slow
     @pytest.mark.filterwarnings("ignore")  # of the cluster's own start and end
     def test_a_cluster_gives_the_same_rows_to_the_last_digit(self, tmp_path):
         plan = read_plan(study_file(tmp_path, SHIFTS))
@@ -326,6 +331,7 @@ class TestCommand:
         assert module in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda path: path.stem)
 def test_every_example_is_in_order_and_its_first_row_computes(path):
     from flankfilm.studies.row import Row, compute_row

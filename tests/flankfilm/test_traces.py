@@ -163,6 +163,7 @@ def test_the_example_meshes_every_tooth_with_its_own_trace(run):
     assert page.count("diameter_mm") == 1  # of the wheel's wear, which the scene itself holds
 
 
+@pytest.mark.slow
 def test_a_results_file_holds_the_traces(run, tmp_path):
     done = flankfilm("run", run / "results.nc", "--out", tmp_path / "again", cwd=tmp_path)
     assert "0 s" in done.stdout or done.returncode == 0

@@ -83,6 +83,7 @@ def test_what_lies_between_the_stations_is_in_the_errors_of_a_single_pair(pair):
     assert 0 < abs(np.trapezoid(curve(fine), fine) - mean.value) < 2 * mean.error
 
 
+@pytest.mark.slow
 def test_the_command_writes_tables_curves_and_a_figure(tmp_path):
     import pandas as pd
 

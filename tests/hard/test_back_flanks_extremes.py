@@ -14,6 +14,7 @@ from gears import Gear, GearDeviations, GearPair, Heat, Material, PitchDeviation
 PLASTIC = Material(3e9, 0.4, 1140.0, thermal_expansion=80e-6)
 
 
+@pytest.mark.slow
 def test_heat_from_play_through_zero_to_pressed_teeth():
     cold = replace(GearPair(Gear(36), Gear(40), 2e-3, 0.04).with_backlash(20e-6), tight=True)
     found = []

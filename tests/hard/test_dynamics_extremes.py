@@ -109,6 +109,7 @@ def test_negative_stiffness(kappa, zeta):
     assert abs(np.linalg.det(j) - np.exp(-2 * zeta * osc.period)) <= 1e-13 * max(scale, 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("zeta", [0.0, 2.0])
 @pytest.mark.parametrize("frequency", [0.3, 1.3])
 def test_damping(zeta, frequency):

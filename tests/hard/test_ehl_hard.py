@@ -83,6 +83,7 @@ def test_inlet_near_the_dry_contact():
     assert "inlet" in refused(solve(PITCH, domain=(-1.0, 1.5)))
 
 
+@pytest.mark.slow
 def test_speed_towards_zero():
     last = math.inf
     for u in (1.0, 1e-2, 1e-4):
@@ -170,6 +171,7 @@ def check_random_contacts(number, sample, reference):
     return films, beyond, above_half
 
 
+@pytest.mark.slow
 def test_a_few_random_contacts():
     films, beyond, above_half = check_random_contacts(60, 12, 513)
     assert sum(f.cost.counts["restarts"] == 0 for f in films) >= 58

@@ -32,6 +32,7 @@ def described(pair):
     return f"z {pair.pinion.teeth}/{pair.wheel.teeth} x {pair.pinion.profile_shift:.2f}/{pair.wheel.profile_shift:.2f}"
 
 
+@pytest.mark.slow
 def test_every_estimate_is_honest_on_a_few_random_gears():
     ratios = {described(pair): estimated_over_true(pair)[0] for pair in random_pairs(11, 6)}
     assert min(ratios.values()) > 0.5, ratios

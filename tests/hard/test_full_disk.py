@@ -64,14 +64,16 @@ def refused(done: subprocess.CompletedProcess[str], out: Path) -> None:
             assert whole.sizes
 
 
-@pytest.mark.parametrize("size", [0, 100, 8192, 60_000, 140_000])
+@pytest.mark.parametrize(
+    "size", [60_000, *(pytest.param(size, marks=pytest.mark.slow) for size in (0, 100, 8192, 140_000))]
+)
 def test_a_run_without_room_says_so(tmp_path, size):
     scene = tmp_path / "scene.toml"
     scene.write_text(SCENE, encoding="utf-8")
     refused(limited(size, "run", scene, "--out", tmp_path / "out", "--no-cache"), tmp_path / "out")
 
 
-@pytest.mark.parametrize("size", [0, 500, 3000])
+@pytest.mark.parametrize("size", [500, *(pytest.param(size, marks=pytest.mark.slow) for size in (0, 3000))])
 def test_a_study_without_room_keeps_its_rows(tmp_path, size):
     path = tmp_path / "study.toml"
     scene = SCENE.replace("[pair]", "[scene.pair]").replace("[material]", "[scene.material]")
@@ -83,6 +85,7 @@ def test_a_study_without_room_keeps_its_rows(tmp_path, size):
     assert not rows.exists() or not rows.stat().st_size or rows.read_bytes().endswith(b"\n")
 
 
+@pytest.mark.slow
 def test_every_write_of_a_run_may_be_the_one_that_fails(tmp_path, monkeypatch):
     """The disk is full at the first flush, the second, and so on; what was there before stays whole."""
     scene, out = parse_scene(SCENE), tmp_path / "out"

@@ -31,6 +31,7 @@ def pair_of(name):
         return GearPair(pinion, wheel, 2e-3, 0.02, **more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_one_loaded_pair_is_near_the_standard(name):
     pair = pair_of(name)

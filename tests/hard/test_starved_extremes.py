@@ -51,6 +51,7 @@ def test_starved_contacts_down_to_the_edge():
         assert "inlet" in refused(film)
 
 
+@pytest.mark.slow
 def test_supply_towards_zero():
     last = math.inf
     for layer in (1e-7, 1e-8, 1e-9):

@@ -38,6 +38,7 @@ def found():
     return identify(ANY, "frequency", SIX, RANGES, (0.3, 2.0))
 
 
+@pytest.mark.slow
 def test_parameters_are_recovered(found):
     assert {n: found.best.values[n] for n in (ZETA, KAPPA, FORCE)} == {ZETA: 0.01, KAPPA: 0.1, FORCE: 0.05}
     assert found.refined.values[ZETA] == pytest.approx(0.01, rel=1e-5)
@@ -48,6 +49,7 @@ def test_parameters_are_recovered(found):
     )
 
 
+@pytest.mark.slow
 def test_the_point_that_is_printed_late_decides_nothing_and_one_not_used_is_met(found):
     """PD5 is off by a hundred units and loses its weight; the 1.691 was not fitted."""
     assert found.converged
@@ -59,6 +61,7 @@ def test_the_point_that_is_printed_late_decides_nothing_and_one_not_used_is_met(
     assert abs(found.best.off[5]) < 0.1
 
 
+@pytest.mark.slow
 def test_rounding_is_accounted_for(found):
     assert {r.parameter: r.digits for r in found.roundings} == {ZETA: 1, KAPPA: 1, FORCE: 1}
     assert all(r.cost < 4.0 < 6.0 < r.worth for r in found.roundings)
@@ -78,11 +81,13 @@ def test_all_printed_points_at_once_give_the_play_too():
     assert whole.by_chance < 1e-9
 
 
+@pytest.mark.slow
 def test_what_the_points_cannot_see_is_named(found):
     assert found.unseen == (PLAY,)
     assert found.best.oscillator.one_sided
 
 
+@pytest.mark.slow
 def test_printed_backlash_then_meets_a_point_with_back_contact(found):
     """With D = 1.0 as printed the fold of 3-1-1, which was not used, lies at 2.47857059 (printed ...60)."""
     whole = dataclasses.replace(found.best.oscillator, half_backlash=1.0, one_sided=False)

@@ -55,6 +55,7 @@ def test_touch_without_parametric_excitation(eps, values):
     np.testing.assert_allclose(found, values, rtol=1e-12)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(st.floats(0.01, 0.5), st.floats(0.02, 0.5), st.floats(0.005, 0.3))
 def test_touch_without_parametric_excitation_anywhere(eps, force, zeta):

@@ -79,7 +79,7 @@ def cycles(article_pair):
     return cycles
 
 
-@pytest.mark.parametrize("which", [0, 1], ids=["pinion", "wheel"])
+@pytest.mark.parametrize("which", [0, pytest.param(1, marks=pytest.mark.slow)], ids=["pinion", "wheel"])
 def test_whole_gear_with_the_same_quadrature(article_pair, cycles, tmp_path, monkeypatch, which):
     monkeypatch.setattr(fem.elasticity, "INTEGRATION", 2)
     gear = loaded_gears(article_pair, cycles["strain"], 3, refinements=0)[which]
@@ -90,6 +90,7 @@ def test_whole_gear_with_the_same_quadrature(article_pair, cycles, tmp_path, mon
     np.testing.assert_allclose(reaction, -gear.forces.sum(axis=0), rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_our_own_quadrature_differs_by_the_error_of_curved_elements(article_pair, cycles, tmp_path):
     differences = []
     for refinements in (0, 1):
@@ -122,6 +123,7 @@ def test_plane_stress(article_pair, cycles, tmp_path, monkeypatch):
     assert mean < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("plane", "neighbours", "allowed"), [("strain", None, 1e-6), ("stress", 3, 5e-4)])
 def test_rim_web_and_hub_by_sections_of_their_own_thickness(
     tmp_path, monkeypatch, plane, neighbours, allowed

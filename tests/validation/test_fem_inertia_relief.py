@@ -145,6 +145,7 @@ def test_what_the_inertia_of_the_teeth_adds_for_a_gear_with_teeth(teeth, left):
     assert means == pytest.approx([left] * 4, rel=0.2)
 
 
+@pytest.mark.slow
 def test_pinion_and_large_wheel():
     """Known of z 18/120: 11.1 against the bores, 18.3 the teeth, 20.6 without coupling too, ISO 20.1 N/(mm um).
 

@@ -89,6 +89,7 @@ def test_contact_held_to_the_path(bodies, place):
     assert stiffness(held, place) == pytest.approx(HELD[place], rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "k", "force"), [(20e-6, 15.474, 24.9), (50e-6, 15.229, 15.3)])
 def test_rounded_edges_at_the_pitch_point(bodies, radius, k, force):
     cycle = fem.mesh_cycle(PAIR, 600.0, 1000, bodies, tip_rounding=radius)

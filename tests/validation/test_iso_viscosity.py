@@ -10,7 +10,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import Lubricant
-from ehl.grades import GRADES, gold_coefficient, graded_oil, viscosity_index, walther
+from ehl.grades import _INDEX_TABLE, GRADES, gold_coefficient, graded_oil, viscosity_index, walther
 
 
 @pytest.mark.parametrize(
@@ -37,6 +37,37 @@ def test_the_thinned_table_against_entries_of_the_standard_that_are_not_in_it():
         # an oil of index 0 or 100 at this viscosity
         assert viscosity_index(L, nu_100) == pytest.approx(0.0, abs=1.2)
         assert viscosity_index(H, nu_100) == pytest.approx(100.0, abs=1.2)
+
+
+QUADRATICS = [
+    (2.0, 3.8, 1.14673, 1.7576, -0.109, 0.84155, 1.5521, -0.077),
+    (3.8, 4.4, 3.38095, -15.4952, 33.196, 0.78571, 1.7929, -0.183),
+    (4.4, 5.0, 2.5, -7.2143, 13.812, 0.82143, 1.5679, 0.119),
+    (5.0, 6.4, 0.101, 16.635, -45.469, 0.04985, 9.1613, -18.557),
+    (6.4, 7.0, 3.35714, -23.5643, 78.466, 0.22619, 7.7369, -16.656),
+    (7.0, 7.7, 0.01191, 21.475, -72.87, 0.79762, -0.7321, 14.61),
+    (7.7, 9.0, 0.41858, 16.1558, -56.04, 0.05794, 10.5156, -28.24),
+    (9.0, 12.0, 0.88779, 7.5527, -16.6, 0.26665, 6.7015, -10.81),
+    (12.0, 15.0, 0.7672, 10.7972, -38.18, 0.20073, 8.4658, -22.49),
+    (15.0, 18.0, 0.97305, 5.3135, -2.2, 0.28889, 5.9741, -4.93),
+    (18.0, 22.0, 0.97256, 5.25, -0.98, 0.24504, 7.416, -16.73),
+    (22.0, 28.0, 0.91413, 7.4759, -21.82, 0.20323, 9.1267, -34.23),
+    (28.0, 40.0, 0.87031, 9.7157, -50.77, 0.18411, 10.1015, -46.75),
+    (40.0, 55.0, 0.84703, 12.6752, -133.31, 0.17029, 11.4866, -80.62),
+    (55.0, 70.0, 0.85921, 11.1009, -83.19, 0.16841, 11.8493, -96.947),
+]  # fmt: skip
+"""ASTM D2270: L = a Y^2 + b Y + c and H = d Y^2 + e Y + f, from one viscosity at 100 degC Y to the next [mm^2/s]."""
+
+
+def test_the_table_against_the_quadratics_that_astm_gives_for_it():
+    """Two printed forms of the same curves; they agree within their rounding, 0.17 % at most."""
+    for Y, L, H in _INDEX_TABLE:
+        a, b, c, d, e, f = next(row[2:] for row in QUADRATICS if row[0] <= Y <= row[1])
+        assert pytest.approx((a * Y + b) * Y + c, rel=2.5e-3) == L
+        assert pytest.approx((d * Y + e) * Y + f, rel=2.5e-3) == H
+    # beyond the table, at Y = 80: 0.8353 and 0.1684 times 6400, 14.67 and 11.85 times 80, less 216 and 97
+    assert viscosity_index(6303.52, 80.0) == pytest.approx(0.0, abs=1e-9)
+    assert viscosity_index(1928.76, 80.0) == pytest.approx(100.0, abs=1e-9)
 
 
 def test_walther_meets_its_two_viscosities_and_is_straight_between():
@@ -71,6 +102,22 @@ def test_gold_by_hand():
     # 100^0.139 = 10^0.278 = 1.8967
     assert gold_coefficient(100.0) == pytest.approx(18.785e-9, rel=1e-3)
     assert gold_coefficient(1.0, "pag") == pytest.approx(5.489e-9)
+    # 100^t with t = 0.1335, 0.1360 and 0.1485
+    for base, alpha in (("pao", 7.382 * 1.849269), ("ester", 6.605 * 1.870682), ("pag", 5.489 * 1.981527)):
+        assert gold_coefficient(100.0, base) == pytest.approx(1e-9 * alpha, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("base", "density_15", "per_K"),
+    [("mineral", 885.0, 0.64), ("pao", 850.0, 0.60), ("ester", 950.0, 0.70), ("pag", 1050.0, 0.75)],
+)
+def test_density_falls_by_the_expansion_of_its_base(base, density_15, per_K):
+    oil = graded_oil(220, 288.15 + 50.0, 150.0, base)
+    assert oil.density == pytest.approx(density_15 - 50.0 * per_K, rel=1e-12)
+    assert oil.viscosity == pytest.approx(1e-6 * oil.kinematic_viscosity * oil.density, rel=1e-12)
+    assert graded_oil(220, 338.15, 150.0, base, 900.0).density == pytest.approx(
+        900.0 - 50.0 * per_K, rel=1e-12
+    )
 
 
 def test_faults_together_and_other_viscosities_warned_of():

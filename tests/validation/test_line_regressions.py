@@ -41,6 +41,28 @@ def test_pan_and_hamrock_by_hand():
     )
 
 
+def test_nijenbanning_by_hand():
+    """At D = 0.01: k = 0.0551880, ln(4/k) - 1 = 3.283305, q = 1 - 0.0276310 + 0.63 0.0719686 = 1.0177092.
+
+    q^-0.56 = 0.9902178, q^-0.35 = 0.9938749, D^-1/15 = 1.3593564, D^-1/24 = 1.2115277.
+    """
+    # N = sqrt(128/9 pi 3.283305 1e9/0.01) = 1.2191703e6, N^-2/15 = 0.1543564; no piezoviscous part, s = 1.4
+    contact = LineContact.from_moes(1000.0, 0.0)
+    elastic = 3.18 * 0.9902178 * 1.3593564 * 0.1543564
+    expected = (0.003 ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
+    assert nijenbanning_line_central(contact) / contact.moes_film == pytest.approx(expected, rel=1e-6)
+    # N = 3448.3344, N^-2/15 = 0.3375350, N^-1/12 = 0.5072233; 10^2/3 = 4.6415888, 10^3/4 = 5.6234133
+    contact = LineContact.from_moes(20.0, 10.0)
+    elastic = 3.18 * 0.9902178 * 1.3593564 * 0.3375350
+    rigid_piezo = 1.29 * 1.00691 ** (-2 / 3) * 4.6415888
+    elastic_piezo = 1.48 * 0.9938749 * 1.2115277 * 0.5072233 * 5.6234133
+    expected = (0.15 ** (7 / 3) + elastic ** (7 / 3)) ** 0.6 + (
+        rigid_piezo**-3.5 + elastic_piezo**-3.5
+    ) ** -0.4
+    found = nijenbanning_line_central(contact) / contact.moes_film
+    assert found == pytest.approx(expected ** (1 / 1.4), rel=1e-6)
+
+
 @pytest.mark.parametrize(("M", "L"), [(1000.0, 0.0), (20.0, 10.0), (100.0, 5.0), (500.0, 20.0), (0.05, 8.0)])
 def test_long_ellipses_meet_the_line(M, L):
     # two independent fits: of ellipses and of lines

@@ -55,6 +55,7 @@ def special(kind: str, start: float, guess, bounds) -> tuple[float, list[float]]
     return exact, found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "start", "guess", "bounds", "value"),
     [

@@ -86,6 +86,7 @@ def exact_fold() -> float:
     return max(p.parameter for p in branch.special("saddle-node"))
 
 
+@pytest.mark.slow
 def test_fold_of_the_smoothed_system_converges():
     """A smooth corner of width s moves the fold by s^2: halving gains four, and the rest extrapolates to zero."""
     errors = smoothed_errors((0.008, 0.004, 0.002))

@@ -171,6 +171,10 @@ def face(bodies, strips, stand, moved):
         back = turned(np.einsum("nk,nka->na", weights, moved[other][nodes]), -body.turn(tooth))
     n = strips.places.shape[:2]
     gap = np.where(exists, line - rho, 1.0).reshape(n)
+    # relief is missing from the gaps: the meshes are those of involutes
+    tip = bodies[mortar].profile
+    gap = gap + profile.relief(rho).reshape(n)
+    gap += tip.relief(np.sqrt(np.maximum(np.sum(strips.places**2, axis=2) - tip.base_radius**2, 0.0)))
     # the deformed flank's normal: material on the left of the edge's run, so outward is the run turned clockwise
     outward = turned(profile.normal(rho) * MIRROR, body.turn(tooth))
     along = np.stack([-outward[:, 1], outward[:, 0]], axis=1)
@@ -251,13 +255,19 @@ class Result:
     changes: list[float]
 
 
-def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15, coarse=1.0, own=False):
-    """Both gears at a position (travel from A in base pitches), one result."""
+def solve(
+    pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15, coarse=1.0, own=False,
+    torque=TORQUE, near=NEAR, half=0.16e-3,
+):  # fmt: skip
+    """Both gears at a position (travel from A in base pitches), one result.
+
+    Gaps wider than ``near`` [m] cannot close; elements have the edges ``h_path`` over twice ``half`` [m].
+    """
     start = pair.points.A + position * pair.base_pitch
     placed = pair.placement(float(start))
     stand = Stand((placed.pinion_angle, placed.wheel_angle), (np.zeros(2), placed.wheel_centre))
     contacts = candidates(pair, start, beyond)
-    bodies = meshed(pair, stand, contacts, h_corner, h_path, radius, growth, coarse)
+    bodies = meshed(pair, stand, contacts, h_corner, h_path, radius, growth, coarse, near, half)
     moved, phi, changes = [np.zeros((body.size // 2, 2)) for body in bodies], 0.0, []
     all_strips = [strips_of(bodies[mortar], mortar, teeth) for _, mortar, teeth, _ in contacts]
     for _ in range(12 if updated else 1):
@@ -267,7 +277,7 @@ def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15
             outside = [not pair.points.A <= rho1 <= pair.points.E for *_, rho1 in contacts]
             turned_to = [own_normals(bodies, *both, here) for both in zip(all_strips, faced, strict=True)]
             faced = [o if out else f for o, out, f in zip(turned_to, outside, faced, strict=True)]
-        kept = [np.all(f.gap < NEAR, axis=1) & np.all(f.gap > -2 * NEAR, axis=1) for f in faced]
+        kept = [np.all(f.gap < near, axis=1) & np.all(f.gap > -2 * near, axis=1) for f in faced]
         some = [
             replace(s, nodes=s.nodes[k], places=s.places[k], areas=s.areas[k])
             for s, k in zip(all_strips, kept, strict=True)
@@ -284,7 +294,7 @@ def solve(pair, position, h_corner, h_path, radius, beyond, updated, growth=0.15
         # the gaps hold the displacements so far: take them out, the solution brings all of them
         held = sum(load.T @ u.ravel() for load, u in zip(loads, moved, strict=True))
         p, turn = active_set(
-            0.5 * (compliance + compliance.T), weak - held - rate * phi, rate, TORQUE / pair.face_width
+            0.5 * (compliance + compliance.T), weak - held - rate * phi, rate, torque / pair.face_width
         )
         changes.append((turn - phi) * pair.base_radii[0])
         phi, moved = turn, [(answer @ p).reshape(-1, 2) for answer in answers]
@@ -309,7 +319,9 @@ def candidates(pair, start, beyond):
     return found
 
 
-def meshed(pair, stand, contacts, h_corner, h_path, radius, growth, coarse):
+def meshed(
+    pair, stand, contacts, h_corner, h_path, radius, growth, coarse, near=NEAR, half=0.16e-3
+):  # half: more than a half-width under the whole load
     """Mesh and factorise both gears, fine where they may touch."""
     foci = ({}, {})
     profiles = pair.teeth_profiles
@@ -318,7 +330,6 @@ def meshed(pair, stand, contacts, h_corner, h_path, radius, growth, coarse):
         for gear in (0, 1):
             foci[gear].setdefault(teeth[gear], [])
         if pair.points.A <= rho1 <= pair.points.E:
-            half = 0.16e-3  # more than a half-width under the whole load
             for gear, rho in enumerate((rho1, pair.line_of_action - rho1)):
                 point = profiles[gear].involute(rho) * MIRROR
                 foci[gear][teeth[gear]].append(Focus(point, h_path, half))
@@ -330,7 +341,7 @@ def meshed(pair, stand, contacts, h_corner, h_path, radius, growth, coarse):
         line = np.sqrt(at @ at - profile.base_radius**2)
         angle = np.arctan2(at[0], at[1]) - np.arctan2(line, profile.base_radius)
         rho = profile.base_radius * (profile.base_half_angle - angle)
-        if line - rho < NEAR:
+        if line - rho < near:
             foci[mortar][teeth[mortar]].append(Focus(tip, h_corner, 0.0 if radius == 0 else 2 * radius))
             foci[other][teeth[other]].append(Focus(profile.involute(rho) * MIRROR, h_corner, 8 * h_corner))
     sizes = Sizes(*(coarse * np.array([0.35, 0.25, 0.35, 0.35, 0.35, 0.8])))

@@ -31,8 +31,18 @@ ROWS = (  # approach [m], smallest edge [m], penalty [N/mm^3], edges free
 )
 
 
-def deck(pair, stand, contacts, bodies, approach, penalty):
-    """Text of the deck, the numbers and places (mm) of the pinion's bore nodes."""
+def deck(
+    pair,
+    stand,
+    contacts,
+    bodies,
+    approaches,
+    penalty,
+    step="*STEP, INC=200",
+    static="*STATIC\n0.5, 1.",
+    last="",
+):
+    """Text of the deck that turns the pinion by each approach in turn; numbers and places (mm) of its bore's nodes."""
     starts, meshes, node = [], [], 1
     for gear, body in enumerate(bodies):
         mesh = replace(body.mesh, points=MM * stand.out(gear, body.mesh.points))
@@ -58,14 +68,16 @@ def deck(pair, stand, contacts, bodies, approach, penalty):
             "*CONTACT PAIR, INTERACTION=FLANKS, TYPE=SURFACE TO SURFACE",
             f"{names[mortar]}, {names[1 - mortar]}",
         ]
-    text += ["*BOUNDARY", "W_BORE, 1, 2", "*STEP, INC=200", "*STATIC", "0.5, 1.", "*BOUNDARY"]
+    text += ["*BOUNDARY", "W_BORE, 1, 2"]
     bore = np.unique(meshes[0].facets["bore"])
     places = meshes[0].points[bore]
-    moves = turned(places, approach / pair.base_radii[0]) - places
-    for n, move in zip(bore + starts[0], moves, strict=True):
-        text += [f"{n}, {i + 1}, {i + 1}, {number(move[i])}" for i in (0, 1)]
-    text += ["*NODE PRINT, NSET=P_BORE", "RF", "*END STEP", ""]
-    return "\n".join(text), bore + starts[0], places
+    for approach in approaches:
+        moves = turned(places, approach / pair.base_radii[0]) - places
+        text += [step, static, "*BOUNDARY"]
+        for n, move in zip(bore + starts[0], moves, strict=True):
+            text += [f"{n}, {i + 1}, {i + 1}, {number(move[i])}" for i in (0, 1)]
+        text += [f"*NODE PRINT, NSET=P_BORE{last}", "RF", "*END STEP"]
+    return "\n".join([*text, ""]), bore + starts[0], places
 
 
 def torque(printed, nodes, places):
@@ -91,7 +103,7 @@ def main():
         began = time.perf_counter()
         contacts = two.candidates(pair, pair.points.C, free)
         bodies = two.meshed(pair, stand, contacts, edge, 8e-6, 0.0, 0.15, 1.0)
-        text, nodes, places = deck(pair, stand, contacts, bodies, approach, penalty)
+        text, nodes, places = deck(pair, stand, contacts, bodies, (approach,), penalty)
         (folder / "two.inp").write_text(text, encoding="ascii")
         subprocess.run(["ccx", "two"], cwd=folder, check=True, capture_output=True)
         moment = torque((folder / "two.dat").read_text(), nodes, places) * MM * pair.face_width

@@ -1,0 +1,70 @@
+"""The script that plants faults, on a few modules of the ground floors."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.planted.faults import faults_at, named, sample, sites
+
+ROOT = Path(__file__).parents[2]
+SEED = 11
+AMONG = ("base/units.py", "gears/involute.py", "gears/bisection.py", "gears/closed_form/dynamic_factor.py")
+TESTS = ("tests/base", "tests/gears/test_dynamic_factor.py", "tests/gears/test_profile.py")
+
+
+def test_every_fault_is_one_change_that_python_takes(tmp_path: Path):
+    source = b"""import math
+
+def area(radius: float, times: int = 2) -> float:
+    if radius < 0.0 and times:
+        raise ValueError("a message of 3 words, and more than 1 - 1")
+    return (
+        math.pi
+        * max(radius, 0.5) ** 2
+    )
+"""
+    (tmp_path / "one.py").write_bytes(source)
+    every = sites(source)
+    found = [fault for site in every for fault in faults_at("one.py", source, site, every)]
+    names = {fault.name for fault in found}
+    assert len(names) == len(found)
+    for wanted in ("0.5 -> 0.505", "2 -> 3", "max(radius, 0.5) -> min(radius, 0.5)", "radius < 0.0 -> radius >= 0.0",
+                   "max(radius, 0.5) ** 2 -> max(radius, 0.5)", "radius < 0.0 and times -> times"):  # fmt: skip
+        assert any(wanted in name for name in names), wanted
+    for fault in found:
+        planted = fault.planted(source)
+        assert ast.dump(ast.parse(planted)) != ast.dump(ast.parse(source))
+        assert planted.count(b"\n") == source.count(b"\n")  # lines stay where they were
+        assert b"a message of 3 words, and more than 1 - 1" in planted
+    drawn = sample(tmp_path, [tmp_path / "one.py"], 5, SEED)
+    assert drawn == sample(tmp_path, [tmp_path / "one.py"], 5, SEED)
+    (tmp_path / "one.py").write_bytes(b"# a line more\n" + source)
+    again = named(tmp_path, [fault.name for fault in drawn])
+    assert [(one.name, one.line - 1) for one in again] == [(one.name, one.line) for one in drawn]
+
+
+@pytest.mark.slow
+def test_tests_of_ground_floors_see_planted_faults(tmp_path: Path):
+    def run(*arguments: str) -> str:
+        command = [sys.executable, "-m", "tests.planted", *arguments, "--map", str(tmp_path)]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    run("map", *TESTS)
+    places = ("--work", str(tmp_path), "--out", str(tmp_path / "planted.jsonl"))
+    said = run("plant", "--faults", "10", "--seed", str(SEED), "--among", *AMONG, *places, "--seconds", "10")
+    print(said)
+    assert f"seed {SEED}" in said
+    found = re.search(r"seen: (\d+) of 10", said)
+    assert found is not None, said
+    assert int(found[1]) >= 5, said  # some of any ten change no result
+    assert not {
+        path for path in AMONG if (ROOT / path).read_bytes() != (tmp_path / "tree" / path).read_bytes()
+    }
