@@ -299,6 +299,7 @@ def _result(
         beyond_path=given.beyond_path,
         error=bodies.error,
         moving_contact=given.moving_contact,
+        strips_at_corners=given.strips_at_corners,
         lever_loss=lost[0],
         further_lever_loss=lost[1],
         cost=cost,

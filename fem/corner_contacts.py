@@ -33,13 +33,10 @@ UNBOUNDED, LEAST_UNRESOLVED = 1.2, 0.01
 
 def near_corner(cycle: MeshCycle, row: int, column: int, half_width: float, bodies: Compliance) -> int | None:
     """Gear whose corner presses or cuts off the pressure; None where it does neither, or its law is another."""
-    given = None if cycle.problem is None else cycle.problem.given
-    if given is None or given.removed is not None or given.moving_contact or not given.beyond_path:
-        return None
     for corner, gear in enumerate((bodies.pinion, bodies.wheel)):
         rho = cycle.flank_rho[corner][row, column]
         away = (gear.rho_end**2 - rho**2) / (2 * gear.base_radius)
-        if given.rounds[corner].radius == 0.0 and away < NEAR_CORNER * half_width:
+        if cycle.strips_at_corners[corner] and away < NEAR_CORNER * half_width:
             return corner
     return None
 

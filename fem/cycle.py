@@ -118,6 +118,10 @@ class MeshCycle(MeshFigures):
     )
     friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
     moving_contact: bool = part("whether contacts on the path move under load", default=False)
+    strips_at_corners: tuple[bool, bool] = part(
+        "whether contacts beside the tip corners of pinion and wheel press on them by strips of plain flanks that stay",
+        default=(False, False),
+    )
     lever_loss: Array | float = part(
         "parts of the base radii by which the levers of each force are shorter where contacts move: by the tilt of "
         "loaded flanks, and by the pinion's corner that moves with D",

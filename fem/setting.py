@@ -170,6 +170,13 @@ class Setting:
         return first, second
 
     @property
+    def strips_at_corners(self) -> tuple[bool, bool]:
+        """Whether contacts beside the tip corners of pinion and wheel press by strips of plain flanks that stay."""
+        plain = self.beyond_path and self.removed is None and not self.moving_contact
+        first, second = (plain and one.radius == 0.0 for one in self.rounds)
+        return first, second
+
+    @property
     def ends(self) -> tuple[float, float]:
         """rho1 at which contact of the two involutes starts and ends [m]: A and E but for roundings."""
         first, second = self.rounds

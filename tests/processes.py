@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 import uuid
@@ -53,7 +54,12 @@ def left_after(mark: str, patience: float = PATIENCE) -> dict[int, str]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Mark what the session starts; workers of a session have its mark."""
+    """Mark what the session starts; workers of a session have its mark. What it starts hears Ctrl-C.
+
+    A shell that starts a session in the background may ignore that signal, and children would inherit it.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if not hasattr(config, "workerinput"):
         config.stash[OF_SESSION] = new_mark()
         os.environ[MARK] = f"{os.environ.get(MARK, '')} {config.stash[OF_SESSION]}"

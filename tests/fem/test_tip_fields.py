@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.interpolate import CloughTocher2DInterpolator
@@ -28,6 +30,22 @@ def cycle(article_pair, article_bodies):
 @pytest.fixture(scope="module")
 def drawings(article_pair, article_bodies):
     return draw_gears(article_pair, article_bodies)
+
+
+def test_a_cycle_from_the_cache_has_the_same_fields(article_pair, article_bodies, drawings):
+    """What is kept of a cycle says where corners press: there fields are those of strips."""
+    cycle = fem.mesh_cycle(article_pair, 600.0, POSITIONS, article_bodies)
+    again = pickle.loads(pickle.dumps(cycle))
+    assert again.problem is None
+    row = POSITIONS - 1  # a contact within a half-width of E
+    first, second = (
+        loaded_fields(article_pair, one, row, article_bodies, drawings) for one in (cycle, again)
+    )
+    for one, other in zip(first, second, strict=True):
+        np.testing.assert_array_equal(one.von_mises_Pa, other.von_mises_Pa)
+    held = fem.mesh_cycle(article_pair, 600.0, POSITIONS, article_bodies, beyond_path=False)
+    assert cycle.strips_at_corners == (True, True)
+    assert held.strips_at_corners == (False, False)
 
 
 def von_mises(stress):

@@ -108,9 +108,6 @@ def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
 
     monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
     monkeypatch.setattr("sys.unraisablehook", lambda note: None)
-    before = signal.signal(
-        signal.SIGINT, signal.default_int_handler
-    )  # a shell may ignore it in the background
 
     def work() -> None:
         with answering_signals():
@@ -118,16 +115,13 @@ def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
             time.sleep(5.0)
 
     began = time.monotonic()
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            work()
-    finally:
-        signal.signal(signal.SIGINT, before)
+    with pytest.raises(KeyboardInterrupt):
+        work()
     assert time.monotonic() - began < 3.0
 
 
 HOLDS = """
-import ctypes, multiprocessing, os, signal, sys, time
+import ctypes, multiprocessing, os, sys, time
 from flankfilm.studies.executors import executor
 
 def hold() -> None:  # a call that keeps the interpreter, as compiled code does
@@ -135,7 +129,6 @@ def hold() -> None:  # a call that keeps the interpreter, as compiled code does
     ctypes.PyDLL(None).sleep(60)
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may ignore it in the background
     with executor("processes", 2) as pool:
         for _ in range(2):
             pool.executor.submit(hold)
