@@ -139,7 +139,7 @@ def compliance(
     message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
     if not converged:
         message = (
-            f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
+            f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; raise it"
         )
     bodies = Compliance(
         pair,

@@ -138,7 +138,7 @@ def fillets(
     finest = min(gear_edge for _, gear_edge in results)
     message = f"edges of {0.5 * finest:.3g} modules on the fillets, error {error:.1e}"
     if not converged:
-        message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; ask for less"
+        message += f", above the tolerance {tolerance:.1e} on the finest mesh allowed; raise it"
     pinion, wheel = (
         solved.influence.scaled(profile, PlaneElasticity.of(material, plane))
         for (solved, _), profile, material in zip(results, profiles, pair.materials, strict=True)

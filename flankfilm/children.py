@@ -10,6 +10,7 @@ A module runs as a child that ends with its parent by ``python -m flankfilm.chil
 from __future__ import annotations
 
 import ctypes
+import logging
 import os
 import runpy
 import signal
@@ -141,6 +142,14 @@ def killed_with_parent() -> None:
 def dask_setup(_worker: Any) -> None:
     """Start of a worker of dask that we started: this module is what it loads first."""
     killed_with_parent()
+    for name in ("distributed.worker", "distributed.core"):
+        logging.getLogger(name).addFilter(_is_no_lost_connection)
+
+
+def _is_no_lost_connection(record: logging.LogRecord) -> bool:
+    """Whether a worker's record, with its traceback, tells more than that the study has ended and gone."""
+    kind = record.exc_info[0] if record.exc_info else None
+    return kind is None or not issubclass(kind, OSError)
 
 
 def end_with(parent: int) -> None:

@@ -6,16 +6,17 @@ from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
+from base import Fault, InputError
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
-from flankfilm.scene.section import Section
+from flankfilm.scene.section import Section, refused
 from flankfilm.studies.design import following
 from flankfilm.studies.plan import base_scene, put, refuse_unknown_outputs
-from flankfilm.studies.study_file import Range, RowsFile, Value, read_rows_file
+from flankfilm.studies.study_file import Range, RowsFile, Value, in_file, read_rows_file
 
 COARSENING = 5.0
 """The tolerance of the first phase, in tolerances of the scene."""
@@ -34,12 +35,18 @@ class Limit(Section):
     @model_validator(mode="after")
     def _a_bound(self) -> Limit:
         if self.at_least is None and self.at_most is None:
-            raise ValueError("give at_least or at_most, or both")
+            raise refused("has no bound", "give at_least or at_most, or both")
+        if self.at_least is not None and self.at_most is not None and self.at_least > self.at_most:
+            allowed = f"must not lie above at_most = {self.at_most:g}"
+            raise refused(allowed, "lower it, or raise at_most", where="at_least", value=f"{self.at_least:g}")
         return self
 
 
 class OptimisationFile(RowsFile):
     """A whole optimisation file."""
+
+    called: ClassVar[str] = "the optimisation"
+    start: ClassVar[str] = "start from the optimisation in docs/howto/optimise.md"
 
     minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
         default=(), description="outputs wanted least; with several in all, their trade-off is sought"
@@ -56,7 +63,10 @@ class OptimisationFile(RowsFile):
     @model_validator(mode="after")
     def _something_to_want(self) -> OptimisationFile:
         if not self.minimise and not self.maximise:
-            raise ValueError('name at least one output, such as minimise = ["transmission_error_um"]')
+            raise refused("needs an output", 'such as ["transmission_error_um"]', where="minimise")
+        if both := set(self.minimise) & set(self.maximise):
+            allowed = "is to be least and greatest at once"
+            raise refused(allowed, "take it out of one", where="maximise", value=", ".join(sorted(both)))
         return self
 
 
@@ -132,12 +142,18 @@ def read_task(path: Path) -> Task:
     """
     asked = read_rows_file(path, OptimisationFile)
     names = (*asked.minimise, *asked.maximise, *asked.limits)
-    refuse_unknown_outputs(names)
+    refuse_unknown_outputs({name: getattr(asked, name) for name in ("minimise", "maximise", "limits")})
     scene = base_scene(asked.scene, asked.set, names, path.parent)
     fine = parse_tolerance(scene.get("tolerance", Scene.model_fields["tolerance"].default), "tolerance")
     # a tolerance that is no number is left for the scene's own check to refuse
     first = max(fine, min(COARSENING * fine, COARSEST)) if isinstance(fine, float) else COARSEST
     task = Task(asked, scene, (first, fine))
+    faults: dict[Fault, None] = {}
     for end in (0.0, 1.0):
-        validated(task.raw_scene(task.values([end] * len(asked.vary)), fine))
+        try:
+            validated(task.raw_scene(task.values([end] * len(asked.vary)), fine))
+        except InputError as error:
+            faults |= dict.fromkeys(in_file(fault, asked.vary) for fault in error.faults)
+    if faults:
+        raise InputError(faults)
     return task

@@ -12,7 +12,9 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from base import Fault, InputError, shorten
+from base.units import unit_of
 from flankfilm.scene.key import Key, key_of
+from flankfilm.scene.section import Section
 
 _ALLOWED = {
     "greater_than": "must be greater than {gt:g}",
@@ -44,7 +46,7 @@ LONGEST_PATH = 200
 """Characters of a key's path in a fault."""
 
 
-def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> list[Fault]:
+def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
     for fault in (fault for item in items for fault in explain(item, model)):
@@ -60,19 +62,19 @@ def explain_all(items: Iterable[Mapping[str, Any]], model: type[BaseModel]) -> l
     return list(joined.values())
 
 
-def explain(item: Mapping[str, Any], model: type[BaseModel]) -> Iterator[Fault]:
+def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
     """Faults for one finding of the validator; more than one where the rule of a section found more.
 
     Parameters
     ----------
     item : Mapping
         An entry of ``ValidationError.errors()``.
-    model : type of BaseModel
+    model : type of Section
         The model of the whole file, to suggest keys from.
     """
     location = tuple(item["loc"])
     path = [str(part) for part in location if not _names_a_type(part)]
-    where = ".".join(path)[:LONGEST_PATH] or "the scene"
+    where = ".".join(path)[:LONGEST_PATH] or model.called
     refused = item.get("ctx", {}).get("error")
     if isinstance(refused, InputError):
         for fault in refused.faults:
@@ -95,20 +97,17 @@ def _names_a_type(part: object) -> bool:
     return isinstance(part, str) and (part.endswith("Section") or part.startswith("literal["))
 
 
-def _unknown_key(where: str, location: tuple[Any, ...], model: type[BaseModel]) -> Fault:
+def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section]) -> Fault:
     key = str(location[-1])
-    keys = list(_model_at(location[:-1], model).model_fields)
+    fields = _model_at(location[:-1], model).model_fields
+    keys = [field.alias or name for name, field in fields.items()]
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
         k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
     ]
     remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(keys)}"
-    if near and _unit(near[0]) != _unit(key):
+    if near and unit_of(near[0]) != unit_of(key):
         remedy += " The unit is part of the key"
-    return Fault(where, "", "is not a key of the scene", remedy)
-
-
-def _unit(key: str) -> str:
-    return key.partition("_")[2]
+    return Fault(where, "", f"is not a key of {model.called}", remedy)
 
 
 def _model_at(location: Sequence[Any], model: type[BaseModel]) -> type[BaseModel]:
@@ -127,8 +126,8 @@ def _field_at(location: Sequence[Any], model: type[BaseModel]) -> FieldInfo | No
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Model of a table, or of a list of tables, that may stand at a key."""
-    if get_origin(annotation) in (Union, UnionType, Annotated, tuple):
+    """Model of a table, or of tables in a list or by names, that may stand at a key."""
+    if get_origin(annotation) in (Union, UnionType, Annotated, tuple, dict):
         return next((m for m in map(model_in, get_args(annotation)) if m is not None), None)
     return annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
 
@@ -136,7 +135,7 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
 def _remedy(item: Mapping[str, Any], about: Key) -> str:
     kind, value = item["type"], item["input"]
     if kind in ("float_type", "int_type") and isinstance(value, str):
-        return "Write it without quotes; the unit is part of the key"
+        return "Write it without quotes" + ("; the unit is part of the key" if about.unit != "1" else "")
     if kind in _RANGES and about.unit != "1":
         return f"Check the unit: the key {item['loc'][-1]} names it"
     if kind == "literal_error" and isinstance(value, str):

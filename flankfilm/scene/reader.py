@@ -71,8 +71,10 @@ def parse_scene(text: str, name: str = "scene", folder: Path = Path()) -> Scene:
     return validated(raw, read_flank_files(raw, folder))
 
 
-def parse_toml(text: str, name: str) -> dict[str, Any]:
-    """Read TOML; `name` is what a fault calls the file."""
+def parse_toml(
+    text: str, name: str, start: str = "'flankfilm new' writes a scene to start from"
+) -> dict[str, Any]:
+    """Read TOML; `name` is what a fault calls the file, `start` says where one to begin with is."""
     # the parser keeps every beginning of a dotted key, and looks each up from its first part
     if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_SQUARED_DOTS:
         allowed = "has a line with thousands of dots"
@@ -80,8 +82,7 @@ def parse_toml(text: str, name: str) -> dict[str, Any]:
     try:
         raw = tomllib.loads(text)
     except ValueError as fault:  # also a number of more digits than Python reads
-        remedy = "'flankfilm new' writes a scene to start from"
-        raise InputError.at(name, "", f"must be TOML: {fault}", remedy) from fault
+        raise InputError.at(name, "", f"must be TOML: {fault}", start) from fault
     except RecursionError as fault:
         raise _too_deep(name) from fault
     bounded(raw, name)
@@ -106,9 +107,8 @@ def _too_deep(name: str) -> InputError:
     return InputError.at(name, "", "is nested too deeply", "a scene has four levels at most")
 
 
-def read_text(path: Path) -> str:
-    """Read a scene or study file as text."""
-    remedy = "name a scene file, or write one: flankfilm new FILE"
+def read_text(path: Path, remedy: str = "name a scene file, or write one: flankfilm new FILE") -> str:
+    """Read a scene or study file as text; the remedy is for one that is missing."""
     try:
         return content_of(path, LARGEST_FILE, remedy, "a scene or study is a few kilobytes").decode("utf-8")
     except UnicodeDecodeError as fault:

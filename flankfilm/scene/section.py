@@ -22,6 +22,9 @@ class Section(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
+    called: ClassVar[str] = "the scene"
+    """What faults call the file of which this is the whole."""
+
     ground: ClassVar[Limits] = {}
     """What the ground allows for the quantities that the section's keys give, in SI."""
 

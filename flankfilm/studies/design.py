@@ -32,11 +32,13 @@ def _bounded(study: StudyFile) -> None:
     for length in lengths if study.samples is None else ():
         rows = rows * length if study.design == "grid" else max(rows, length)
         if rows > MOST_ROWS:
-            raise InputError.at("vary", "", f"must give at most {MOST_ROWS:,} rows", "Take fewer steps")
+            raise InputError.at(
+                "vary", "", f"must give at most {MOST_ROWS:,} rows", "take fewer steps or values"
+            )
     if study.design == "list" and len(set(lengths)) != 1:
         allowed = 'must have equally many values in a "list"'
         listed = ", ".join(str(length) for length in lengths)
-        raise InputError.at("vary", listed, allowed, 'Or design = "grid"')
+        raise InputError.at("vary", listed, allowed, 'give each as many, or take design = "grid"')
     if rows * (len(study.vary) + len(study.follow)) > MOST_CELLS:
         allowed = f"must give at most {MOST_CELLS:,} rows times keys"
         raise InputError.at("vary", "", allowed, "Take fewer rows or keys")
@@ -73,7 +75,9 @@ def following(values: Mapping[str, Value], rule: Follow) -> Value:
     """Value of a key that follows one of `values`."""
     leader = values[rule.of]
     if isinstance(leader, str | bool):
-        raise InputError.at("follow", rule.of, "is text, which nothing can follow", 'Use design = "list"')
+        raise InputError.at(
+            "follow", rule.of, "is text, which nothing can follow", 'vary both, with design = "list"'
+        )
     followed = rule.times * leader + rule.plus
     whole = isinstance(leader, int) and rule.times.is_integer() and rule.plus.is_integer()
     return round(followed) if whole else followed

@@ -15,7 +15,7 @@ from flankfilm.scene.flank_files import names_a_file, read_flank_files, without_
 from flankfilm.scene.reader import parse_toml, read_text, validated
 from flankfilm.studies.design import following, rows_of
 from flankfilm.studies.outputs import OUTPUTS
-from flankfilm.studies.study_file import StudyFile, Value, read_rows_file
+from flankfilm.studies.study_file import StudyFile, Value, in_file, read_rows_file
 
 MOST_CHECKED = 20_000
 """Rows whose scene is checked before anything is computed; of more rows these, spread evenly."""
@@ -87,18 +87,19 @@ def read_plan(path: Path) -> Plan:
     return plan_of(read_rows_file(path, StudyFile), path.parent)
 
 
-def refuse_unknown_outputs(names: Iterable[str]) -> None:
-    """Refuse outputs that no row has, all at once."""
+def refuse_unknown_outputs(wanted: Mapping[str, Iterable[str]]) -> None:
+    """Refuse outputs that no row has, given by the key of the file that names them, all at once."""
     with Faults() as found:
-        for name in (name for name in names if name not in OUTPUTS):
-            near = difflib.get_close_matches(name, OUTPUTS, n=1)
-            remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(OUTPUTS)}"
-            found.add("outputs", repr(name), "is not an output", remedy)
+        for key, name in ((key, name) for key, names in wanted.items() for name in names):
+            if name not in OUTPUTS:
+                near = difflib.get_close_matches(name, OUTPUTS, n=1)
+                remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(OUTPUTS)}"
+                found.add(key, repr(name), "is not an output", remedy)
 
 
 def plan_of(study: StudyFile, folder: Path) -> Plan:
     """Lay out the rows of a study whose scene file is named from `folder`."""
-    refuse_unknown_outputs(study.outputs)
+    refuse_unknown_outputs({"outputs": study.outputs})
     scene = base_scene(study.scene, study.set, study.outputs, folder)
     keys = (*study.vary, *study.follow)
     varied = tuple(study.vary)
@@ -116,7 +117,7 @@ def plan_of(study: StudyFile, folder: Path) -> Plan:
         len(varied),
         folder,
     )
-    _check_rows(plan)
+    _check_rows(plan, study.vary)
     return plan
 
 
@@ -155,7 +156,7 @@ def put(raw: dict[str, Any], key: str, value: Value) -> None:
     here[last] = value
 
 
-def _check_rows(plan: Plan) -> None:
+def _check_rows(plan: Plan, vary: Mapping[str, object]) -> None:
     """Refuse a study whose keys or values the scene cannot have, each fault once, with its first row.
 
     Of very many rows some are checked; a row that is not and that is faulty fails by itself.
@@ -166,7 +167,7 @@ def _check_rows(plan: Plan) -> None:
             validated(plan.raw_scene(row))
         except InputError as error:
             for fault in error.faults:
-                of_row = replace(fault, where=f"row {row}: {fault.where}")
+                of_row = replace(in_file(fault, vary), where=f"row {row}: {fault.where}")
                 faults.setdefault((fault.where, fault.allowed), of_row)
             if len(faults) >= MOST_FAULTS:
                 break

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
-from base import InputError
+from base import Fault, Faults, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists
-from flankfilm.scene.section import Section
+from flankfilm.scene.section import Section, refused
 
 MOST_ROWS = 1_000_000
 
@@ -38,9 +40,11 @@ class Range(Section):
     @model_validator(mode="after")
     def _a_range(self) -> Range:
         if not self.from_ < self.to:
-            raise ValueError(f"from = {self.from_:g} must lie below to = {self.to:g}")
+            allowed = f"must lie below to = {self.to:g}"
+            raise refused(allowed, "give the smaller number first", where="from", value=f"{self.from_:g}")
         if self.log and self.from_ <= 0:
-            raise ValueError(f"log needs from > 0, not {self.from_:g}")
+            allowed = "must be more than 0 with log = true"
+            raise refused(allowed, "raise it, or leave log out", where="from", value=f"{self.from_:g}")
         return self
 
     def at(self, unit: float) -> Value:
@@ -63,11 +67,32 @@ class Follow(Section):
     plus: Bounded = Field(default=0.0, description="added to that")
 
 
+def _kind(value: Any) -> str:
+    """Which of two forms a value has, said before it is judged, so that its faults are those of one form."""
+    return "TableSection" if isinstance(value, dict | Range) else "PlainSection"
+
+
+Listed = Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]
+
+Varied = Annotated[
+    Annotated[Listed, Tag("PlainSection")] | Annotated[Range, Tag("TableSection")], Discriminator(_kind)
+]
+"""What a key of a study varies over."""
+
+NamedOrGiven = Annotated[
+    Annotated[str, Tag("PlainSection")] | Annotated[dict[str, Any], Tag("TableSection")], Discriminator(_kind)
+]
+"""A scene."""
+
+
 class RowsFile(Section):
     """What a study and an optimisation have in common: a scene, keys that vary or follow, and keys that are set."""
 
+    start: ClassVar[str]
+    """Where a file to begin with is."""
+
     title: str = Field(default="", max_length=200, description="title of the study")
-    scene: str | dict[str, Any] = Field(description="a scene file beside this one, or the scene itself")
+    scene: NamedOrGiven = Field(description="a scene file beside this one, or the scene itself")
     vary: Any = Field(description="keys of the scene that vary, each with a range or a list of values")
     follow: Annotated[dict[str, Follow], Field(max_length=MOST_KEYS)] = Field(
         default_factory=dict, description="keys of the scene that follow a varied one"
@@ -78,21 +103,25 @@ class RowsFile(Section):
 
     @model_validator(mode="after")
     def _leaders_and_places(self) -> RowsFile:
-        if not self.vary:
-            raise ValueError('vary needs a key of the scene, such as "pair.pinion.profile_shift"')
-        for key, rule in self.follow.items():
-            if rule.of not in self.vary:
-                raise ValueError(f'follow "{key}" follows "{rule.of}", which is not varied')
-        twice = (self.vary.keys() & self.follow.keys()) | (
-            self.set.keys() & (self.vary.keys() | self.follow.keys())
-        )
-        if twice:
-            raise ValueError(f"{', '.join(sorted(twice))} stands in two of vary, follow and set")
+        with Faults() as found:
+            if not self.vary:
+                found.add("vary", "", "needs a key of the scene", 'such as "pair.pinion.profile_shift"')
+            for key, rule in self.follow.items():
+                if rule.of not in self.vary:
+                    remedy = f"follow one that is: {', '.join(self.vary)}"
+                    found.add(f"follow.{key}.of", rule.of, "is not varied", remedy)
+            fixed = self.set.keys() & (self.vary.keys() | self.follow.keys())
+            for key in sorted(fixed | (self.vary.keys() & self.follow.keys())):
+                allowed = "stands in more than one of vary, follow and set"
+                found.add(key, "", allowed, f"take it out of {'set' if key in fixed else 'follow'}")
         return self
 
 
 class StudyFile(RowsFile):
     """A whole study file."""
+
+    called: ClassVar[str] = "the study"
+    start: ClassVar[str] = "start from the study in docs/howto/studies.md"
 
     outputs: Annotated[tuple[str, ...], Field(strict=False, min_length=1, max_length=200)] = Field(
         description="computed for every row; the names are listed below"
@@ -105,22 +134,31 @@ class StudyFile(RowsFile):
         default=None, ge=1, le=MOST_ROWS, description="number of rows of a sampled design"
     )
     seed: int = Field(default=1, ge=0, description="of a sampled design; the same seed gives the same rows")
-    vary: Annotated[
-        dict[str, Range | Annotated[tuple[Value, ...], Field(strict=False, min_length=1)]],
-        Field(max_length=MOST_KEYS),
-    ] = Field(description="keys of the scene that vary, each with a range or a list of values")
+    vary: Annotated[dict[str, Varied], Field(max_length=MOST_KEYS)] = Field(
+        description="keys of the scene that vary, each with a range or a list of values"
+    )
 
     @model_validator(mode="after")
     def _one_design(self) -> StudyFile:
         sampled = self.design in ("latin-hypercube", "sobol")
-        if sampled and self.samples is None:
-            raise ValueError(f'design = "{self.design}" needs samples')
-        if not sampled and self.samples is not None:
-            raise ValueError(f'samples belongs to sampled designs, not to "{self.design}"')
-        for key, values in self.vary.items():
-            if isinstance(values, Range) and not sampled and values.steps is None:
-                raise ValueError(f'vary "{key}" needs steps in a {self.design}')
+        with Faults() as found:
+            if sampled and self.samples is None:
+                found.add("samples", "", f'is required by design = "{self.design}"', "such as samples = 64")
+            if not sampled and self.samples is not None:
+                allowed = f'belongs to sampled designs, not to "{self.design}"'
+                found.add("samples", self.samples, allowed, 'leave it out, or take design = "sobol"')
+            for key, values in self.vary.items():
+                if isinstance(values, Range) and not sampled and values.steps is None:
+                    found.add(f"vary.{key}.steps", "", f"is required by a {self.design}", "such as steps = 5")
         return self
+
+
+def in_file(fault: Fault, vary: Mapping[str, object]) -> Fault:
+    """Fault of a row's scene, with what to do about it where the row's keys are given."""
+    span = vary.get(fault.where)
+    if isinstance(span, Range) and not span.whole and fault.allowed.startswith("must be a whole number"):
+        return replace(fault, remedy="add whole = true to its range")
+    return fault
 
 
 F = TypeVar("F", bound=RowsFile)
@@ -128,7 +166,7 @@ F = TypeVar("F", bound=RowsFile)
 
 def read_rows_file(path: Path, kind: type[F]) -> F:
     """Read and check a study or an optimisation file, apart from the scene in it."""
-    raw = parse_toml(read_text(path), str(path))
+    raw = parse_toml(read_text(path, f"name another file, or {kind.start}"), str(path), kind.start)
     refuse_long_lists({key: value for key, value in raw.items() if key != "vary"})
     try:
         return kind.model_validate(raw)

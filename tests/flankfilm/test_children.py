@@ -187,6 +187,28 @@ def test_a_module_whose_parent_died_before_it_began_ends_at_once():
     assert begun.returncode == 1
 
 
+def test_a_worker_of_dask_says_nothing_of_a_scheduler_that_has_gone():
+    """What ends a study closes its connections; anything else that a worker finds is said as before."""
+    said = subprocess.run(
+        python(
+            "-c",
+            "import logging, flankfilm.children\n"
+            "flankfilm.children.dask_setup(None)\n"
+            "for error in (ConnectionResetError('gone'), MemoryError('full')):\n"
+            "    try:\n"
+            "        raise error\n"
+            "    except Exception:\n"
+            "        logging.getLogger('distributed.worker').exception('heartbeat')\n",
+        ),
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stderr
+    assert "MemoryError: full" in said
+    assert "gone" not in said
+
+
 def test_a_session_that_leaves_processes_behind_fails_and_names_them(tmp_path):
     (tmp_path / "conftest.py").write_text(
         "import tests.processes\n"

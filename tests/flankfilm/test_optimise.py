@@ -171,7 +171,7 @@ def test_the_command_writes_a_scene_that_runs(tmp_path):
 @pytest.mark.parametrize(
     ("wanted", "rest", "expected"),
     [
-        ("", SHIFT, "at least one output"),
+        ("", SHIFT, "minimise: needs an output"),
         ('minimise = ["beauty"]', SHIFT, "is not an output"),
         ('minimise = ["contact_ratio"]', "[vary]", "vary"),
         ('minimise = ["contact_ratio"]', '[vary]\n"pair.colour" = { from = 0.0, to = 1.0 }', "colour"),

@@ -92,10 +92,15 @@ class TestDesign:
         [
             ('"pair.pinion.tooth" = [30, 31]', "grid", "", "tooth"),
             ('"pair.module_mm" = [1.0, -1.0]', "grid", "", "row 1: pair.module_mm"),
-            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "grid", "", "needs steps"),
-            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "sobol", "", "needs samples"),
+            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "grid", "", "steps: is required by a grid"),
+            ('"pair.module_mm" = { from = 1.0, to = 2.0 }', "sobol", "", "samples: is required"),
             ('"pair.module_mm" = { from = 2.0, to = 1.0, steps = 3 }', "grid", "", "must lie below"),
-            ('"pair.module_mm" = { from = 0.0, to = 1.0, steps = 3, log = true }', "grid", "", "log needs"),
+            (
+                '"pair.module_mm" = { from = 0.0, to = 1.0, steps = 3, log = true }',
+                "grid",
+                "",
+                "more than 0 with log",
+            ),
             ('"title.deep" = [1]', "grid", "", "not a section"),
             ("", "grid", "", "needs a key"),
         ],
