@@ -17,7 +17,7 @@ from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
     from flankfilm.coupling import Verification
-    from flankfilm.optimisation.run import Optimum
+    from flankfilm.optimisation.optimum import Optimum
     from flankfilm.optimisation.task import Task
     from flankfilm.results import Results
     from flankfilm.studies.plan import Plan

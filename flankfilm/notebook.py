@@ -11,6 +11,7 @@ from flankfilm.stages.failures import lines
 from gears.notebook import table
 
 if TYPE_CHECKING:
+    from flankfilm.optimisation.optimum import Optimum
     from flankfilm.results import Results
     from flankfilm.studies.run import StudyResults
 
@@ -43,3 +44,23 @@ def study_html(found: StudyResults) -> str:
     head = ("row", *plan.keys, *plan.outputs, "fault")
     size = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
     return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}"
+
+
+def optimum_html(found: Optimum) -> str:
+    """Best points of an optimisation, and what may be said of them."""
+    from flankfilm.optimisation.words import claims
+
+    task = found.task
+    chosen = [found.evaluations[place] for place in found.best[:MOST_ROWS]]
+    rows = [
+        (
+            str(point.result.index),
+            *(value if isinstance(value, str) else number(value, 6) for value in point.values),
+            *(number(value, 5) for value in point.result.values),
+        )
+        for point in chosen
+    ]
+    said = "".join(f"<p>{escape(line)}</p>" for line in claims(found))
+    size = f"{len(found.evaluations)} points, {found.computed} computed in {found.seconds:.1f} s"
+    head = f"<p><b>{escape(task.asked.title or 'Optimisation')}</b>: {escape(size)}</p>"
+    return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}"

@@ -18,6 +18,8 @@ from .motion import diagram as diagram
 from .motion import portraits as portraits
 from .motion import resonance as resonance
 from .motion import sweep as sweep
+from .optima import optimum as optimum
+from .optima import optimum_map as optimum_map
 from .stiffness import fourier as fourier
 from .stiffness import load_share as load_share
 from .stiffness import mesh_stiffness as mesh_stiffness
@@ -26,5 +28,4 @@ from .stiffness import revolution as revolution
 from .stiffness import single_pairs as single_pairs
 from .stiffness import transmission_error as transmission_error
 from .stiffness import verification as verification
-from .studies import optimum as optimum
 from .studies import study as study

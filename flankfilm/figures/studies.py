@@ -1,21 +1,17 @@
-"""Outputs of a study against the keys that vary; points of an optimisation."""
+"""Outputs of a study against the keys that vary."""
 
 from __future__ import annotations
 
-import itertools
-import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array
-from flankfilm.figures.reading import key_title, need, titled
+from flankfilm.figures.reading import key_title, titled
 from flankfilm.figures.style import COLOURS, DASHES, Style, colours, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FAMILY = 18
@@ -103,46 +99,3 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
                 label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
             )
     axes.set(xlabel=key_title(across), ylabel=titled(found, name))
-
-
-def optimum(found: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw every point: one objective over the evaluations, or each two of several against each other.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        What ``optimum.nc`` holds.
-    style : mapping, optional
-        rcParams that overrule the house's.
-    """
-    need(found, "give the optimum.nc of an optimisation", "best", "fine")
-    names = [str(name) for name in json.loads(found.attrs["objectives_json"])]
-    best = np.flatnonzero(found["best"].values)
-    if len(names) == 1:
-        (name,) = names
-        order, y = np.arange(1.0, found["best"].size + 1.0), found[name].values
-        with sheet(style, height=3.6) as (drawn, (axes,)):
-            _points(axes, found, order, y)
-            axes.plot(order[best], y[best], "*", color=colours(2)[1], markersize=11, label="best")
-            axes.set(xlabel="evaluation", ylabel=titled(found, name))
-        return drawn
-    pairs = list(itertools.combinations(names, 2))
-    width = 7.0 if len(pairs) < 2 else 3.6 * min(3, len(pairs))
-    with sheet(style, 1, len(pairs), width=width, height=3.6) as (drawn, panels):
-        for axes, pair in zip(panels, pairs, strict=True):
-            first, second = (found[name].values for name in pair)
-            _points(axes, found, first, second)
-            front, line = best[np.argsort(first[best])], "o-" if len(pairs) == 1 else "o"
-            axes.plot(first[front], second[front], line, color=colours(2)[1], markersize=4, label="front")
-            axes.set(xlabel=titled(found, pair[0]), ylabel=titled(found, pair[1]))
-    return drawn
-
-
-def _points(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> None:
-    fine = found["fine"].values.astype(bool)
-    for mask, colour, label in (
-        (~fine, "#aaaaaa", "coarse tolerance"),
-        (fine, colours(1)[0], "the scene's tolerance"),
-    ):
-        if mask.any():
-            axes.plot(x[mask], y[mask], ".", color=colour, markersize=3, label=label)

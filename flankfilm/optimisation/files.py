@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.optimisation.run import Optimum
+from flankfilm.optimisation.optimum import Optimum
+from flankfilm.optimisation.words import claims
 from flankfilm.output.files import provenance, write_csv, write_netcdf, write_text
 from flankfilm.scene.toml import toml_lines
 from flankfilm.studies.files import of_rows
+from flankfilm.studies.output_errors import ERROR_OF
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,8 +29,8 @@ def summary(found: Optimum) -> list[str]:
     if (both := phases(found)) is not None:
         coarse, fine, saved = both
         lines.append(
-            f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: {100 * saved:.0f} % "
-            "less in all than with every point at the second"
+            f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: "
+            f"{100 * abs(saved):.0f} % {'less' if saved >= 0 else 'more'} in all than with every point at the second"
         )
     if len(found.best) > 1:
         lines.append(f"{len(found.best)} points on the front, from the least {task.objectives[0]}:")
@@ -39,7 +41,7 @@ def summary(found: Optimum) -> list[str]:
         lines.append(f"{keys}: {outputs}")
     if len(found.best) > 10:
         lines.append(f"{len(found.best) - 10} more in optimum.csv")
-    return lines
+    return [*lines, *claims(found)]
 
 
 def phases(found: Optimum) -> tuple[float, float, float] | None:
@@ -56,30 +58,74 @@ def phases(found: Optimum) -> tuple[float, float, float] | None:
 
 
 def dataset(found: Optimum) -> xr.Dataset:
-    """Give every point of an optimisation along ``point``: keys as coordinates, outputs, and which are best."""
+    """Give every point of an optimisation along ``point``: keys as coordinates, outputs, and what may be claimed.
+
+    The scene as it stands is held as ``start_`` with the names of keys and outputs.
+    """
     task, points = found.task, found.evaluations
-    best = np.isin(np.arange(len(points)), found.best).astype(np.int8)
-    fine = np.array([point.tolerance == task.tolerances[1] for point in points], dtype=np.int8)
+    fine = [point.tolerance == task.tolerances[1] for point in points]
+    places = np.arange(len(points))
     scene = json.dumps(task.raw_scene(points[found.best[0]].values, task.tolerances[1]))
     attributes = {
         "title": task.asked.title,
         "objectives_json": json.dumps(task.objectives),
+        "signs_json": json.dumps(task.signs),
+        "limits_json": json.dumps(task.limits),
+        "vary_json": json.dumps({key: [span.from_, span.to] for key, span in task.asked.vary.items()}),
+        "converged": int(found.converged),
+        "message": found.message,
         **provenance(scene),
     }
     values, results = [point.values for point in points], [point.result for point in points]
+    data = of_rows("point", task.keys, values, task.outputs, results)
+    for name in task.objectives:
+        if (error := ERROR_OF.get(name)) is not None:
+            data[name].attrs["error_variable"] = error
+        else:
+            data[name].attrs["error"] = found.error_of(name, results[found.best[0]])
+    flags = {
+        "best": (np.isin(places, found.best), "1 for the optimum, or for the front"),
+        "fine": (fine, "1 at the scene's own tolerance"),
+        "allowed": (found.allowed, "1 where the limits are kept"),
+        "tied": (
+            np.isin(places, found.tied),
+            "1 where no objective differs from the best by more than its error",
+        ),
+    }
     return (
-        of_rows("point", task.keys, values, task.outputs, results)
-        .assign(
-            best=("point", best, {"units": "1", "long_name": "1 for the optimum, or for the front"}),
-            fine=("point", fine, {"units": "1", "long_name": "1 at the scene's own tolerance"}),
+        data.assign(
+            {
+                name: ("point", np.asarray(flag, dtype=np.int8), {"units": "1", "long_name": meaning})
+                for name, (flag, meaning) in flags.items()
+            }
         )
+        .assign(_start(found, data))
         .assign_attrs(attributes)
     )
 
 
+def _start(found: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], float, dict[str, str]]]:
+    """The scene as it stands: its keys, nan where it has none, and its outputs."""
+    if found.start is None:
+        return {}
+    names = (*found.task.keys, *found.task.outputs)
+    return {
+        f"start_{name}": (
+            (),
+            value if isinstance(value, int | float) else float("nan"),
+            {
+                "units": data[name].attrs["units"],
+                "long_name": f"{data[name].attrs['long_name']}: scene as it stands",
+            },
+        )
+        for name, value in zip(names, (*found.start.values, *found.start.result.values), strict=True)
+    }
+
+
 def write_optimum(found: Optimum, folder: Path) -> list[Path]:
-    """Write all points, the front, the first one's scene, the figure, and a page with all; return the files."""
-    from flankfilm.figures import optimum
+    """Write all points, the front, the first one's scene, the figures, and a page with all; return the files."""
+    from flankfilm.figures import optimum, optimum_map
+    from flankfilm.figures.optima import can_be_mapped
     from flankfilm.figures.style import save
     from flankfilm.report.other_pages import write_optimum_page
 
@@ -93,4 +139,8 @@ def write_optimum(found: Optimum, folder: Path) -> list[Path]:
     held = dataset(found)
     write_netcdf(points, held)
     save(optimum(held), picture)
-    return [table, scene, points, picture, write_optimum_page(found, held, folder)]
+    drawn = [picture]
+    if can_be_mapped(held):
+        drawn.append(folder / "optimum_map.svg")
+        save(optimum_map(held), drawn[-1])
+    return [table, scene, points, *drawn, write_optimum_page(found, held, folder)]

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import SolverError
-from flankfilm.optimisation.search import FAILED, front, search
+from flankfilm.optimisation.optimum import Evaluation, Optimum, error_of, judged
+from flankfilm.optimisation.search import front, search
+from flankfilm.optimisation.start import NOT_THERE
 from flankfilm.optimisation.task import Task
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import KeptRows, Work, kept_rows
@@ -22,42 +24,8 @@ from flankfilm.studies.workers import Workers
 
 Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True, eq=False)
-class Evaluation:
-    """One point: tolerance, values of the keys, and what came of it."""
-
-    tolerance: float
-    values: tuple[Value, ...]
-    result: RowResult
-
-
-@dataclass(frozen=True, eq=False)
-class Optimum:
-    """What an optimisation gave.
-
-    Attributes
-    ----------
-    task : Task
-    evaluations : tuple of Evaluation
-        In the order in which they were asked for.
-    best : ndarray of int
-        Evaluations at the scene's tolerance that keep the limits and that none betters: one, or the front.
-    computed : int
-        Evaluations of this run; the others were there.
-    seconds : float
-        Wall time of this run.
-    """
-
-    task: Task
-    evaluations: tuple[Evaluation, ...]
-    best: NDArray[np.intp]
-    computed: int
-    seconds: float
-
-    def __repr__(self) -> str:
-        """One line: points, those that are best, seconds."""
-        return f"Optimum({len(self.evaluations)} points, {len(self.best)} best, {self.seconds:.3g} s)"
+Point = tuple[float, tuple[Value, ...]]
+"""Tolerance, and values of the keys."""
 
 
 @dataclass
@@ -69,13 +37,38 @@ class _Evaluator:
     workers: Workers
     use_cache: bool
     progress: Progress
-    known: dict[tuple[float, tuple[Value, ...]], RowResult]
-    asked: dict[tuple[float, tuple[Value, ...]], RowResult] = field(default_factory=dict)
+    known: dict[Point, RowResult]
+    asked: dict[Point, RowResult] = field(default_factory=dict)
     computed: int = 0
 
-    def __call__(self, units: Array, tolerance: float) -> tuple[Array, Array]:
+    def __call__(self, units: Array, tolerance: float, /) -> tuple[Array, Array]:
         """Objectives and limits of points of the unit cube."""
         points = [(tolerance, self.task.values(unit)) for unit in units.tolist()]
+        results = self.results(points)
+        for point, result in zip(points, results, strict=True):
+            self.asked.setdefault(point, result)
+        return judged(self.task, results)
+
+    @property
+    def left(self) -> int:
+        """Points that may still be asked for; the scene as it stands is one."""
+        return self.task.asked.evaluations - len(self.asked) - 1
+
+    def error(self, unit: Array, /) -> float:
+        """Absolute error of the first objective at a point, at the scene's tolerance."""
+        point = (self.task.tolerances[1], self.task.values(unit.tolist()))
+        (result,) = self.results([point])
+        return abs(result.values[0]) * error_of(self.task, self.task.objectives[0], result)
+
+    def start(self) -> Evaluation | None:
+        """The scene as it stands, at its own tolerance; None where its keys make no scene."""
+        if self.task.start.scene is None:
+            return None
+        point = (self.task.tolerances[1], self.task.start.values)
+        return Evaluation(*point, *self.results([point]))
+
+    def results(self, points: list[Point]) -> list[RowResult]:
+        """Results of points, of which those that are not known are computed and kept."""
         missing = [p for p in dict.fromkeys(points) if p not in self.known]
         start = 1 + max((result.index for result in self.known.values()), default=-1)
         rows = [
@@ -88,26 +81,7 @@ class _Evaluator:
             self.known[tol, values] = result
             self.computed += 1
             self.progress(len(self.known), self.task.asked.evaluations)
-        for point in points:
-            self.asked.setdefault(point, self.known[point])
-        results = [self.known[point] for point in points]
-        return _judged(self.task, results)
-
-
-def _judged(task: Task, results: list[RowResult]) -> tuple[Array, Array]:
-    """Objectives with the sign of minimisation, and limits, allowed where <= 0, relative to their bounds.
-
-    A failed point is the worst of all.
-    """
-    values = np.array([result.values for result in results]).reshape(-1, len(task.outputs))
-    limits = [
-        sign * (values[:, task.outputs.index(name)] - bound) / (abs(bound) or 1.0)
-        for name, sign, bound in task.limits
-    ]
-    objectives = values[:, : len(task.signs)] * np.array(task.signs)
-    # the search asks for no point at all where none keeps the limits
-    kept = np.array(limits).reshape(len(limits), len(results)).T
-    return np.where(np.isfinite(objectives), objectives, FAILED), np.where(np.isfinite(kept), kept, FAILED)
+        return [self.known[point] for point in points]
 
 
 def optimise(
@@ -138,25 +112,27 @@ def optimise(
     SolverError
         Where no point keeps the limits.
     """
-    start = time.perf_counter()
+    began = time.perf_counter()
     columns = Columns(("tolerance", *task.keys), task.outputs)
     work = Work("optimisation", task.asked.title, {"task": _plain(task), "scene": task.scene}, columns)
     with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
         evaluator = _Evaluator(task, kept, staff, how.cache, progress, dict(_points(task, kept.lines)))
-        search(task, evaluator)
+        start = evaluator.start()
+        polished = search(task, evaluator)
     evaluations = tuple(Evaluation(*point, result) for point, result in evaluator.asked.items())
     best = _best(task, evaluations)
     if not best.size:
         reasons = sorted({e.result.fault for e in evaluations if e.result.fault})
         why = f"; the first of {len(reasons)} faults: {reasons[0]}" if reasons else "; widen bounds or limits"
         raise SolverError(f"none of {len(evaluations)} points keeps the limits{why}")
-    return Optimum(task, evaluations, best, evaluator.computed, time.perf_counter() - start)
+    seconds = time.perf_counter() - began
+    return Optimum(task, evaluations, best, evaluator.computed, seconds, start, polished)
 
 
 def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
     results = [e.result for e in evaluations]
     fine = np.array([e.tolerance == task.tolerances[1] for e in evaluations])
-    objectives, limits = _judged(task, results)
+    objectives, limits = judged(task, results)
     good = np.all(limits <= 0, axis=1) & np.array([not r.fault for r in results])
     found = front(objectives, fine & good)
     return found[:1] if len(task.objectives) == 1 else found
@@ -169,7 +145,7 @@ def _plain(task: Task) -> list[object]:
     return [task.objectives, task.signs, task.limits, spans["vary"], spans["follow"], numbers]
 
 
-def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[tuple[float, tuple[Value, ...]], RowResult]]:
+def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[Point, RowResult]]:
     """Points of the table with their results."""
     ranges, follow = task.asked.vary, task.asked.follow
     whole = [span.whole for span in ranges.values()] + [
@@ -178,5 +154,8 @@ def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[tuple[float, tu
     ]
     for line in lines:
         tolerance, *texts = line.values
-        values = tuple(int(t) if w else float(t) for t, w in zip(texts, whole, strict=True))
+        values = tuple(
+            NOT_THERE if t == NOT_THERE else int(t) if w else float(t)
+            for t, w in zip(texts, whole, strict=True)
+        )
         yield (float(tolerance), values), line.result

@@ -2,42 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from base import InputError
+from flankfilm.optimisation.polish import Evaluate, Polish, polish
 from flankfilm.optimisation.task import Task
 
 Array = NDArray[np.float64]
 
-Evaluate = Callable[[Array, float], tuple[Array, Array]]
-"""Objectives (points, m) and limits (points, k; allowed where <= 0) of points of the unit cube at a tolerance."""
 
 FAILED = 1e30
 """Objective and limit of a point that could not be computed."""
 
-FIRST_PHASE = 0.6
-"""Part of the evaluations that the first, coarse phase gets."""
+FIRST_PHASE = {True: 0.5, False: 0.6}
+"""Part of the evaluations that the first, coarse phase gets: with one objective, and with several."""
+
+SECOND_PHASE = {True: 0.3, False: 0.4}
+"""Part that the fine one gets; what is left of one objective's is for the polish."""
 
 
-def search(task: Task, evaluate: Evaluate) -> None:
-    """Spend the evaluations of a task: first coarse over all the ranges, then fine from where that led."""
-    find = _one if len(task.objectives) == 1 else _several
-    first = round(FIRST_PHASE * task.asked.evaluations)
+def search(task: Task, evaluate: Evaluate) -> Polish | None:
+    """Spend the evaluations of a task: coarse over all the ranges, fine from where that led, then by itself the best.
+
+    Returns
+    -------
+    Polish or None
+        How the local end came out; None for several objectives, whose front has none.
+    """
+    one = len(task.objectives) == 1
+    find = _one if one else _several
     coarse, fine = task.tolerances
+    first, second = (round(part[one] * task.asked.evaluations) for part in (FIRST_PHASE, SECOND_PHASE))
     led_to = find(task, evaluate, coarse, first, None)
-    find(task, evaluate, fine, task.asked.evaluations - first, led_to)
+    last = find(task, evaluate, fine, second, led_to)
+    return polish(task, evaluate, last[0]) if one else None
 
 
 def _generations(task: Task, evaluations: int) -> int:
-    return max(1, evaluations // task.asked.population - 1)
+    """Generations after the first one."""
+    return max(0, evaluations // task.population - 1)
 
 
 def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, start: Array | None) -> Array:
-    """Differential evolution (Storn and Price, doi:10.1023/A:1008202821328); the last population."""
+    """Differential evolution (Storn and Price, doi:10.1023/A:1008202821328); the last population, the best first."""
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
     def limits(x: Array) -> Array:
@@ -62,11 +72,13 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
 
 
 def _latin(task: Task) -> Array:
+    """First population: spread over the ranges, with the scene as it stands where that lies in them."""
     from scipy.stats import qmc
 
-    return np.asarray(
-        qmc.LatinHypercube(len(task.asked.vary), rng=task.asked.seed).random(task.asked.population)
-    )
+    found = np.asarray(qmc.LatinHypercube(len(task.asked.vary), rng=task.asked.seed).random(task.population))
+    if (start := task.places(task.start.values)) is not None:
+        found[0] = start
+    return found
 
 
 def _several(
@@ -96,7 +108,7 @@ def _several(
 
     found = minimize(
         Pair(),
-        NSGA2(pop_size=task.asked.population, sampling=_latin(task) if start is None else start),
+        NSGA2(pop_size=task.population, sampling=_latin(task) if start is None else start),
         ("n_gen", _generations(task, evaluations) + 1),
         seed=task.asked.seed,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
@@ -11,10 +12,12 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, model_validator
 
 from base import Fault, InputError
+from flankfilm.optimisation.start import Start, start_of
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.section import Section, refused
 from flankfilm.studies.design import following
+from flankfilm.studies.output_errors import ERROR_OF
 from flankfilm.studies.plan import base_scene, put, refuse_unknown_outputs
 from flankfilm.studies.study_file import Range, RowsFile, Value, in_file, read_rows_file
 
@@ -24,6 +27,10 @@ COARSENING = 5.0
 
 COARSEST = 0.05
 """Of the first phase, unless the scene's own tolerance is wider."""
+
+
+LEAST = 5
+"""Scenes of a generation that differential evolution needs."""
 
 
 class Limit(Section):
@@ -54,8 +61,13 @@ class OptimisationFile(RowsFile):
     maximise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
         default=(), description="outputs wanted greatest"
     )
-    evaluations: int = Field(default=300, ge=8, le=1_000_000, description="scenes computed at most")
-    population: int = Field(default=24, ge=8, le=1000, description="scenes of each generation of the search")
+    evaluations: int = Field(default=300, ge=16, le=1_000_000, description="scenes computed at most")
+    population: int = Field(
+        default=24,
+        ge=8,
+        le=1000,
+        description="scenes of each generation of the search; a quarter of evaluations where that is less",
+    )
     seed: int = Field(default=1, ge=0, description="of the search; the same seed gives the same search")
     vary: dict[str, Range] = Field(description="keys of the scene that may change, with ranges")
     limits: dict[str, Limit] = Field(default_factory=dict, description="bounds of outputs")
@@ -82,11 +94,14 @@ class Task:
         The scene's keys as read, with what the file sets.
     tolerances : tuple of float
         Of the first phase, far from the optimum, and of the second.
+    start : Start
+        The scene as it stands.
     """
 
     asked: OptimisationFile
     scene: Mapping[str, Any]
     tolerances: tuple[float, float]
+    start: Start
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -110,13 +125,31 @@ class Task:
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Outputs of each evaluation: objectives, then those that are limited alone."""
-        return tuple(dict.fromkeys((*self.objectives, *(name for name, _, _ in self.limits))))
+        """Outputs of each evaluation: objectives, those that are limited alone, errors of the objectives."""
+        return _outputs(self.asked)
 
     @property
     def keys(self) -> tuple[str, ...]:
         """Keys of the scene that change."""
         return (*self.asked.vary, *self.asked.follow)
+
+    @property
+    def whole(self) -> tuple[bool, ...]:
+        """Of each varied key: whether its values are whole numbers."""
+        return tuple(span.whole for span in self.asked.vary.values())
+
+    @property
+    def population(self) -> int:
+        """Scenes of each generation."""
+        return max(LEAST, min(self.asked.population, self.asked.evaluations // 4))
+
+    def places(self, values: Sequence[Value]) -> tuple[float, ...] | None:
+        """Place in the unit cube of values of the keys; None where they lie outside it, or are not known."""
+        known = [
+            span.place(value) if isinstance(value, int | float) else math.nan
+            for span, value in zip(self.asked.vary.values(), values, strict=False)
+        ]
+        return tuple(known) if all(0.0 <= place <= 1.0 for place in known) else None
 
     def values(self, unit: Sequence[float]) -> tuple[Value, ...]:
         """Values of the keys at a point of the unit cube."""
@@ -125,11 +158,18 @@ class Task:
 
     def raw_scene(self, values: Sequence[Value], tolerance: float) -> dict[str, Any]:
         """Keys of the scene with these values."""
-        raw = deepcopy(dict(self.scene))
-        for key, value in zip(self.keys, values, strict=True):
+        at_start = self.start.scene is not None and tuple(values) == self.start.values
+        raw = deepcopy(dict(self.start.scene if self.start.scene is not None and at_start else self.scene))
+        for key, value in zip(self.keys, values, strict=True) if not at_start else ():
             put(raw, key, value)
         raw["tolerance"] = tolerance
         return raw
+
+
+def _outputs(asked: OptimisationFile) -> tuple[str, ...]:
+    objectives = (*asked.minimise, *asked.maximise)
+    errors = (ERROR_OF[name] for name in objectives if name in ERROR_OF)
+    return tuple(dict.fromkeys((*objectives, *asked.limits, *errors)))
 
 
 def read_task(path: Path) -> Task:
@@ -141,13 +181,12 @@ def read_task(path: Path) -> Task:
         With every fault of the file.
     """
     asked = read_rows_file(path, OptimisationFile)
-    names = (*asked.minimise, *asked.maximise, *asked.limits)
     refuse_unknown_outputs({name: getattr(asked, name) for name in ("minimise", "maximise", "limits")})
-    scene = base_scene(asked.scene, asked.set, names, path.parent)
+    scene = base_scene(asked.scene, asked.set, _outputs(asked), path.parent)
     fine = parse_tolerance(scene.get("tolerance", Scene.model_fields["tolerance"].default), "tolerance")
     # a tolerance that is no number is left for the scene's own check to refuse
     first = max(fine, min(COARSENING * fine, COARSEST)) if isinstance(fine, float) else COARSEST
-    task = Task(asked, scene, (first, fine))
+    task = Task(asked, scene, (first, fine), start_of(scene, asked))
     faults: dict[Fault, None] = {}
     for end in (0.0, 1.0):
         try:

@@ -13,18 +13,21 @@ import numpy as np
 
 from flankfilm import figures
 from flankfilm.coupling.verification import UNITS
+from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
+from flankfilm.optimisation.words import gained, tied
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
-from flankfilm.report.text import counted, number, percent, seconds
+from flankfilm.report.text import counted, number, percent, plus_minus, seconds
 from flankfilm.scene import Scene
+from flankfilm.studies.output_errors import ERROR_OF, exact
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling.verification import Difference, Verification
-    from flankfilm.optimisation.run import Optimum
+    from flankfilm.optimisation.optimum import Optimum
     from flankfilm.optimisation.task import Task
     from flankfilm.studies.plan import Plan
     from flankfilm.studies.row import RowResult
@@ -83,32 +86,68 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     """
     task, points = found.task, found.evaluations
     chosen = [points[place] for place in found.best]
-    first, one = chosen[0], len(task.objectives) == 1
+    one, count = len(task.objectives) == 1, len(points)
     coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
-    which = f"at a tolerance of {fine}" + ("" if len(chosen) == 1 else ", where the first objective is best")
-    headlines = [
-        Headline(words(data, name), number(value, 5), which, unit_of(data, name, ""))
-        for name, value in zip(task.outputs, first.result.values, strict=True)
-    ]
-    if len(chosen) == 1:
-        keys = zip(task.keys, first.values, strict=True)
-        for key, value in keys:
-            name, unit = key_words(key)
-            headlines.append(Headline(name, _cell(value), "at the optimum", "" if unit == "-" else unit))
-    caption = said("optimum_of_one" if one else "optimum_of_several")
-    note = said("two_tolerances", coarse=coarse, fine=fine)
+    settled = "converged" if found.converged else "not converged"
     facts = [
-        Fact(counted(len(points), "point"), "points"),
+        Fact(counted(count, "point"), "points"),
         _work(data),
         Fact("one optimum" if one else f"{counted(len(chosen), 'point')} on the front", "best"),
+        Fact(settled, "claims"),
     ]
+    drawn = [picture(figures.optimum, data, said("optimum_of_one" if one else "optimum_of_several"))]
+    if can_be_mapped(data):
+        drawn.insert(0, picture(figures.optimum_map, data, said("optimum_map")))
+    note = said("two_tolerances", coarse=coarse, fine=fine)
     table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
     parts = [
-        Part("points", "Points", figures=(picture(figures.optimum, data, caption),)),
+        Part("claims", "What was found", (_in_words(found.message),), notes=(*gained(found), tied(found))),
+        Part("points", "Points", figures=tuple(drawn)),
         Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,)),
         _inputs(data),
     ]
-    return write_page(folder, task.asked.title or "Optimisation", facts, headlines, parts)
+    return write_page(folder, task.asked.title or "Optimisation", facts, _best_cards(found, data), parts)
+
+
+def _in_words(message: str) -> str:
+    return f"{message[:1].upper()}{message[1:]}."
+
+
+def _bounds(task: Task, name: str) -> str:
+    limit = task.asked.limits[name]
+    ends = (("at least", limit.at_least), ("at most", limit.at_most))
+    return ", ".join(f"{which} {number(bound)}" for which, bound in ends if bound is not None)
+
+
+def _best_cards(found: Optimum, data: xr.Dataset) -> list[Headline]:
+    """Outputs of the best point with their errors and the gain on the start; its keys where it is the only one."""
+    task, first = found.task, found.evaluations[found.best[0]]
+    gains = {gain.objective: gain for gain in found.gains}
+    cards = []
+    for name, value in zip(task.outputs, first.result.values, strict=True):
+        if name in ERROR_OF.values():
+            continue
+        note = []
+        if name in task.objectives:
+            error = plus_minus(found.error_of(name, first.result))
+            note.append("exact" if exact(name) else error)
+        else:
+            note.append(f"limit: {_bounds(task, name)}")
+        if (gain := gains.get(name)) is not None and len(found.best) == 1:
+            start = f"{number(gain.start, 5)} {unit_of(data, name, '')}".strip()
+            note.append(f"{start} as the scene stands")
+        if len(found.best) > 1:
+            note.append("where the first objective is best")
+        cards.append(Headline(words(data, name), number(value, 5), ", ".join(note), unit_of(data, name, "")))
+    if len(found.best) > 1:
+        return cards
+    ties = found.tied_ranges()
+    for key, value in zip(task.keys, first.values, strict=True):
+        name, unit = key_words(key)
+        low, high = ties.get(key, (value, value))
+        wide = f"designs that tie: {_cell(low)} to {_cell(high)}" if low != high else "at the optimum"
+        cards.append(Headline(name, _cell(value), wide, "" if unit == "-" else unit))
+    return cards
 
 
 def write_verification_page(found: Verification, data: xr.Dataset, folder: Path) -> Path:

@@ -185,6 +185,12 @@ OUTPUTS: Mapping[str, Output] = dict(
         _harmonics_error("stiffness", "tangent"),
         *_roots(),
         output_of(
+            "root_stress_error",
+            Figure("1", "largest estimated relative error of the stresses along the fillets"),
+            "root-stress",
+            in_result(ROOT_STRESS, attrgetter("stress.error")),
+        ),
+        output_of(
             "iso_contact_stress",
             Figure("Pa", "nominal contact stress sigma_H0 by ISO 6336-2", shown="MPa"),
             "closed-forms",

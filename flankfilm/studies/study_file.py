@@ -58,6 +58,14 @@ class Range(Section):
         value = min(max(float(f"{value:.12g}"), self.from_), self.to) + 0.0
         return round(value) if self.whole else value
 
+    def place(self, value: float) -> float:
+        """Place of a value: 0 to 1 within the range, below or above outside it."""
+        if self.log:
+            if value <= 0:
+                return -math.inf
+            return math.log(value / self.from_) / math.log(self.to / self.from_)
+        return (value - self.from_) / (self.to - self.from_)
+
 
 class Follow(Section):
     """A key that follows a varied one: times * value + plus."""

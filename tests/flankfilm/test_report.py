@@ -19,7 +19,7 @@ from flankfilm import figures
 from flankfilm.cache import Cache
 from flankfilm.figures.style import to_svg
 from flankfilm.optimisation.files import dataset as optimum_dataset
-from flankfilm.optimisation.run import Evaluation, Optimum
+from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.task import read_task
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.report.contents import write_report
@@ -79,7 +79,7 @@ OF_A_RUN = (
     figures.resonance, figures.root_stress,
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
-OF_OTHERS = {"optimum", "study", "verification"}
+OF_OTHERS = {"optimum", "optimum_map", "study", "verification"}
 ELSEWHERE = {"Frame", "animate_cycle", "film_families", "teeth_scene", "tooth_picture", "view_cycle"}
 
 PURE = {"motion n-p-q", "evaluation"}
@@ -112,12 +112,17 @@ def some_optimum(folder: Path) -> Optimum:
     file = folder / "optimum.toml"
     file.write_text(
         'title = "Trade-off"\nscene = "scene.toml"\nminimise = ["specific_sliding", "transmission_error_um"]\n'
-        '[vary]\n"pair.pinion.profile_shift" = { from = 0.0, to = 0.2 }\n',
+        '[vary]\n"pair.pinion.profile_shift" = { from = 0.0, to = 0.2 }\n'
+        '"operating.pinion_torque_Nm" = { from = 100.0, to = 200.0 }\n[limits]\n"contact_ratio" = { at_least = 1.4 }\n',
         encoding="utf-8",
     )
     task = read_task(file)
     found = [
-        Evaluation(task.tolerances[i // 4], (0.02 * i,), RowResult(i, (1.0 + 0.1 * i, 9.0 / (i + 1)), 0.1))
+        Evaluation(
+            task.tolerances[i // 4],
+            (0.02 * i, 100.0 + 13.0 * (5 * i % 8)),
+            RowResult(i, (1.0 + 0.1 * i, 9.0 / (i + 1), 1.3 + 0.04 * i, 0.004), 0.1),
+        )
         for i in range(8)
     ]
     return Optimum(task, tuple(found), np.array([4, 5, 6, 7]), 8, 1.0)
@@ -138,7 +143,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     study, verified = some_study(folder), engine[VERIFICATION]
     others = {"study": study_dataset(study), "verification": verify_dataset(verified, scene)}
     best = some_optimum(folder)
-    others["optimum"] = optimum_dataset(best)
+    others["optimum"] = others["optimum_map"] = optimum_dataset(best)
     for name in (*others, "none"):
         (folder / name).mkdir()
     pages["study"] = write_study_page(study, others["study"], folder / "study")

@@ -1,0 +1,39 @@
+"""Which output of a study holds the relative error of another one, and which outputs have none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from flankfilm.studies.outputs import OUTPUTS
+
+ROUNDING = 1e-12
+"""Relative error of what follows from the geometry alone."""
+
+_HELD: Mapping[str, tuple[str, ...]] = {
+    "stiffness_error": ("mean_secant_stiffness_N_per_mm_um",),
+    "tangent_stiffness_error": ("mean_stiffness_N_per_mm_um",),
+    "transmission_error_error": ("transmission_error_um",),
+    "root_stress_error": tuple(
+        f"root_{kind}_{gear}_MPa" for kind in ("tension", "compression") for gear in ("pinion", "wheel")
+    ),
+    "film_error": (
+        "least_film_um",
+        "least_central_film_um",
+        "film_at_C_um",
+        "film_ratio",
+        *(f"least_film_at_{point}_um" for point in "ABCDE"),
+    ),
+    "natural_frequency_error": ("natural_frequency_Hz", "resonance_speed_rpm"),
+    "greatest_force_factor_error": ("greatest_force_factor",),
+    "contact_loss_error": ("contact_loss_speed_rpm",),
+    "jump_error_rising": ("jump_speed_rising_rpm", "jump_frequency_rising"),
+    "jump_error_falling": ("jump_speed_falling_rpm", "jump_frequency_falling"),
+}
+
+ERROR_OF: Mapping[str, str] = {name: error for error, names in _HELD.items() for name in names}
+"""Output to the output that holds its relative error; the others have none."""
+
+
+def exact(name: str) -> bool:
+    """Whether an output follows from the geometry alone, so that it errs by rounding."""
+    return OUTPUTS[name].wants == ("geometry",)
