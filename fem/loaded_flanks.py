@@ -16,38 +16,59 @@ from fem.setting import Setting
 if TYPE_CHECKING:
     from fem.bodies import Compliance
 
-__all__ = ["LoadedFlanks", "loaded_flanks"]
+__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "loaded_flanks"]
 
 
 @record
-class LoadedFlanks:
-    """What the contacts on one side yield, as ``share_load`` asks for it.
+class FlanksInPlace:
+    """Contacts on one side, and what stands between them, before anything yields.
 
-    A force along another normal than the line of action has the lever kappa r_b1 about the pinion's axis. In
-    F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j); the edges' laws are in
-    F' already.
+    A force along another normal than the line of action has the lever kappa r_b1 about the pinion's axis.
 
     Attributes
     ----------
     where : ContactCandidates
     kappa : (positions, pairs) array
-    matrix : (positions, pairs, pairs) array
-        bulk_ij/(kappa_i kappa_j) [m/N].
-    laws : PairLaws
     oil : FilmLaw or None
     levers : (positions, pairs) array
         Of the tilted forces about the pinion's axis, over kappa r_b1.
-    largest : (edges,) array
-        Forces that the tip edges' laws cover [N].
     """
 
     where: ContactCandidates
     kappa: Array
-    matrix: Array
-    laws: PairLaws
     oil: FilmLaw | None
     levers: Array
+
+
+@record
+class LoadedFlanks(FlanksInPlace):
+    """What the contacts on one side yield, as ``share_load`` asks for it.
+
+    In F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j); the edges' laws are in
+    F' already.
+
+    Attributes
+    ----------
+    matrix : (positions, pairs, pairs) array
+        bulk_ij/(kappa_i kappa_j) [m/N].
+    laws : PairLaws
+    largest : (edges,) array
+        Forces that the tip edges' laws cover [N].
+    """
+
+    matrix: Array
+    laws: PairLaws
     largest: Array
+
+
+def flanks_in_place(given: Setting, film: Film | None, reach: float) -> FlanksInPlace:
+    """Place the flanks that bear in a setting; arguments as of ``loaded_flanks``."""
+    where = contact_candidates(given, reach)
+    kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
+    ends = float(given.pair.points.A), float(given.pair.points.E)
+    on_path = where.touchable & ~where.edge
+    oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(where.place, *ends), np.nan))
+    return FlanksInPlace(where, kappa, oil, _levers(given, where) / kappa)
 
 
 def loaded_flanks(
@@ -67,24 +88,22 @@ def loaded_flanks(
     tables : EdgeTables
         Laws of the tip edges.
     """
-    where = contact_candidates(given, reach)
-    kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
+    placed = flanks_in_place(given, film, reach)
+    where, kappa = placed.where, placed.kappa
     table, largest = tables.at(where)
     rho1, rho2 = where.rho
     matrix = bodies.bulk(rho1, rho2, where.leaning)
     _leave_out_corner(bodies, matrix, where)
     matrix /= kappa[..., :, None] * kappa[..., None, :]
     on_path = where.touchable & ~where.edge
-    ends = float(given.pair.points.A), float(given.pair.points.E)
-    middle = ends[0] + 0.5 * (ends[1] - ends[0])
+    middle = 0.5 * float(given.pair.points.A + given.pair.points.E)
     if (overlap := -float(np.min(where.back_gap))) > 0.0:  # presses both sides without a torque
         force += overlap / float(bodies.own(np.array([middle]))[0])
     # contacts that move have a law of their own near the corner
     near = () if given.moving_contact else cut_offs(given, bodies, where, force)
     place = np.where(on_path, where.place, middle)
     laws = PairLaws(bodies.hertz(place, where.curvature, kappa), where.edge, table, near)
-    oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(place, *ends), np.nan))
-    return LoadedFlanks(where, kappa, matrix, laws, oil, _levers(given, where) / kappa, largest)
+    return LoadedFlanks(where, kappa, placed.oil, placed.levers, matrix, laws, largest)
 
 
 def _levers(given: Setting, where: ContactCandidates) -> Array:

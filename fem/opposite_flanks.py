@@ -19,7 +19,7 @@ import numpy as np
 from base import Array, Booleans, Integers, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.edge_tables import EdgeTables
-from fem.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.loaded_flanks import FlanksInPlace, LoadedFlanks, loaded_flanks
 from fem.local_law import Film
 from fem.setting import Setting
 from gears import LoadShare
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fem.bodies import Compliance
     from gears.load_sharing import DeflectionLaw
 
-__all__ = ["OppositeFlanks", "OppositeShare", "share_with_opposite"]
+__all__ = ["OppositeFlanks", "OppositeShare", "between", "share_with_opposite"]
 
 ROUNDING = 1e-12
 """Overlap over the deflection that is none."""
@@ -142,17 +142,23 @@ class _Joined:
         return np.concatenate(sides, axis=-1)
 
 
-def across(bodies: Compliance, front: ContactCandidates, back: ContactCandidates) -> Array:
+def across(
+    bodies: Compliance, front: ContactCandidates, back: ContactCandidates, before: bool = False
+) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
-    Forces at tip edges are taken along the normals of the flanks here.
+    Forces at tip edges are taken along the normals of the flanks here. By the mesh before the last refinement if asked.
     """
     positions, pair = len(front.place), bodies.pair
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
     for gear, (flexible, teeth) in enumerate(
-        zip(bodies.back_flanks, (pair.pinion.teeth, pair.wheel.teeth), strict=True)
+        zip(
+            bodies.back_flanks_before if before else bodies.back_flanks,
+            (pair.pinion.teeth, pair.wheel.teeth),
+            strict=True,
+        )
     ):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
         # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
@@ -197,13 +203,22 @@ class _BothSides:
         return share_between(force, self.matrix, self.laws, self.gaps, self.sides, self.oil, self.levers)
 
 
+def between(
+    given: Setting, bodies: Compliance, flanks: FlanksInPlace, other: FlanksInPlace, before: bool = False
+) -> Array:
+    """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
+    front, back = (other, flanks) if given.back else (flanks, other)
+    found = across(bodies, front.where, back.where, before) / (
+        front.kappa[:, :, None] * back.kappa[:, None, :]
+    )
+    return np.swapaxes(found, 1, 2) if given.back else found
+
+
 def _both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: LoadedFlanks) -> _BothSides:
     count, more = len(flanks.where.offset), len(other.where.offset)
     matrix = np.zeros((given.positions, count + more, count + more))
     matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
-    front, back = (other, flanks) if given.back else (flanks, other)
-    cross = across(bodies, front.where, back.where) / (front.kappa[:, :, None] * back.kappa[:, None, :])
-    cross = np.swapaxes(cross, 1, 2) if given.back else cross
+    cross = between(given, bodies, flanks, other)
     matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
     touch = flanks.where.gap.min(axis=-1, keepdims=True)
     behind = given.pair.backlash + other.where.gap + touch

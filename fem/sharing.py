@@ -10,6 +10,7 @@ import numpy as np
 
 from base import Array, record
 from fem.bodies import Compliance
+from fem.clear_flanks import stays_clear
 from fem.contact_candidates import REACHES, ContactCandidates
 from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
@@ -264,6 +265,11 @@ def _two_sided(
         apart = np.array([bool(alone.refusal(n)) or moved[n] > deep for n in range(len(force))])
         if apart.all():
             return alone
+        clear = (
+            None if given.both else stays_clear(given, bodies, force, film, flanks, alone.share, apart, reach)
+        )
+        if clear is not None:
+            return replace(alone, opposite=clear)
     share, opposite, left = share_with_opposite(
         given, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
     )

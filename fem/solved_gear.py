@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 MOST_RECORDS, MOST_RINGS = 512, 2
 
-BACK_SAMPLES = 20
+BACK_SAMPLES, FEW_BACK_SAMPLES = 20, 8
 """Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
@@ -126,9 +126,10 @@ class Gears:
         """Motion of the flank, on the coarser mesh: a correction."""
         return self.record("motion", (meshed,), lambda: self._motion(meshed))
 
-    def backs(self, meshed: MeshedShape) -> BackCompliance:
-        """What loads on the front flanks do to the back flanks."""
-        return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
+    def backs(self, meshed: MeshedShape, before: bool = False) -> BackCompliance:
+        """What loads on the front flanks do to the back flanks, or that on the mesh before, by fewer loads."""
+        name = "coarse back flanks" if before else "back flanks"
+        return self.record(name, (meshed,), lambda: self._backs(meshed, before))
 
     def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         """Factorised gears, the coarser one first."""
@@ -186,9 +187,10 @@ class Gears:
         self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
         return found
 
-    def _backs(self, meshed: MeshedShape) -> BackCompliance:
-        ring = self.rings(meshed)[1]
+    def _backs(self, meshed: MeshedShape, before: bool) -> BackCompliance:
+        ring = self.rings(meshed)[0 if before else 1]
         watch, shape = Stopwatch(), meshed.shape
-        found = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
+        samples = FEW_BACK_SAMPLES if before else BACK_SAMPLES
+        found = back_compliance(ring, sample_places(shape.profile, samples), shape.reach)
         self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
         return found

@@ -13,12 +13,13 @@ from scipy.sparse.linalg import spsolve
 import fem
 from base import InputError
 from fem.back_compliance import back_compliance
+from fem.clear_flanks import stays_clear
 from fem.edge_tables import EdgeTables
 from fem.elasticity import PlaneElasticity, stiffness_matrix
 from fem.gear_compliance import sample_places
 from fem.line_load import flank_points, line_loads
 from fem.loaded_flanks import loaded_flanks
-from fem.opposite_flanks import _both_sides
+from fem.opposite_flanks import _both_sides, share_with_opposite
 from fem.ring import ring_of
 from fem.setting import Setting
 from fem.sharing import one_sided, solve
@@ -143,6 +144,32 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
     assert np.array_equal(cycle.forces, (alone.share.forces / alone.kappa).reshape(cycle.forces.shape))
     assert "back flanks stand clear by at least" in cycle.message
+
+
+@pytest.mark.parametrize("teeth", [(36, 40), (18, 61)])
+def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
+    """The bound lies below the gaps of the finer mesh, and is none where less play is left than it doubts."""
+    pair = GearPair(Gear(teeth[0]), Gear(teeth[1]), 2e-3, 0.04)
+    bodies = fem.compliance(pair, tolerance=0.005)
+    given, force = Setting(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
+    tables = EdgeTables(given, bodies)
+    flanks = loaded_flanks(given, bodies, None, 0.6, float(force[1]), tables)
+    alone = one_sided(given, bodies, force, flanks, tables).share
+    apart = np.zeros(2, dtype=bool)
+    clear = stays_clear(given, bodies, force, None, flanks, alone, apart, 0.6)
+    assert "back_flanks" not in vars(bodies)
+    _, true, _ = share_with_opposite(given, bodies, force, None, flanks, alone, apart, 0.6, tables)
+    assert np.all(clear.open <= true.open)
+    deflection = alone.transmission_error[..., None]
+    near = true.open < deflection  # no more is in doubt than a few per cent of what bends
+    bent = np.broadcast_to(deflection, near.shape)[near]
+    assert np.all(true.open[near] - clear.open[near] < 0.03 * bent)
+    np.testing.assert_array_equal(clear.reached, true.reached)
+    least = np.min(true.open[1])
+    for short, free in ((0.5, True), (1.0, False), (1.5, False)):
+        closer = replace(alone, transmission_error=alone.transmission_error - short * least)
+        known = stays_clear(given, bodies, force, None, flanks, closer, np.array([True, False]), 0.6)
+        assert (known is not None) is free
 
 
 def test_both_sides_balance_the_torque(tight):
