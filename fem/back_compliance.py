@@ -17,12 +17,15 @@ from numpy.polynomial import chebyshev
 
 from base import Array, Integers, record
 from fem.gear_compliance import CROSS_DEGREE
-from fem.line_load import flank_points, line_loads
+from fem.line_load import FlankPoints, LineLoads, flank_points, line_loads
 
 if TYPE_CHECKING:
     from fem.ring import Ring
 
-__all__ = ["BackCompliance", "back_compliance"]
+__all__ = ["BackCompliance", "back_by_mirror", "back_compliance"]
+
+MIRRORED: Array = np.array([[1.0], [-1.0]])
+"""Radial and tangential components in a mirror through the gear's axis."""
 
 
 @record
@@ -80,15 +83,45 @@ def back_compliance(ring: Ring, rho: Array, reach: int) -> BackCompliance:
     """Load left flanks at growing curvature radii (n,) [m] and see the right ones of ``reach`` teeth on either side."""
     loads = line_loads(ring, flank_points(ring.mesh, rho, "left"))
     seen = flank_points(ring.mesh, rho, "right")
+    return _fitted(rho, {tooth: _seen(loads, tooth, seen) for tooth in _teeth(ring, reach)})
+
+
+def back_by_mirror(loads: LineLoads, reach: int) -> BackCompliance:
+    """As ``back_compliance``, by loads on left flanks that are solved already.
+
+    Loads on right flanks are those on left ones in a mirror, but for the elements' errors: nothing is solved for
+    other teeth.
+    """
+    ring, rho = loads.ring, loads.at.rho
+    right, left = np.split(loads.cut_force.reshape(-1, 2, len(rho)), 2)
+    mirrored = (np.concatenate([left, right]) * MIRRORED).reshape(loads.cut_force.shape)
+    seen = flank_points(ring.mesh, rho, "right")
+    return _fitted(
+        rho,
+        {
+            tooth: mirrored.T @ ring.interfaces(loads.cut_force, tooth) if tooth else _seen(loads, 0, seen)
+            for tooth in _teeth(ring, reach)
+        },
+    )
+
+
+def _teeth(ring: Ring, reach: int) -> range:
+    most = min(reach, (ring.mesh.teeth - 1) // 2)
+    return range(-most, most + 1)
+
+
+def _seen(loads: LineLoads, tooth: int, where: FlankPoints) -> Array:
+    moved = loads.on_tooth(tooth, where)
+    return moved if tooth else moved + loads.singular(where)
+
+
+def _fitted(rho: Array, seen: Mapping[int, Array]) -> BackCompliance:
+    """Fit what loads do at the same places of the other flanks (points, loads), tooth by tooth."""
     low, high = float(rho[0]), float(rho[-1])
     basis = chebyshev.chebvander((2 * rho - low - high) / (high - low), min(CROSS_DEGREE, len(rho) - 1))
     fit = np.linalg.pinv(basis)
     series, error = {}, 0.0
-    most = min(reach, (ring.mesh.teeth - 1) // 2)
-    for tooth in range(-most, most + 1):
-        moved = loads.on_tooth(tooth, seen)
-        if tooth == 0:
-            moved = moved + loads.singular(seen)
+    for tooth, moved in seen.items():
         even = 0.5 * (moved + moved.T)
         series[tooth] = fit @ even @ fit.T
         left_out = basis @ series[tooth] @ basis.T - even

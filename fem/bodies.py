@@ -66,6 +66,9 @@ class Compliance:
         "what loads on front flanks do to back flanks; None before flanks on both sides have asked for it",
         default=None,
     )
+    back_before: tuple[BackCompliance, BackCompliance] | None = part(
+        "the same on the mesh before the last refinement; None where that is unknown", default=None
+    )
     fit_error: float = quantity("1", "part of the error by the fit along the flanks", default=0.0)
     gain: float = quantity("1", "by how much the last refinement reduced the mesh's error", default=1.0)
     before: tuple[GearCompliance, GearCompliance] | None = part(
@@ -142,17 +145,11 @@ class Compliance:
     @cached_property
     def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
         """What loads on the front flanks of both gears do to their back flanks; solved where it was not."""
-        return self.back_series or self._backs(before=False)
-
-    @cached_property
-    def back_flanks_before(self) -> tuple[BackCompliance, BackCompliance]:
-        """The same on the mesh before the last refinement, by fewer loads: to 0.2 % at a quarter of the cost."""
-        return self._backs(before=True)
-
-    def _backs(self, before: bool) -> tuple[BackCompliance, BackCompliance]:
+        if self.back_series is not None:
+            return self.back_series
         gears = Gears()
         first, second = (
-            gears.backs(meshed, before).scaled(self.pair.module, flexible.law.plane_modulus)
+            gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
             for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second

@@ -15,6 +15,7 @@ exact, at a cost that grows as the logarithm of z.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -52,9 +53,15 @@ class RingOfLinks:
     def influence(self, j: int) -> Array:
         """Displacements of end j (any whole number) by unit forces on end 0, (n, n) array."""
         j %= self.links
-        power = np.linalg.matrix_power
-        forth = power(self.onward, j) @ self.forth_start
-        return np.asarray(forth + power(self.back, self.links - j) @ self.back_start)
+        if j not in self._influences:
+            power = np.linalg.matrix_power
+            forth = power(self.onward, j) @ self.forth_start
+            self._influences[j] = forth + power(self.back, self.links - j) @ self.back_start
+        return self._influences[j]
+
+    @cached_property
+    def _influences(self) -> dict[int, Array]:
+        return {}
 
     def all_ends(self, force: Array) -> Array:
         """Displacements (z, n) of all ends by one force (n,) on end 0."""

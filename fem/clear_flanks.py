@@ -2,8 +2,8 @@
 
 The gap that the loaded side alone leaves there needs the places of the contacts and X, what loads on one side of the
 teeth do to the other (``fem.opposite_flanks``): not how the flanks of that side yield themselves. X of the mesh before
-the last refinement, by few loads, is within 0.2 %; where more than `DOUBT` of all that loads close is left open by it,
-no flank bears.
+the last refinement, known with the flanks' own compliance, is within 0.2 %; where more than `DOUBT` of all that loads
+close is left open by it, no flank bears.
 """
 
 from __future__ import annotations

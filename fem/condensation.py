@@ -143,33 +143,38 @@ def condensation(
     users[cut] += 1  # never all in one group
     users[hub] = 0
     middles = points[triangles[:, :3]].mean(axis=1)
+    number = np.empty(len(points), dtype=np.int64)  # of each node in the group at work
     fronts: list[_Front] = []
 
     def few(some: Integers) -> _Group:
-        nodes, local, used = np.unique(triangles[some], return_inverse=True, return_counts=True)
-        order, ends = _order(users[nodes], used)
-        unknown = _unknowns(_rank(order)[local.reshape(-1)]).reshape(len(some), -1)
+        times = np.bincount(triangles[some].ravel())
+        nodes = np.flatnonzero(times)
+        order, ends = _order(users[nodes], times[nodes])
+        nodes = nodes[order]
+        number[nodes] = np.arange(len(nodes))
+        unknown = _unknowns(number[triangles[some].ravel()]).reshape(len(some), -1)
         size = 2 * len(nodes)
         place = (unknown[:, :, None] * size + unknown[:, None, :]).ravel()
         summed = np.bincount(place, elements[some].ravel(), size * size)
         matrix = np.asarray(summed, dtype=float).reshape(size, size)
-        return eliminated(nodes[order], used[order], matrix, ends)
+        return eliminated(nodes, times[nodes], matrix, ends)
 
     def both(first: _Group, second: _Group) -> _Group:
-        nodes = np.union1d(first.nodes, second.nodes)
-        used = np.zeros(len(nodes), dtype=np.int64)
-        places = [np.searchsorted(nodes, one.nodes) for one in (first, second)]
-        for one, place in zip((first, second), places, strict=True):
-            used[place] += one.used
-        order, ends = _order(users[nodes], used)
-        rank, matrix = _rank(order), np.zeros((2 * len(nodes), 2 * len(nodes)))
-        for one, place in zip((first, second), places, strict=True):
-            unknown = _unknowns(rank[place])
+        times = np.zeros(len(points), dtype=np.int64)
+        for one in (first, second):
+            times[one.nodes] += one.used
+        nodes = np.flatnonzero(times)
+        order, ends = _order(users[nodes], times[nodes])
+        nodes = nodes[order]
+        number[nodes] = np.arange(len(nodes))
+        matrix = np.zeros((2 * len(nodes), 2 * len(nodes)))
+        for one in (first, second):
+            unknown = _unknowns(number[one.nodes])
             # columns, then whole rows: twice as fast as both at once
             rows = np.zeros((len(unknown), len(matrix)))
             rows[:, unknown] = one.stiffness
             matrix[unknown] += rows
-        return eliminated(nodes[order], used[order], matrix, ends)
+        return eliminated(nodes, times[nodes], matrix, ends)
 
     def eliminated(nodes: Integers, used: Integers, matrix: Array, ends: tuple[int, int]) -> _Group:
         done, left = slice(2 * ends[0]), slice(2 * ends[0], 2 * ends[1])
@@ -188,7 +193,8 @@ def condensation(
         return both(group(some[order[: len(some) // 2]]), group(some[order[len(some) // 2 :]]))
 
     whole = group(np.arange(len(triangles)))
-    place = _unknowns(np.searchsorted(whole.nodes, cut))
+    number[whole.nodes] = np.arange(len(whole.nodes))
+    place = _unknowns(number[cut])
     return Condensation(tuple(fronts), _unknowns(cut), whole.stiffness[np.ix_(place, place)])
 
 
@@ -198,12 +204,6 @@ def _order(users: Integers, used: Integers) -> tuple[Integers, tuple[int, int]]:
     order = np.argsort(kind, kind="stable")
     first, second, _ = np.bincount(kind, minlength=3)
     return order, (int(first), int(first + second))
-
-
-def _rank(order: Integers) -> Integers:
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return rank
 
 
 def _inverse_of_factor(matrix: Array) -> Array:

@@ -19,6 +19,10 @@ _GAUSS, _GAUSS_WEIGHT = 0.5 + 0.5 * _GAUSS, 0.5 * _GAUSS_WEIGHT
 HALVINGS = 14
 """Of the panels on an edge near a load: the last one is 1e-4 of the edge."""
 
+NEAR, BESIDE = 2.0, 0.02
+"""Distance from a load over the edge's length below which the edge is integrated on panels, and below which that of the
+chord no longer tells that of the curved edge."""
+
 LEAST_PANEL = 1e-9
 """Of the edge: shorter panels, beside a load that all but stands on a node, are left out with their share."""
 
@@ -79,18 +83,21 @@ def traction_integrals(
     work : (k, loads) array
         integral of u_s . sigma_s n ds over each edge [m per N/m].
     """
-    nearest, near = _nearest(points, edges, loads.place)
+    nearest, apart = _nearest(points, edges, loads.place)
+    near = apart < NEAR
     place, along, values = edge_points(points, edges[:, None], np.broadcast_to(_GAUSS, (len(edges), 5)))
     # outward normals, times ds
     outward = np.stack([along[..., 1], -along[..., 0]]) * _GAUSS_WEIGHT
     away = place[..., None] - loads.place.T
-    apart = ~near[:, None]
-    pull, work = _densities(away[:, :, 0], away[:, :, 1], outward[..., None], loads, law, length, apart)
+    pull, work = _densities(
+        away[:, :, 0], away[:, :, 1], outward[..., None], loads, law, length, ~near[:, None]
+    )
     lumps = np.swapaxes(values, 1, 2)[:, None] @ np.moveaxis(pull, 0, 1)
     forces, works = np.swapaxes(lumps, 1, 2), work.sum(axis=1)
     edge, load = np.nonzero(near)
     if len(edge):
-        close, its_work = _on_panels(points, edges[edge], nearest[edge, load], loads.part(load), law, length)
+        there = nearest[edge, load], apart[edge, load]
+        close, its_work = _on_panels(points, edges[edge], *there, loads.part(load), law, length)
         forces[edge, :, :, load] = close
         works[edge, load] = its_work
     return forces, works
@@ -138,25 +145,35 @@ def _densities(
     return np.stack([radial * x, radial * y]), -2 / (np.pi * law.plane_modulus) * radial * moved
 
 
-def _nearest(points: Array, edges: Integers, loads: Array) -> tuple[Array, Booleans]:
-    """Parameter on each edge's chord nearest to each load, and whether the load is near the edge (k, loads)."""
+def _nearest(points: Array, edges: Integers, loads: Array) -> tuple[Array, Array]:
+    """Parameter on each edge's chord nearest to each load, and its distance over the chord's length (k, loads)."""
     ends = points[edges[:, :2]]
     chord = ends[:, 1] - ends[:, 0]
     length2 = np.sum(chord**2, axis=1)[:, None]
     x, y = (loads[:, axis] - ends[:, :1, axis] for axis in (0, 1))
     along = np.clip((x * chord[:, :1] + y * chord[:, 1:]) / length2, 0.0, 1.0)
     apart2 = (along * chord[:, :1] - x) ** 2 + (along * chord[:, 1:] - y) ** 2
-    return along, apart2 < 4 * length2
+    return along, np.sqrt(apart2 / length2)
 
 
 def _on_panels(
-    points: Array, edges: Integers, centre: Array, loads: LineForces, law: PlaneElasticity, length: float
+    points: Array,
+    edges: Integers,
+    centre: Array,
+    apart: Array,
+    loads: LineForces,
+    law: PlaneElasticity,
+    length: float,
 ) -> tuple[Array, Array]:
-    """Forces (pairs, 3, 2) and work (pairs,) on an edge and of a load each, by panels halving to the nearest point."""
-    halves = 0.5 ** np.arange(HALVINGS)
-    halves[-1] = 0.0
+    """Forces (pairs, 3, 2) and work (pairs,) on an edge and of a load each, by panels halving to the nearest point.
+
+    Panels beside that point are no longer than half its distance from the load, ``apart`` over the edge's length.
+    """
+    enough = 1 + np.log2(2 / np.where(apart < BESIDE, 1e-300, apart))
+    number = np.arange(HALVINGS)
+    halves = np.where(number < np.minimum(enough[:, None], HALVINGS - 1), 0.5**number, 0.0)
     centre = centre[:, None]
-    start = np.concatenate([centre - centre * halves, centre + (1 - centre) * halves[:0:-1]], axis=1)
+    start = np.concatenate([centre - centre * halves, centre + (1 - centre) * halves[:, :0:-1]], axis=1)
     width = np.diff(start, axis=1, append=1.0)
     which, panel = np.nonzero(width > LEAST_PANEL)
     start, width = start[which, panel, None], width[which, panel, None]

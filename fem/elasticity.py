@@ -102,20 +102,23 @@ INTEGRATION = 4
 
 def physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Array) -> tuple[Array, Array]:
     """Gradients (m, q, 6, 2) in space and Jacobian determinants (m, q) at reference points (q,)."""
-    reference = shape_gradients(xi, eta)
-    jacobian = points[triangles].swapaxes(1, 2)[:, None] @ reference
-    determinant = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
-    inverse = np.empty_like(jacobian)
-    inverse[..., 0, 0], inverse[..., 1, 1] = jacobian[..., 1, 1], jacobian[..., 0, 0]
-    inverse[..., 0, 1], inverse[..., 1, 0] = -jacobian[..., 0, 1], -jacobian[..., 1, 0]
-    inverse /= determinant[..., None, None]
-    return reference @ inverse, determinant
+    reference = np.moveaxis(shape_gradients(xi, eta), 0, 1)  # (6, q, 2)
+    corners = points[triangles].swapaxes(1, 2).reshape(-1, 6)
+    jacobian = (corners @ reference.reshape(6, -1)).reshape(len(triangles), 2, -1, 2)
+    (x_xi, x_eta), (y_xi, y_eta) = np.moveaxis(jacobian, (1, 3), (0, 1))
+    determinant = x_xi * y_eta - x_eta * y_xi
+    by_xi, by_eta = np.moveaxis(reference, (1, 2), (1, 0))[:, None]  # (1, q, 6)
+    gradient = np.empty((*determinant.shape, 6, 2))
+    scaled = [(one / determinant)[..., None] for one in (x_xi, x_eta, y_xi, y_eta)]
+    gradient[..., 0] = by_xi * scaled[3] - by_eta * scaled[2]
+    gradient[..., 1] = by_eta * scaled[0] - by_xi * scaled[1]
+    return gradient, determinant
 
 
 def element_matrices(points: Array, triangles: Integers, law: PlaneElasticity) -> Array:
     """Stiffness matrices (m, 12, 12) per unit thickness [Pa] of isoparametric P2 triangles.
 
-    scikit-fem's mapping and quadrature. Unknown 2 i + a of a triangle is component a of its node i.
+    scikit-fem's quadrature. Unknown 2 i + a of a triangle is component a of its node i.
 
     K_(ia)(jb) = integral of lambda d_a N_i d_b N_j + mu (d_b N_i d_a N_j + delta_ab grad N_i . grad N_j).
 
@@ -127,13 +130,14 @@ def element_matrices(points: Array, triangles: Integers, law: PlaneElasticity) -
     law : PlaneElasticity
     """
     with unclocked():
-        from skfem import Basis, ElementTriP2
+        from skfem.quadrature import get_quadrature
+        from skfem.refdom import RefTri
 
-    basis = Basis(curved_mesh(points, triangles), ElementTriP2(), intorder=INTEGRATION)
-    slopes = np.stack([field.grad for (field,) in basis.basis])  # (node, direction, element, quadrature)
-    slopes = np.moveaxis(slopes, 2, 0).reshape(len(triangles), 12, -1)
+    (xi, eta), weight = get_quadrature(RefTri, INTEGRATION)
+    gradient, determinant = physical_gradients(points, triangles, xi, eta)
+    slopes = np.moveaxis(gradient.reshape(*gradient.shape[:2], 12), 1, 2)
     # all products d_a N_i d_b N_j at once; the law combines them
-    products = (slopes * basis.dx[:, None, :]) @ slopes.swapaxes(1, 2)
+    products = (slopes * (determinant * weight)[:, None, :]) @ slopes.swapaxes(1, 2)
     products = products.reshape(-1, 6, 2, 6, 2)
     lam, mu = law.lame
     element = lam * products + mu * products.swapaxes(2, 4)

@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.line_load import flank_points, joined, line_loads
+from fem.line_load import LineLoads, flank_points, joined, line_loads
 from fem.ring import Ring
 
 if TYPE_CHECKING:
@@ -33,9 +33,11 @@ __all__ = [
     "FlankSamples",
     "GearCompliance",
     "corner_logarithm",
+    "flank_loads",
     "gear_compliance",
     "hub_windup",
     "sampled",
+    "samples_of",
     "wedge_logarithms",
 ]
 
@@ -301,15 +303,25 @@ def sample_places(profile: ToothProfile, count: int) -> Array:
     return np.asarray(np.clip(low + 0.5 * (high - low) * (1 - unit / unit[0]), low, high))
 
 
+def flank_loads(ring: Ring, rho: Array, flank: str = "left") -> LineLoads:
+    """Load a flank at growing curvature radii [m], and the last place once more along the tangent towards the tip."""
+    at = flank_points(ring.mesh, rho, flank)
+    return line_loads(ring, joined(at, at.part(slice(-1, None)).towards_tip()))
+
+
 def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> FlankSamples:
     """Load a flank at growing curvature radii [m] and take the displacements there and on ``reach`` teeth."""
-    at, count = flank_points(ring.mesh, rho, flank), len(rho)
-    every = line_loads(ring, joined(at, at.part(slice(-1, None)).towards_tip()))
+    return samples_of(flank_loads(ring, rho, flank), reach, flank)
+
+
+def samples_of(every: LineLoads, reach: int = 1, flank: str = "left") -> FlankSamples:
+    """As ``sampled``, by ``flank_loads``."""
+    count = len(every.at.rho) - 1
     loads = every.part(slice(count))
     teeth = [tooth if flank == "left" else -tooth for tooth in range(1, reach + 1)]
     there = np.array([loads.on_neighbour(tooth, every) for tooth in teeth])
     cross, corner = np.swapaxes(there[:, :count], 1, 2), there[:, count]
-    return FlankSamples(rho, loads.regular_at_load(), cross, corner)
+    return FlankSamples(loads.at.rho, loads.regular_at_load(), cross, corner)
 
 
 def gear_compliance(

@@ -153,13 +153,8 @@ def across(
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
-    for gear, (flexible, teeth) in enumerate(
-        zip(
-            bodies.back_flanks_before if before else bodies.back_flanks,
-            (pair.pinion.teeth, pair.wheel.teeth),
-            strict=True,
-        )
-    ):
+    found = (bodies.back_before if before else None) or bodies.back_flanks
+    for gear, (flexible, teeth) in enumerate(zip(found, (pair.pinion.teeth, pair.wheel.teeth), strict=True)):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
         # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
         tooth = _nearest(here - there if gear == 0 else there - here, teeth)

@@ -158,6 +158,7 @@ def compliance(
         fit_error=fit_error,
         gain=2**ORDER - 1,
         before=(first.before, second.before),
+        back_before=(first.back_before, second.back_before),
     )
     tips, coarse_tips = (bodies.tips_of(gears, before) if tip_edges else None for before in (False, True))
     motions = bodies.motions_of(gears) if motion else None

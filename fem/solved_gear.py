@@ -12,10 +12,17 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from base import Array, Cost, Stopwatch, record
-from fem.back_compliance import BackCompliance, back_compliance
+from fem.back_compliance import BackCompliance, back_by_mirror, back_compliance
 from fem.elasticity import PlaneElasticity
 from fem.flank_motion import FlankMotion, flank_motion
-from fem.gear_compliance import GearCompliance, gear_compliance, sample_places, sampled
+from fem.gear_compliance import (
+    GearCompliance,
+    flank_loads,
+    gear_compliance,
+    sample_places,
+    sampled,
+    samples_of,
+)
 from fem.gear_shape import MeshedShape, plain
 from fem.memo import Memo, read_only
 from fem.ring import Ring, ring_of
@@ -27,7 +34,7 @@ T = TypeVar("T")
 
 MOST_RECORDS, MOST_RINGS = 512, 2
 
-BACK_SAMPLES, FEW_BACK_SAMPLES = 20, 8
+BACK_SAMPLES = 20
 """Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
@@ -67,6 +74,8 @@ class SolvedFlanks:
         By how much ``own`` grew there from the coarser mesh [m per N/m].
     cross_change : float
         Largest change of a cross term [m per N/m].
+    back_before : BackCompliance
+        What loads do to the other side of the teeth on the coarser mesh.
     unknowns, annulus_unknowns : int
         Of the sector, and of the annulus that it stands for.
     """
@@ -76,6 +85,7 @@ class SolvedFlanks:
     rho: Array
     change: Array
     cross_change: float
+    back_before: BackCompliance
     unknowns: int
     annulus_unknowns: int
 
@@ -91,6 +101,7 @@ class SolvedFlanks:
             self.rho * module,
             self.change / law.plane_modulus,
             self.cross_change / law.plane_modulus,
+            self.back_before.scaled(module, law.plane_modulus),
             self.unknowns,
             self.annulus_unknowns,
         )
@@ -126,10 +137,9 @@ class Gears:
         """Motion of the flank, on the coarser mesh: a correction."""
         return self.record("motion", (meshed,), lambda: self._motion(meshed))
 
-    def backs(self, meshed: MeshedShape, before: bool = False) -> BackCompliance:
-        """What loads on the front flanks do to the back flanks, or that on the mesh before, by fewer loads."""
-        name = "coarse back flanks" if before else "back flanks"
-        return self.record(name, (meshed,), lambda: self._backs(meshed, before))
+    def backs(self, meshed: MeshedShape) -> BackCompliance:
+        """What loads on the front flanks do to the back flanks."""
+        return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
 
     def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         """Factorised gears, the coarser one first."""
@@ -160,13 +170,15 @@ class Gears:
         coarse, fine = self.rings(meshed)
         watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
         places = sample_places(profile, samples)
-        there, before = sampled(fine, places, reach), sampled(coarse, places, reach)
+        loads = flank_loads(coarse, places)
+        there, before = sampled(fine, places, reach), samples_of(loads, reach)
         found = SolvedFlanks(
             gear_compliance(fine, profile, there),
             gear_compliance(coarse, profile, before),
             places,
             there.own - before.own,
             float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
+            back_by_mirror(loads.part(slice(samples)), reach),
             len(fine.inner) + len(fine.cut),
             fine.unknowns,
         )
@@ -187,10 +199,9 @@ class Gears:
         self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
         return found
 
-    def _backs(self, meshed: MeshedShape, before: bool) -> BackCompliance:
-        ring = self.rings(meshed)[0 if before else 1]
+    def _backs(self, meshed: MeshedShape) -> BackCompliance:
+        ring = self.rings(meshed)[1]
         watch, shape = Stopwatch(), meshed.shape
-        samples = FEW_BACK_SAMPLES if before else BACK_SAMPLES
-        found = back_compliance(ring, sample_places(shape.profile, samples), shape.reach)
+        found = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
         self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
         return found
