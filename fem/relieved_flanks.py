@@ -21,6 +21,8 @@ from base import Array, Booleans, record
 from fem.tip_geometry import gap_at, opening_at
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fem.setting import Setting
     from fem.tip_contact import Removed
 
@@ -38,8 +40,11 @@ SLACK = 1e-7
 HOLLOWS = 201
 """Places at which flanks are looked at for hollows."""
 
-STEPS = 6
-"""Of Newton's method to the place."""
+CLOSE = 1e-12
+"""Distance from the place within which it is found [modules]."""
+
+MOST_STEPS = 100
+"""Of the search for the place; on gentle flanks some ten are enough."""
 
 
 @record
@@ -89,15 +94,19 @@ def touch(given: Setting, place: Array, removed: tuple[Removed, Removed]) -> Tou
     def missing(sigma: Array) -> Array:
         return np.stack([some(at) for some, at in zip(removed, rho(sigma), strict=True)])
 
-    sigma = np.clip(0.0, low, high)
-    for _ in range(STEPS):
+    def bends(sigma: Array) -> tuple[Array, Array]:
+        """Slope and curvature of what each flank lacks (2, n)."""
         middle = np.clip(sigma, low + span, high - span)
         before, here, after = (missing(middle + step) for step in (-span, 0.0, span))
         bent = (after - 2 * here + before) / span**2
-        slope = (after - before) / (2 * span) + bent * (sigma - middle)
-        curvature = np.clip(1 + radius * bent.sum(axis=0), *CURVATURES)
-        wished = sigma - (sigma + radius * slope.sum(axis=0)) / curvature
-        sigma = np.clip(wished, low, high)
+        return (after - before) / (2 * span) + bent * (sigma - middle), bent
+
+    def slopes(sigma: Array) -> Array:
+        return np.asarray(sigma + radius * bends(sigma)[0].sum(axis=0))
+
+    sigma, beyond = _least(slopes, low, high, CLOSE * pair.module)
+    slope, bent = bends(sigma)
+    curvature = np.clip(1 + radius * bent.sum(axis=0), *CURVATURES)
     touched = rho(sigma)
     gap, where = gap_at(pair.base_radii, line, place, touched[1])
     # the normals of the involutes there are turned against each other, each by what its flank lacks
@@ -108,8 +117,31 @@ def touch(given: Setting, place: Array, removed: tuple[Removed, Removed]) -> Tou
     lever = np.cos(leaning) - np.sin(leaning) * np.stack([where / first, touched[1] / second])
     lacking = (removed[0](where) + removed[1](touched[1])) / lever[0]
     gap = np.where(sigma == 0.0, 0.0, gap) + lacking
-    nearest = (wished < low) | (wished > high)
-    return Touch(np.stack([where, touched[1]]), gap, curvature, lever, leaning, nearest)
+    return Touch(np.stack([where, touched[1]]), gap, curvature, lever, leaning, beyond)
+
+
+def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: float) -> tuple[Array, Booleans]:
+    """Where gaps of growing slopes are least between bounds (n,), and whether they would be less beyond these.
+
+    By false position, whose bound that stays counts half (Illinois), until slopes are ``close`` to zero: a slope that
+    turns at the kink of a flank leads Newton's method to and fro between its two sides for ever.
+    """
+    before, least = low, high
+    was, here = slope(before), slope(least)
+    beyond = (was > 0.0) | (here < 0.0)
+    least = np.where(was > 0.0, low, high)
+    here = np.where(beyond, 0.0, here)
+    for _ in range(MOST_STEPS):
+        if np.all(np.abs(here) <= close):
+            break
+        apart = here - was
+        step = np.divide(here, apart, out=np.zeros_like(here), where=here != 0.0) * (least - before)
+        found = least - step
+        now = np.where(here == 0.0, 0.0, slope(found))
+        turned = now * here < 0.0
+        before, was = np.where(turned, least, before), np.where(turned, here, 0.5 * was)
+        least, here = found, now
+    return least, beyond
 
 
 def gentle(given: Setting) -> bool:
