@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -39,12 +39,14 @@ class _Laws:
         [N], [m]
     largest : (n,) array
         [N]
+    smooth : (n,) boolean array
     """
 
     key: Array
     force: Array
     approach: Array
     largest: Array
+    smooth: Booleans
 
     def _nearest(self, key: Array) -> Integers:
         """Laws whose places are nearest; there is at least one."""
@@ -65,16 +67,12 @@ class _Laws:
 
     def joined(self, other: _Laws) -> _Laws:
         """These and others."""
-        every = zip(
-            (self.key, self.force, self.approach, self.largest),
-            (other.key, other.force, other.approach, other.largest),
-            strict=True,
-        )
+        every = [(getattr(self, one.name), getattr(other, one.name)) for one in fields(self)]
         both = _Laws(*(np.concatenate(pair) for pair in every))
         return both._part(np.argsort(both.key))
 
     def _part(self, rows: Integers) -> _Laws:
-        return _Laws(self.key[rows], self.force[rows], self.approach[rows], self.largest[rows])
+        return _Laws(*(getattr(self, one.name)[rows] for one in fields(self)))
 
 
 class EdgeTables:
@@ -121,7 +119,9 @@ class EdgeTables:
             np.concatenate([_extended(values, points) for values in every])[order]
             for every in ([laws.force for _, laws in found], [laws.approach for _, laws in found])
         )
-        return Table.through(force, approach), np.concatenate([laws.largest for _, laws in found])[order]
+        largest = np.concatenate([laws.largest for _, laws in found])[order]
+        smooth = np.concatenate([laws.smooth for _, laws in found])[order]
+        return Table.through(force, approach, smooth), largest
 
     @cached_property
     def slid(self) -> tuple[float, float]:
@@ -159,7 +159,7 @@ class EdgeTables:
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
         tips = bodies.tips[corner]
         law = edge_laws(given.pair, tips, corner, place[first], touched, given.rounds[corner], given.removed)
-        return _Laws(key, law.force, law.approach - law.approach[:, :1], law.largest)
+        return _Laws(key, law.force, law.approach - law.approach[:, :1], law.largest, law.smooth)
 
 
 def _extended(values: Array, points: int) -> Array:

@@ -43,12 +43,17 @@ class HertzApproach:
 
 @record
 class Table:
-    """Monotone cubic interpolation (Fritsch and Carlson) of one law per row; straight beyond the end.
+    """Monotone cubic interpolation of one law per row; straight beyond the end.
+
+    What contacts approach over their force is nearly linear in the force's logarithm, as in ``HertzApproach``, and is
+    exactly so while only the corner and the opening of the flanks count. Smooth laws have that form up to their first
+    force, and at the others the derivatives of parabolas through three points of it; laws by strips that close in any
+    order have those of Fritsch and Carlson.
 
     Attributes
     ----------
     force, approach, steepness : (n, k) arrays
-        Points [N], [m] and derivatives [m/N].
+        Points [N], [m], the first without force, and derivatives [m/N]; infinite at the first of laws that are smooth.
     """
 
     force: Array
@@ -56,13 +61,21 @@ class Table:
     steepness: Array
 
     @classmethod
-    def through(cls, force: Array, approach: Array) -> Table:
-        """Table through growing points (n, k)."""
-        width, secant = np.diff(force), np.diff(approach) / np.diff(force)
-        left, right = 2 * width[:, 1:] + width[:, :-1], width[:, 1:] + 2 * width[:, :-1]
+    def through(cls, force: Array, approach: Array, smooth: Booleans | bool = True) -> Table:
+        """Table through growing points (n, k), and which of the laws are smooth (n,)."""
+        size, secant = np.diff(force), np.diff(approach) / np.diff(force)
+        left, right = 2 * size[:, 1:] + size[:, :-1], size[:, 1:] + 2 * size[:, :-1]
         middle = (left + right) / (left / secant[:, :-1] + right / secant[:, 1:])
-        steepness = np.concatenate([secant[:, :1], middle, secant[:, -1:]], axis=1)
-        return cls(force, approach, steepness)
+        any_order = np.concatenate([secant[:, :1], middle, secant[:, -1:]], axis=1)
+        log, quotient = np.log(force[:, 1:]), (approach[:, 1:] - approach[:, :1]) / force[:, 1:]
+        rise = np.diff(quotient) / np.diff(log)
+        width = log[:, 2:] - log[:, :-2]
+        bent = (np.diff(log)[:, 1:] * rise[:, :-1] + np.diff(log)[:, :-1] * rise[:, 1:]) / width
+        inside = quotient[:, :-1] + np.concatenate([np.minimum(rise[:, :1], 0.0), bent], axis=1)
+        inside = np.clip(inside, 0.0, 3 * np.minimum(secant[:, :-1], secant[:, 1:]))
+        begins = np.full((len(force), 1), np.inf)
+        by_logarithm = np.concatenate([begins, inside, secant[:, -1:]], axis=1)
+        return cls(force, approach, np.where(np.reshape(smooth, (-1, 1)), by_logarithm, any_order))
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Approach [m] and derivative [m/N] at forces (..., n) [N], one of each row."""
@@ -71,7 +84,8 @@ class Table:
         f0, f1 = self.force[rows, cell], self.force[rows, cell + 1]
         d0, d1 = self.approach[rows, cell], self.approach[rows, cell + 1]
         s0, s1 = self.steepness[rows, cell], self.steepness[rows, cell + 1]
-        width = f1 - f0
+        width, begins = f1 - f0, np.isinf(s0)
+        quotient, s0 = (d1 - d0) / width, np.where(begins, 0.0, s0)
         beyond = np.maximum(force - f1, 0.0)
         t = np.minimum((force - f0) / width, 1.0)
         value = (
@@ -79,7 +93,11 @@ class Table:
             + d1 * t**2 * (3 - 2 * t)
             + width * (s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t))
         )
-        slope = 6 * t * (1 - t) * (d1 - d0) / width + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)
+        slope = 6 * t * (1 - t) * quotient + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)
+        per_log = s1 - quotient
+        small = quotient + per_log * np.log(np.maximum(force, LEAST_FORCE) / f1)
+        value = np.where(begins, d0 + force * small, value)
+        slope = np.where(begins, small + np.where(force > LEAST_FORCE, per_log, 0.0), slope)
         return value + s1 * beyond, slope
 
 

@@ -163,7 +163,9 @@ def place_surface(given: Setting, bodies: Compliance, corner: int, slid: float) 
     force = np.exp(log)[:, None]
     every = np.ones((1, on.sum()), dtype=bool)
     near = cut_off(bodies, corner, place[on], every, rounding, None, slid, 1 - corner)
-    edge, _ = Table.through(law.force, law.approach).value_and_slope(np.repeat(force, (~on).sum(), axis=1))
+    edge, _ = Table.through(law.force, law.approach, law.smooth).value_and_slope(
+        np.repeat(force, (~on).sum(), axis=1)
+    )
     at_end = np.full((~on).sum(), end if corner == 0 else line - end)
     own, rounded = (
         (gear.own(at) - gear.hub_windup) / pair.face_width

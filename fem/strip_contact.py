@@ -13,6 +13,7 @@ from base import Array, Integers
 from fem.elasticity import PlaneElasticity
 
 __all__ = [
+    "begun",
     "by_the_far_end",
     "closings",
     "flat_kernel",
@@ -21,6 +22,10 @@ __all__ = [
     "from_the_nearest",
     "smoothed",
 ]
+
+
+FIRST = 4
+"""Point of a law by strips, counted from the corner, from which on the first strip's width does not count."""
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
@@ -111,6 +116,28 @@ def smoothed(force: Array, approach: Array) -> Array:
     lower = np.zeros_like(approach)
     lower[:, 1:-1] = curvature * (before * after) ** 2 / (6 * (before**2 + after**2))
     return np.asarray(approach + lower)
+
+
+def begun(force: Array, approach: Array) -> tuple[Array, Array]:
+    """Law by strips with points in the place of its first ones, of which the strip at the corner is too wide.
+
+    There the contact is so small that only the corner and the opening count, and what it approaches over its force is
+    linear in the force's logarithm: the line through the points ``FIRST`` and the next goes on.
+
+    Parameters
+    ----------
+    force, approach : (contacts, strips) arrays
+        Of contacts that spread from the corner inwards [N/m], [m].
+    """
+    size, grown = force[:, FIRST : FIRST + 2], approach[:, FIRST : FIRST + 2] - approach[:, :1]
+    step, quotient = np.log(size[:, 1:] / size[:, :1]), grown / size
+    back = np.arange(1 - FIRST, 0)
+    force, approach = force.copy(), approach.copy()
+    force[:, 1:FIRST] = size[:, :1] * np.exp(back * step)
+    approach[:, 1:FIRST] = approach[:, :1] + force[:, 1:FIRST] * (
+        quotient[:, :1] + back * (quotient[:, 1:] - quotient[:, :1])
+    )
+    return force, approach
 
 
 def from_the_nearest(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array]:

@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, record
+from base import Array, Booleans, record
 from fem.elasticity import PlaneElasticity
-from fem.strip_contact import by_the_far_end, closings, flat_kernel, from_the_corner, smoothed
+from fem.strip_contact import begun, by_the_far_end, closings, flat_kernel, from_the_corner, smoothed
 from fem.tip_geometry import TipRound, lever_ratio, opening, tip_round, unloaded_gap
 from fem.tip_strips import RATIO, REACH, TipStrips, sharp_layout
 
@@ -90,12 +90,15 @@ class EdgeLaw:
         Beyond it goes on straight.
     where : (n,) array
         Curvature radius at which the other gear's flank is touched [m].
+    smooth : (n,) boolean array
+        Whether the strips close one after the other from the corner, so that the law is smooth.
     """
 
     force: Array
     approach: Array
     where: Array
     largest: Array
+    smooth: Booleans
 
 
 def _nothing(rho: Array) -> Array:
@@ -184,21 +187,23 @@ def edge_laws(
     missing = removed or (_nothing, _nothing)
     _, where = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
     if rounding.radius == 0.0 and removed is None:
-        force, approach = strip_law(pair, strips, corner, rho1, other, turned=turned)
+        force, approach = begun(*strip_law(pair, strips, corner, rho1, other, turned=turned))
+        smooth = np.ones(len(rho1), dtype=bool)
     else:
         sharp = rounding.radius == 0.0
         layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
         tip = _surface(profile, *layout, rounding)
         answer = strips if sharp else strips.on(tip.distance, tip.width)
         force, approach, order = closings(*_strips(pair, answer, corner, rho1, other, tip, missing, turned))
-        force = force * pair.face_width
+        force, smooth = force * pair.face_width, np.zeros(len(rho1), dtype=bool)
         if sharp:  # the corner is nearer than the middle of its strip
             first = _touching(pair, corner, rho1, _at_corner(profile, rounding), missing, turned)[:, 0]
             approach[:, 0] = np.minimum(approach[:, 0], first)
-            inwards = np.all(order == np.arange(order.shape[1]), axis=1, keepdims=True)
-            approach = np.where(inwards, smoothed(force, approach), approach)
+            smooth = np.all(order == np.arange(order.shape[1]), axis=1)
+            inwards = begun(force[smooth], smoothed(force, approach)[smooth])
+            force[smooth], approach[smooth] = inwards
     force, approach, largest = _growing(force, approach)
-    return EdgeLaw(force, approach, where[:, 0], largest)
+    return EdgeLaw(force, approach, where[:, 0], largest, smooth)
 
 
 def strip_law(

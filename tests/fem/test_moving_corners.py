@@ -102,7 +102,8 @@ def test_the_surface_is_the_law_by_strips(plastic, corner):
             else:
                 law = edge_laws(pair, bodies.tips[corner], corner, place, other.law, turned=1 - corner)
                 wanted = (
-                    Table.through(law.force, law.approach).value_and_slope(force)[0] + 3 * slid * force**2
+                    Table.through(law.force, law.approach, law.smooth).value_and_slope(force)[0]
+                    + 3 * slid * force**2
                 )
             at = surface.at(z - surface.sliding * force, force)
             got = flank + at.approach - surface.sliding * at.push + (rounded - own) * force

@@ -211,7 +211,7 @@ def test_finer_strips_change_little(article_pair, article_bodies, monkeypatch):
     for ratio in (1.25, 1.1):
         monkeypatch.setattr(tip, "RATIO", ratio)
         law = edge_laws(article_pair, tip_strips(rings[1], article_pair.teeth_profiles[1]), 1, place, LAW)
-        table = Table.through(law.force, law.approach)
+        table = Table.through(law.force, law.approach, law.smooth)
         approach.append(table.value_and_slope(np.array([1100.0]))[0][0] - law.approach[0, 0])
     assert approach[1] == pytest.approx(approach[0], rel=0.01)
 
@@ -311,8 +311,25 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         deflection = bulk @ force
         # the law is in the force that turns the pinion as much, and in the pinion's turn
         turned = kappa[edge] * force[edge]
-        deflection[edge] += kappa[edge] * Table.through(law.force, law.approach).value_and_slope(turned)[0]
+        deflection[edge] += (
+            kappa[edge] * Table.through(law.force, law.approach, law.smooth).value_and_slope(turned)[0]
+        )
         deflection[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
         np.testing.assert_allclose(deflection, kappa * cycle.transmission_error[row], rtol=1e-6)
         assert np.all(kappa[edge] < 0.999)
         assert kappa @ force == pytest.approx(cycle.force, rel=1e-10)
+
+
+def test_laws_of_sharp_corners_are_smooth_from_the_least_force_on(article_pair, article_bodies):
+    """Only the corner and the opening count there: the compliance falls by as much in every decade of the force."""
+    places = article_pair.points.A - np.array([1e-4, 5e-4, 1.2e-3])
+    law = edge_laws(article_pair, article_bodies.tips[1], 1, places, LAW)
+    assert law.smooth.all()
+    table = Table.through(law.force, law.approach - law.approach[:, :1], law.smooth)
+    decades = np.geomspace(1e-4, 1.0, 41)[:, None] * law.force[:, 8]
+    value, slope = table.value_and_slope(decades)
+    fall = np.diff(slope, axis=0) / np.mean(slope)
+    # the strip at the corner is 1.25^-8 of the widest of these contacts
+    np.testing.assert_allclose(fall, fall.mean(axis=0) + 0 * fall, rtol=1.25**-8)
+    whole = np.diff(value / decades, axis=0)
+    np.testing.assert_allclose(whole, whole[:1] + 0 * whole, rtol=1.25**-8)

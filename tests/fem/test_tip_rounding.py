@@ -61,7 +61,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     one = tip_round(profile, radius)
     place = np.array([article_pair.points.A - 1e-3])
     law = edge_laws(article_pair, article_bodies.tips[1], 1, place, article_bodies.pinion.law, one)
-    table = Table.through(law.force, law.approach)
+    table = Table.through(law.force, law.approach, law.smooth)
     width, m = article_pair.face_width, article_pair.module
     modulus = article_bodies.pinion.law.plane_modulus
     star = article_bodies.pinion.law.plane_poisson
