@@ -193,12 +193,14 @@ def _edges(given: Setting, corner: int, place: Array) -> _Edges:
     lever = lever_ratio(pair, place_of_tip, place, corner)
     arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
     angle = opening(radii, pair.line_of_action, touched, where, np.array([rounding.rho]))[:, 0]
-    gap = nearest_gap(pair, corner, place, rounding, given.removed)
+    plain = nearest_gap(pair, corner, place, rounding)
+    removed = given.removed
+    gap = plain if removed is None else nearest_gap(pair, corner, place, rounding, removed)
     # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
     gap = gap / lever if corner == 0 else gap
     reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
     beyond = chamfer_gap(pair, corner, touched, rounding.start)
-    chamfered = np.isfinite(beyond) & (beyond < nearest_gap(pair, corner, place, rounding))
+    chamfered = np.isfinite(beyond) & (beyond < plain)
     return _Edges(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
 
 

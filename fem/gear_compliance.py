@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -150,21 +151,31 @@ class GearCompliance:
         own = chebyshev.chebval(self._unit(rho), self.own_series)
         return np.asarray(own + self.logarithm * np.log(away / self.module))
 
+    @cached_property
+    def _own_slopes(self) -> tuple[Array, Array]:
+        """First and second derivatives of ``own_series``."""
+        return _derivative(self.own_series), _derivative(self.own_series, 2)
+
+    @cached_property
+    def _cross_slopes(self) -> dict[int, tuple[Array, Array]]:
+        """Derivatives of ``cross_series`` by the load's and the point's place."""
+        return {
+            tooth: (_derivative(series), _derivative(series.T).T)
+            for tooth, series in self.cross_series.items()
+        }
+
     def own_slope(self, rho: Array) -> Array:
         """Differentiate ``own`` by rho [1 per N/m]; places beyond the range are moved to its end."""
         low, high = self.rho_range
         rho = np.clip(rho, low, high)
-        slope = chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series)) * 2 / (high - low)
+        slope = chebyshev.chebval(self._unit(rho), self._own_slopes[0]) * 2 / (high - low)
         return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
 
     def own_bend(self, rho: Array) -> Array:
         """Differentiate ``own_slope`` by rho [1/m per N/m]; places beyond the range are moved to its end."""
         low, high = self.rho_range
         rho = np.clip(rho, low, high)
-        bend = (
-            chebyshev.chebval(self._unit(rho), chebyshev.chebder(self.own_series, 2))
-            * (2 / (high - low)) ** 2
-        )
+        bend = chebyshev.chebval(self._unit(rho), self._own_slopes[1]) * (2 / (high - low)) ** 2
         away = self.rho_end**2 - rho**2
         return np.asarray(bend - self.logarithm * (2 / away + (2 * rho / away) ** 2))
 
@@ -191,7 +202,7 @@ class GearCompliance:
         """Change of ``cross`` as load and point move on together [1 per N/m]; arguments as there."""
         low, high = self.rho_range
         series = self.cross_series[tooth]
-        by_load, by_point = (chebyshev.chebder(series, axis=axis) for axis in (0, 1))
+        by_load, by_point = self._cross_slopes[tooth]
         loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
         slope = np.sum((loads[..., :-1] @ by_load) * points, axis=-1)
         slope = slope + np.sum((loads @ by_point) * points[..., :-1], axis=-1)
@@ -377,6 +388,11 @@ def _over(size: float, values: Array) -> float:
     """Size over the greatest of some values; 0 where there are none."""
     greatest = float(np.max(values, initial=0.0))
     return size / greatest if greatest > 0.0 else 0.0
+
+
+def _derivative(series: Array, times: int = 1) -> Array:
+    """Coefficients of a series' derivative, by its first place if it has two."""
+    return np.asarray(chebyshev.chebder(series, times), dtype=float)
 
 
 def _tail(series: Array) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from base import Array, Integers
+from base import Array, Integers, unclocked
 from fem.elasticity import PlaneElasticity
 
 __all__ = [
@@ -26,6 +26,9 @@ __all__ = [
 
 FIRST = 4
 """Point of a law by strips, counted from the corner, from which on the first strip's width does not count."""
+
+SMALLER = 40
+"""Powers of two by which levers and gaps are made smaller than compliances."""
 
 
 def flat_kernel(distance: Array, width: Array, law: PlaneElasticity, length: float) -> Array:
@@ -80,21 +83,39 @@ def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> 
         Growing line loads from 0 [N/m], approach [m].
     """
     contacts, strips = gaps.shape
-    # contacts along the last axis; no pivoting, since the kernel is almost symmetric and definite
-    whole = np.empty((strips + 1, strips + 2, contacts))
-    whole[:strips, :strips] = np.moveaxis(np.broadcast_to(kernel, (contacts, strips, strips)), 0, -1)
-    whole[-1, :strips] = whole[:strips, -2] = levers.T
-    whole[:strips, -1], whole[-1, -2:] = gaps.T, 0.0
-    sums = np.empty((strips, contacts))
-    for k in range(strips):
-        lower = whole[k + 1 :, k] / whole[k, k]
-        whole[k + 1 :, k + 1 :] -= lower[:, None] * whole[k, k + 1 :]
-        sums[k] = lower[-1]
-    by_lever, by_gap = whole[:strips, -2], whole[:strips, -1]
+    # levers and gaps so small that they are no pivots: no factor of theirs counts
+    small = 2.0 ** (np.floor(np.log2(np.min(np.abs(kernel[..., 0, 0]), initial=1.0))) - SMALLER)
+    whole = np.empty((contacts, strips + 1, strips + 2))
+    whole[:, :strips, :strips] = kernel
+    whole[:, -1, :strips] = whole[:, :strips, -2] = small * levers
+    whole[:, :strips, -1], whole[:, -1, -2:] = small * gaps, 0.0
+    sums, by_lever, by_gap = (np.empty((contacts, strips)) for _ in range(3))
+    for one, matrix in enumerate(whole):
+        sums[one], by_lever[one], by_gap[one] = _bordered(matrix)
     approach = by_gap / by_lever
-    force = approach * np.cumsum(sums * by_lever, axis=0) - np.cumsum(sums * by_gap, axis=0)
-    force[0], approach[0] = 0.0, first
-    return np.ascontiguousarray(force.T), np.ascontiguousarray(approach.T)
+    force = (approach * np.cumsum(sums * by_lever, axis=1) - np.cumsum(sums * by_gap, axis=1)) / small**2
+    force[:, 0], approach[:, 0] = 0.0, first
+    return force, approach
+
+
+def _bordered(matrix: Array) -> tuple[Array, Array, Array]:
+    """Factors of a kernel with one row and two columns more (strips + 1, strips + 2): L's last row, U's last columns.
+
+    The order of the rows stays: the kernel is almost symmetric and definite. LAPACK keeps it of its own accord where
+    every pivot is the largest beside it, as narrow strips yield more than wide ones; else it is done step by step. To
+    LAPACK columns are rows, so that U has the unit diagonal; products of both factors do not know.
+    """
+    with unclocked():
+        from scipy.linalg.lapack import dgetrf
+
+    strips = len(matrix) - 1
+    found, order, _ = dgetrf(matrix.T)
+    if not np.array_equal(order, np.arange(strips + 1)):
+        found = matrix.T.copy()
+        for k in range(strips):
+            found[k + 1 :, k] /= found[k, k]
+            found[k + 1 :, k + 1 :] -= found[k + 1 :, k, None] * found[k, k + 1 :]
+    return found[:strips, -1], found[-2, :strips], found[-1, :strips]
 
 
 def smoothed(force: Array, approach: Array) -> Array:

@@ -177,6 +177,31 @@ def test_kernel_far_from_the_corner_is_own_of_the_flank(article_pair, article_bo
     np.testing.assert_allclose(regular[some], article_bodies.wheel.own(strips.rho[some]), rtol=1e-3)
 
 
+@pytest.mark.parametrize("wide_first", [True, False])
+def test_contacts_from_the_corner_solve_each_extent(wide_first):
+    """Each point is the solution on its first strips by itself, whether or not pivots are the largest beside them."""
+    width = np.geomspace(1e-6, 3e-5, 12)
+    place = np.cumsum(width) - 0.5 * width
+    kernel = flat_kernel(place, width, LAW, 2e-3) * np.array([1.0, 2.0])[:, None, None]
+    if wide_first:
+        kernel = kernel[:, ::-1, ::-1]
+    gaps = np.stack([30.0 * place**2, 1e-9 + 0.02 * place])
+    levers = 1.0 - np.stack([20.0 * place, 300.0 * place])
+    force, approach = from_the_corner(kernel, gaps, np.array([-1e-9, 2e-9]), levers)
+    assert np.array_equal(approach[:, 0], [-1e-9, 2e-9])
+    assert np.array_equal(force[:, 0], [0.0, 0.0])
+    for one in range(2):
+        for k in range(1, 12):  # the last strip bears nothing
+            some = slice(k + 1)
+            by_lever, by_gap = (
+                np.linalg.solve(kernel[one, some, some], v[one, some]) for v in (levers, gaps)
+            )
+            level = by_gap[-1] / by_lever[-1]
+            borne = levers[one, some] @ (level * by_lever - by_gap)
+            np.testing.assert_allclose(approach[one, k], level, rtol=1e-9)
+            np.testing.assert_allclose(force[one, k], borne, rtol=1e-9, atol=1e-9 * abs(force[one]).max())
+
+
 def test_flat_kernel_is_the_mean_over_the_strip():
     distance, width = np.array([1.0, 3.0]), np.array([0.5, 1.0])
     kernel = flat_kernel(distance, width, LAW, 2.0)
