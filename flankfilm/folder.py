@@ -10,6 +10,10 @@ from pathlib import Path
 from base import FlankfilmError, InputError, shorten
 from base.files import sweep_temporaries
 
+DAMAGE = (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError, EOFError, AttributeError,
+          ArithmeticError, MemoryError)  # fmt: skip
+"""What libraries raise on damaged files: they follow references, sizes and exponents that are not there."""
+
 
 def claim(folder: Path) -> None:
     """Make the folder and see that it can be written before anything is computed."""
@@ -60,7 +64,7 @@ def readable(path: Path, remedy: str = "Run the scene again") -> Iterator[None]:
         yield
     except FlankfilmError:
         raise
-    except (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError, EOFError) as fault:
+    except DAMAGE as fault:
         allowed = f"cannot be read: {shorten(f'{type(fault).__name__}: {fault}')}"
         raise InputError.at(path, "", allowed, remedy) from fault
 

@@ -166,11 +166,16 @@ def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None
 
 def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tuple[str, ...] = ()) -> View:
     """Check what is asked for, and read what the pictures of a run have in common."""
+    import h5py
     import xarray as xr
 
     _check(folder, target, suffixes)
-    with readable(folder), xr.open_dataset(folder / "results.nc", engine="h5netcdf") as results:
-        return _view_of(results, folder, frame)
+    file = folder / "results.nc"
+    with readable(folder):
+        with h5py.File(file, "r") as whole:
+            dict(whole.attrs)  # where this fails, h5netcdf's object would fail again as it is thrown away
+        with xr.open_dataset(file, engine="h5netcdf") as results:
+            return _view_of(results, folder, frame)
 
 
 def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
