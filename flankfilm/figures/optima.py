@@ -96,13 +96,10 @@ def optimum_map(found: xr.Dataset, *, style: Style | None = None) -> Figure:
         raise ValueError("a map needs two keys that vary, and points that do not lie on one line")
     names = [str(name) for name in json.loads(found.attrs["objectives_json"])]
     signs = json.loads(found.attrs["signs_json"])
-    columns, lines = min(2, len(names)), -(-len(names) // 2)
-    size = {"width": 6.4 if columns < 2 else 9.2, "height": 4.2 * lines + 0.5}
-    with sheet(style, lines, columns, legend=3, sharex=False, **size) as (drawn, panels):
-        for axes, name, sign in zip(panels, names, signs, strict=False):
+    height = 4.2 * len(names) + 0.5
+    with sheet(style, len(names), legend=3, sharex=False, width=6.4, height=height) as (drawn, panels):
+        for axes, name, sign in zip(panels, names, signs, strict=True):
             _map(axes, found, name, sign)
-        for axes in panels[len(names) :]:
-            axes.set_visible(False)
     return drawn
 
 

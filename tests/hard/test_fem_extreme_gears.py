@@ -204,8 +204,15 @@ def test_relief_larger_than_the_deflection_takes_the_ends_out_of_contact():
     relief = TipRelief(amount=200e-6, length=3e-3)
     pair = pair_of(first={"tip_relief": relief}, second={"tip_relief": relief})
     cycle = fem.mesh_cycle(pair, 100.0, 40)
-    assert np.all((cycle.forces > 0).sum(axis=1) == 1)
-    np.testing.assert_allclose(cycle.load_share.max(axis=1), 1.0)
+    bears = cycle.forces > 0
+    from_middle = cycle.rho1[bears] - 0.5 * (pair.points.A + pair.points.E)
+    assert np.all(np.abs(from_middle) < 0.5 * pair.base_pitch + 0.2e-3)
+    # while both flanks stay on the starts of their reliefs their gaps part by 59 um a mm (least gap over points of the
+    # flanks): teeth that deflect by 6 um pass the load on within 0.2 mm, and positions are 0.15 mm apart
+    shared = np.flatnonzero(bears.sum(axis=1) == 2)
+    assert len(shared) <= 2
+    assert np.all(np.diff(shared) == 1)
+    np.testing.assert_allclose(np.delete(cycle.load_share.max(axis=1), shared), 1.0)
 
 
 @pytest.mark.slow

@@ -8,13 +8,14 @@ other way.
 
 from __future__ import annotations
 
-import sys
+import importlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fem
+from fem.local_law import Table
 from fem.ring import mesh_and_factor
 from meshes import Sizes
 from tests.validation.article import PER_MM_UM
@@ -32,7 +33,13 @@ def at_pitch_point(pair, cycle):
 def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypatch):
     bodies = fem.compliance(article_pair)
     rings = mesh_and_factor(article_pair, "strain", Sizes(), 1)
-    tip = sys.modules["fem.tip_strips"]
+    tip = importlib.import_module("fem.tip_strips")
+    # no contact is narrower than the strip at the corner: its law does not go on to nothing
+    through = Table.through
+    monkeypatch.setattr(
+        importlib.import_module("fem.tip_contact"), "begun", lambda force, approach: (force, approach)
+    )
+    monkeypatch.setattr(Table, "through", lambda force, approach, _: through(force, approach, smooth=False))
     stiffness, force = [], []
     for width in (0.2e-6, 10e-6, 30e-6, 60e-6):
         monkeypatch.setattr(tip, "FIRST_EDGE", width / article_pair.module)
