@@ -109,7 +109,7 @@ def test_shell_lines_run(page: Path, tmp_path: Path):
     done = subprocess.run(
         ["sh", "-eu", "-c", lines],
         check=False,
-        timeout=280,
+        timeout=1200,
         capture_output=True,
         text=True,
         cwd=tmp_path,

@@ -53,7 +53,7 @@ from tests.seeds import SEED
 LONGEST = 20.0
 """Seconds of processor time that one file may take."""
 
-BLOCKED = 200.0
+BLOCKED = 900.0
 """Seconds after which it waits for something."""
 
 FORBIDDEN = ("os.system", "os.exec", "os.posix_spawn", "os.fork", "subprocess.Popen", "pickle.find_class",
