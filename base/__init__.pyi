@@ -30,5 +30,7 @@ from .results import part as part
 from .results import quantities as quantities
 from .results import quantity as quantity
 from .results import record as record
-from .results import show_with as show_with
-from .results import view as view
+from .views import has_picture as has_picture
+from .views import plot as plot
+from .views import show_with as show_with
+from .views import view as view

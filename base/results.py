@@ -7,10 +7,9 @@ property. Datasets, tables, labels and the class's own documentation follow from
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, dataclass_transform, runtime_checkable
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from base.cost import Cost
 from base.faults import SolverError
 from base.units import factor
+from base.views import plot, view
 
 T = TypeVar("T")
 LONGEST_LINE = 200
@@ -228,6 +228,8 @@ def record(cls: type[T]) -> type[T]:
         made.__repr__ = headline  # type: ignore[method-assign]
     if "_repr_html_" not in cls.__dict__:
         made._repr_html_ = view  # type: ignore[attr-defined]
+    if "plot" not in cls.__dict__:
+        made.plot = plot  # type: ignore[attr-defined]
     made.__doc__ = _documented(made)
     return made
 
@@ -315,38 +317,3 @@ def meaning_of(one: dataclasses.Field[Any]) -> str:
         return str(one.metadata["meaning"])
     common = getattr(Result, one.name, None)
     return (common.__doc__ or "").rstrip(".") if isinstance(common, property) else ""
-
-
-_VIEWS: dict[str, str] = {}
-
-
-def show_with(views: Mapping[str, str]) -> None:
-    """Register how records show themselves in notebooks, both by name, so that neither loads the other.
-
-    Parameters
-    ----------
-    views : mapping
-        ``"package.module:Class"`` to ``"package.module:function"``, a function of the record that returns HTML.
-
-    Examples
-    --------
-    >>> show_with({"gears.pair:GearPair": "gears.notebook:pair_html"})
-    """
-    _VIEWS.update(views)
-
-
-def view(result: object) -> str | None:
-    """HTML of a record by the view registered for its class; None where there is none, and its line is shown.
-
-    A dataclass that is no `record` shows itself so with ``_repr_html_ = view``.
-
-    Examples
-    --------
-    >>> view(3.0) is None
-    True
-    """
-    for cls in type(result).__mro__:
-        if (place := _VIEWS.get(f"{cls.__module__}:{cls.__qualname__}")) is not None:
-            module, _, name = place.partition(":")
-            return str(getattr(import_module(module), name)(result))
-    return None

@@ -13,6 +13,7 @@ from .front import run as run
 from .front import study as study
 from .front import verify as verify
 from .front import write_vtk as write_vtk
+from .opened import open_results as open_results
 from .results import Results as Results
 from .scene import Scene as Scene
 from .scene import parse_scene as parse_scene

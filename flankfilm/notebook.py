@@ -1,22 +1,113 @@
-"""How runs and studies show themselves in a notebook: plain HTML, every text escaped."""
+"""How results show themselves in a notebook: figures with their errors and a picture, in HTML without scripts."""
 
 from __future__ import annotations
 
+import io
+from base64 import b64encode
+from collections.abc import Iterator, Mapping
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from flankfilm.report.text import number
+import numpy as np
+
+from base import FlankfilmError, Quantity, has_picture, plot, quantities
+from flankfilm.figures.reading import unit_text
+from flankfilm.report.text import number, percent, seconds
 from flankfilm.stages.failures import lines
+from gears.notebook import closed_form_html as plain_closed_form_html
 from gears.notebook import table
 
 if TYPE_CHECKING:
     from flankfilm.optimisation.optimum import Optimum
     from flankfilm.results import Results
     from flankfilm.studies.run import StudyResults
+    from gears.closed_form.record import ClosedForm
 
 MOST_ROWS = 12
 """Rows of a study that are shown."""
+
+MOST_FIGURES = 16
+"""Figures of a record that are shown."""
+
+
+def record_html(result: object) -> str | None:
+    """Single numbers of a record with their errors, whether it converged, what it cost, and its picture."""
+    rows = list(_figures(result))[:MOST_FIGURES]
+    drawn = picture(result)
+    if not rows and not drawn:
+        return None
+    head = f"<p><b>{escape(type(result).__name__)}</b></p>"
+    return f"{head}{table(('', 'value', 'error'), rows)}{_told(result)}{drawn}"
+
+
+def _figures(result: object) -> Iterator[tuple[str, str, str]]:
+    """Meaning, value with unit, and error of each single number; those of the headline first."""
+    known = quantities(result)
+    first = [name for name in getattr(type(result), "headline", ()) if name in known]
+    for name in dict.fromkeys((*first, *known)):
+        one = known[name]
+        if name in ("error", "converged", "message") or one.figure.dims or _empty(one.value):
+            continue
+        yield one.figure.meaning, _shown(one), _error(result, name, one)
+
+
+def _empty(value: Any) -> bool:
+    return not isinstance(value, str | bool | int | float | np.generic) or value == ""
+
+
+def _shown(one: Quantity) -> str:
+    if isinstance(one.value, str | bool | np.bool_):
+        return str(one.value)
+    unit = unit_text(one.figure.read_in, "")
+    return f"{number(float(one.figure.in_shown(one.value)), 5)} {unit}".strip()
+
+
+def _error(result: object, name: str, one: Quantity) -> str:
+    """Relative error of a figure: its own, or for a headline that of the whole; empty where it is not known."""
+    error = getattr(result, one.figure.error, None) if one.figure.error else None
+    error = error.get(name) if isinstance(error, Mapping) else error
+    if error is None and name in getattr(type(result), "headline", ()) and one.figure.unit:
+        error = getattr(result, "error", None)
+    known = isinstance(error, float | np.floating) and np.isfinite(error) and not isinstance(one.value, int)
+    return f"± {percent(float(error))}" if known and error is not None else ""
+
+
+def _told(result: object) -> str:
+    """Error of the whole, whether it converged, the message, and the cost."""
+    said = []
+    if isinstance(error := getattr(result, "error", None), float | np.floating):
+        said.append(f"error {percent(float(error))}")
+    if isinstance(converged := getattr(result, "converged", None), bool):
+        said.append("converged" if converged else "not converged")
+    if (cost := getattr(result, "cost", None)) is not None:
+        said.append(seconds(cost.seconds))
+    message = getattr(result, "message", "")
+    line = ", ".join(said) + (f": {message}" if message else "")
+    return f"<p>{escape(line)}</p>" if line else ""
+
+
+def picture(result: object) -> str:
+    """Picture of a result as an image in the page; empty for one without, the reason where it cannot be drawn."""
+    if not has_picture(result):
+        return ""
+    from flankfilm.figures.style import styled
+
+    try:
+        drawn = plot(result)
+    except (FlankfilmError, ValueError) as fault:
+        return f"<p>no picture: {escape(str(fault))}</p>"
+    image = io.BytesIO()
+    with styled():
+        drawn.savefig(image, format="png", dpi=96)
+    data = b64encode(image.getvalue()).decode("ascii")
+    name = escape(f"picture of {type(result).__name__}", quote=True)
+    return f'<img alt="{name}" src="data:image/png;base64,{data}"/>'
+
+
+def closed_form_html(result: ClosedForm) -> str:
+    """Stiffness of a closed form, the shares of its parts, and their picture."""
+    return plain_closed_form_html(result) + picture(result)
 
 
 def results_html(results: Results) -> str:
@@ -30,7 +121,7 @@ def results_html(results: Results) -> str:
     size = f"{results.written} after {results.seconds:.1f} s{': ' if files else ''}{files}{more}"
     title = escape(results.scene.title or "flankfilm")
     failed = "".join(f"<p>{escape(line)}</p>" for line in lines(results.failures))
-    return f"<p><b>{title}</b></p>{failed}{table((), rows)}<p>{escape(size)}</p>"
+    return f"<p><b>{title}</b></p>{failed}{table((), rows)}<p>{escape(size)}</p>{picture(results)}"
 
 
 def study_html(found: StudyResults) -> str:
@@ -43,7 +134,7 @@ def study_html(found: StudyResults) -> str:
         rows.append((str(row.index), *keys, *outputs, row.fault))
     head = ("row", *plan.keys, *plan.outputs, "fault")
     size = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
-    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}"
+    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}{picture(found)}"
 
 
 def optimum_html(found: Optimum) -> str:
@@ -63,4 +154,4 @@ def optimum_html(found: Optimum) -> str:
     said = "".join(f"<p>{escape(line)}</p>" for line in claims(found))
     size = f"{len(found.evaluations)} points, {found.computed} computed in {found.seconds:.1f} s"
     head = f"<p><b>{escape(task.asked.title or 'Optimisation')}</b>: {escape(size)}</p>"
-    return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}"
+    return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}{picture(found)}"

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from base import Cost, record, show_with
+from base import Cost, record
 from flankfilm.plan.decisions import decisions
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Stage, StageRun
 from flankfilm.stages.failures import Failure
+from flankfilm.views import register
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,4 +110,4 @@ class Results:
         return decisions(self.values)
 
 
-show_with({"flankfilm.results:Results": "flankfilm.notebook:results_html"})
+register()

@@ -7,7 +7,7 @@ import math
 import warnings
 from dataclasses import dataclass
 
-from base import Faults, Limit, view
+from base import Faults, Limit, plot, view
 from gears.errors import GeometryError, GeometryWarning
 from gears.gear import Gear
 from gears.guards import Findings, check_gear, check_mesh, unrounded_distance
@@ -125,6 +125,7 @@ class GearPair(PairGeometry):
         )
 
     _repr_html_ = view
+    plot = plot
 
     def with_backlash(self, normal_backlash: float) -> GearPair:
         """Pair with a wanted normal backlash, both teeth thinned by the same amount.

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from base import Array, Cost, show_with, view
+from base import Array, Cost, plot, view
 from flankfilm.optimisation.polish import Polish
 from flankfilm.optimisation.search import FAILED
 from flankfilm.optimisation.task import Task
 from flankfilm.studies.output_errors import ERROR_OF, ROUNDING, exact
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.study_file import Value
+from flankfilm.views import register
 
 LAST = 0.25
 """Part of the fine points whose gain says whether a front still moves."""
@@ -93,6 +94,7 @@ class Optimum:
         )
 
     _repr_html_ = view
+    plot = plot
 
     @property
     def cost(self) -> Cost:
@@ -226,4 +228,4 @@ def _volume(unit: Array) -> float:
     return float(HV(ref_point=np.full(unit.shape[1], 1.1))(unit)) if len(unit) else 0.0
 
 
-show_with({"flankfilm.optimisation.optimum:Optimum": "flankfilm.notebook:optimum_html"})
+register()

@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import Faults, show_with, view
+from base import Faults, plot, view
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns
+from flankfilm.views import register
 
 
 def refuse_unknown(folder: Path, done: Iterable[int], rows: int) -> None:
@@ -53,6 +54,7 @@ class StudyResults:
         return f"StudyResults({len(self.rows)} rows, {len(self.failures)} failed, {self.seconds:.3g} s)"
 
     _repr_html_ = view
+    plot = plot
 
 
 def run_study(
@@ -101,4 +103,4 @@ def run_study(
     return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
 
 
-show_with({"flankfilm.studies.run:StudyResults": "flankfilm.notebook:study_html"})
+register()

@@ -1,0 +1,118 @@
+"""Views of records in notebooks and their pictures: registered by name, so that no floor loads one above it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any
+
+from base.faults import InputError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+GROUP = "base.views"
+"""Entry points of packages that draw records: functions without arguments that call `show_with`."""
+
+_VIEWS: dict[str, str] = {}
+_PICTURES: dict[str, str] = {}
+
+ANY = "any record"
+"""Key of the view of records that have none of their own."""
+
+
+def show_with(views: Mapping[str, str], pictures: Mapping[str, str] | None = None) -> None:
+    """Register how records show themselves in notebooks, both by name, so that neither loads the other.
+
+    Parameters
+    ----------
+    views : mapping
+        ``"package.module:Class"``, or `ANY`, to ``"package.module:function"``, a function of the record that returns
+        HTML.
+    pictures : mapping, optional
+        The same to functions of the record that return a figure of matplotlib.
+
+    Examples
+    --------
+    >>> show_with({"gears.pair:GearPair": "gears.notebook:pair_html"})
+    """
+    _VIEWS.update(views)
+    _PICTURES.update(pictures or {})
+
+
+def view(result: object) -> str | None:
+    """HTML of a record by the view registered for its class; None where there is none, and its line is shown.
+
+    A dataclass that is no record shows itself so with ``_repr_html_ = view``.
+
+    Examples
+    --------
+    >>> view(3.0) is None
+    True
+    """
+    _ask()
+    function = _registered(_VIEWS, result)
+    if function is None and dataclasses.is_dataclass(result) and ANY in _VIEWS:
+        function = _named(_VIEWS[ANY])
+    return None if function is None else str(function(result))
+
+
+def plot(result: object) -> Figure:
+    """Picture of a record, by the function registered for its class; every record has it as its method.
+
+    A dataclass that is no record gets it with ``plot = plot``.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Shown by a notebook, and written with its ``savefig``.
+
+    Raises
+    ------
+    InputError
+        Where no picture is registered for the class, with those that have one.
+
+    Examples
+    --------
+    >>> plot(3.0)
+    Traceback (most recent call last):
+    base.faults.InputError: float.plot: has no picture...
+    """
+    _ask()
+    function = _registered(_PICTURES, result)
+    if function is None:
+        known = (
+            ", ".join(sorted({place.replace(":", ".") for place in _PICTURES})) or "none that is installed"
+        )
+        raise InputError.at(f"{type(result).__name__}.plot", "", "has no picture", f"These have one: {known}")
+    drawn: Figure = function(result)
+    return drawn
+
+
+def has_picture(result: object) -> bool:
+    """Whether `plot` draws a record."""
+    _ask()
+    return _registered(_PICTURES, result) is not None
+
+
+def _registered(places: Mapping[str, str], result: object) -> Callable[[Any], Any] | None:
+    for cls in type(result).__mro__:
+        if (place := places.get(f"{cls.__module__}:{cls.__qualname__}")) is not None:
+            return _named(place)
+    return None
+
+
+def _named(place: str) -> Callable[[Any], Any]:
+    module, _, name = place.partition(":")
+    found: Callable[[Any], Any] = getattr(import_module(module), name)
+    return found
+
+
+@cache
+def _ask() -> None:
+    """Let installed packages above register their views, once: each has an entry point that is a function."""
+    for entry in entry_points(group=GROUP):
+        entry.load()()

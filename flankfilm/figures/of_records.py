@@ -1,0 +1,360 @@
+"""Pictures of single records: what `result.plot()` returns; labels and units are those of the record's own figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from base import Array
+from flankfilm.figures.reading import PER_FACE, Reading, read_figure, unit_text
+from flankfilm.figures.style import DASHES, colours, legend_over, sheet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    import dynamics
+    import gears
+    from ehl import MixedFilm
+    from fem import RootStress
+    from flankfilm.coupling import (
+        MeshSeries,
+        PairOscillator,
+        RootStresses,
+        SpeedDiagram,
+        SpeedSweep,
+        Verification,
+    )
+
+CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
+    "MeshCycle": ("position", (("secant_stiffness", "stiffness"), ("transmission_error",))),
+    "LubricatedCycle": ("position", (("secant_stiffness", "stiffness"), ("transmission_error",))),
+    "TorqueCurves": ("torque", (("secant_stiffness", "stiffness"), ("transmission_error",))),
+    "FilmAlongPath": ("rho1", (("central_thickness", "minimum_thickness"), ("hertz_pressure",))),
+    "Film": ("x", (("pressure",), ("thickness",))),
+    "PathOfContact": ("rho1", (("rho1", "rho2", "radius"),)),
+}
+"""Class of a record to the figure along the axis, and those of each panel."""
+
+WIDEST = 75
+"""Characters of a legend's line; longer ones stand below each other."""
+
+WORDS = {
+    "stiffness": "tangent stiffness",
+    "rho1": "radius of the pinion's flank",
+    "rho2": "radius of the wheel's flank",
+}
+"""Names of curves that are not their field's."""
+
+STATE = ("displacement X [-]", "velocity dX/dτ [-]")
+
+
+def curves(result: object) -> Figure:
+    """Draw the curves of a record against their place, those of one unit together."""
+    kind = next(cls.__name__ for cls in type(result).__mro__ if cls.__name__ in CURVES)
+    across, panels = CURVES[kind]
+    x = read_figure(result, across)
+    with sheet(None, len(panels), height=1.2 + 1.9 * len(panels), legend=0) as (drawn, all_axes):
+        for axes, names in zip(all_axes, panels, strict=True):
+            known = [_read(result, name) for name in names if getattr(result, name) is not None]
+            for one, colour, dash in zip(known, colours(len(known)), DASHES, strict=False):
+                axes.plot(x.values, one.values, color=colour, linestyle=dash, label=one.meaning)
+            _titled(axes, known)
+            if kind == "Film" and names == ("thickness",):  # beyond the outlet the gap hides what counts
+                axes.set_ylim(0.0, 4.0 * float(known[0].values[np.argmin(np.abs(x.values))]))
+        all_axes[-1].set_xlabel(x.label)
+    return drawn
+
+
+def _read(result: object, name: str) -> Reading:
+    """Curve by its name, without the definition that its meaning holds; stiffness in N/um."""
+    found = replace(read_figure(result, name), meaning=WORDS.get(name, name.replace("_", " ")))
+    if found.unit == "N/m":
+        return replace(found, values=1e-6 * found.values, unit=unit_text("N/um"))
+    return found
+
+
+def _titled(axes: Axes, readings: Sequence[Reading]) -> None:
+    """Label of one curve, or the unit of several that a legend names."""
+    if len(readings) == 1:
+        axes.set_ylabel(readings[0].label)
+        return
+    axes.set_ylabel(f"[{readings[0].unit}]")
+    long = sum(len(one.meaning) for one in readings) > WIDEST
+    legend_over(axes, 1 if long else len(readings))
+
+
+def pair(found: gears.GearPair) -> Figure:
+    """Draw both gears about the pitch point, with the path of contact."""
+    from gears.polygon import outline
+
+    placed = found.placement(found.points.C)
+    middle, reach = placed.contact_point, 3.5 * found.module
+    path = np.array([found.placement(getattr(found.points, name)).contact_point for name in "AE"])
+    with sheet(None, width=5.0, height=4.6, legend=3) as (drawn, (axes,)):
+        for place, tooth, colour, name in zip(
+            (placed.pinion, placed.wheel), found.teeth_profiles, colours(2), ("pinion", "wheel"), strict=True
+        ):
+            axes.fill(*(1e3 * place(outline(tooth))).T, facecolor=f"{colour}40", edgecolor=colour, label=name)
+        axes.plot(*(1e3 * path).T, color=colours(3)[2], label="path of contact")
+        (left, right), (low, high) = (1e3 * (m + np.array([-reach, reach])) for m in middle)
+        axes.set(aspect="equal", xlim=(left, right), ylim=(low, high), xlabel="x [mm]", ylabel="y [mm]")
+    return drawn
+
+
+def closed_form(found: gears.closed_form.ClosedForm) -> Figure:
+    """Draw the parts of the deflection per force at each point, stacked."""
+    points = np.arange(1, np.atleast_1d(found.compliance).size + 1)
+    parts = [1e9 * np.broadcast_to(np.atleast_1d(one), points.shape) for one in found.parts.values()]
+    marker = "o" if points.size == 1 else ""
+    with sheet(None, height=3.4, legend=3) as (drawn, (axes,)):
+        axes.stackplot(
+            points,
+            parts,
+            labels=[name.replace("_", " ") for name in found.parts],
+            colors=colours(len(parts)),
+            alpha=0.7,
+        )
+        axes.plot(points, np.sum(parts, axis=0), color="#000000", marker=marker, label="whole")
+        axes.set(xlabel="point [-]", ylabel="deflection per force [nm/N]")
+    return drawn
+
+
+def mixed_film(found: MixedFilm) -> Figure:
+    """Draw the film that carries its share of the load."""
+    return curves(found.film)
+
+
+def root_stress(found: RootStress) -> Figure:
+    """Follow one tooth of each gear through its mesh: greatest tension and least stress of its fillets."""
+    with sheet(None, 2, height=4.6) as (drawn, panels):
+        for axes, gear, name in zip(panels, (found.pinion, found.wheel), ("pinion", "wheel"), strict=True):
+            order = np.argsort(gear.tooth_position, axis=None, kind="stable")
+            at = gear.tooth_position.ravel()[order]
+            for stress, colour, label in zip(
+                (gear.tension_Pa, gear.compression_Pa),
+                colours(2),
+                ("greatest, under the loaded flank", "least, on the other side"),
+                strict=True,
+            ):
+                axes.plot(at, 1e-6 * stress.ravel()[order], color=colour, label=label)
+            axes.set_ylabel(f"fillets, {name} [MPa]")
+        panels[-1].set_xlabel("base pitches since the tooth's pair passed A [-]")
+    return drawn
+
+
+def root_stresses(found: RootStresses) -> Figure:
+    """Draw the stress by finite elements."""
+    return root_stress(found.stress)
+
+
+def portrait(found: dynamics.Trajectory) -> Figure:
+    """Draw a motion over time and in the plane of its states."""
+    with sheet(None, 1, 2, height=3.2, legend=0) as (drawn, (over, plane)):
+        over.plot(found.tau, found.x)
+        over.set(xlabel="time τ [-]", ylabel=STATE[0])
+        plane.plot(found.x, found.v)
+        plane.plot(found.x[0], found.v[0], "o", color=colours(2)[1])
+        plane.set(xlabel=STATE[0], ylabel=STATE[1])
+    return drawn
+
+
+def orbit(found: dynamics.Orbit) -> Figure:
+    """Draw one turn of a periodic motion."""
+    from dynamics import trajectory
+
+    return portrait(trajectory(found.oscillator, found.state, periods=found.periods))
+
+
+def branch(found: dynamics.Branch) -> Figure:
+    """Draw the motions of a branch over its parameter, unstable ones dashed, with its special points."""
+    return _branches((found,), found.parameter)
+
+
+def branches(found: dynamics.Diagram) -> Figure:
+    """Draw all branches of a diagram."""
+    return _branches(found.branches, found.parameter)
+
+
+def _branches(
+    found: Sequence[dynamics.Branch], parameter: str, mark: Callable[[Axes], None] = lambda axes: None
+) -> Figure:
+    with sheet(None, height=3.6, legend=4) as (drawn, (axes,)):
+        kinds: dict[str, list[tuple[float, float]]] = {}
+        for one in found:
+            x, y = one.values, one.states[:, 0]
+            for stable, dash in ((True, "-"), (False, "--")):
+                # a point of the other kind ends each piece
+                kept = np.where(np.asarray(one.stable) == stable, y, np.nan)
+                axes.plot(x, kept, linestyle=dash, color=colours(1)[0])
+            for point in one.points:
+                kinds.setdefault(point.kind, []).append((point.parameter, float(point.state[0])))
+        for (kind, places), colour, marker in zip(
+            kinds.items(), colours(6)[1:], ("o", "s", "^", "D", "v"), strict=False
+        ):
+            axes.plot(*np.array(places).T, marker, color=colour, markersize=4, label=kind)
+        axes.plot([], [], linestyle="-", color=colours(1)[0], label="stable")
+        axes.plot([], [], linestyle="--", color=colours(1)[0], label="unstable")
+        mark(axes)
+        axes.set(xlabel=f"{parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
+    return drawn
+
+
+def sweep(found: dynamics.SweepResult) -> Figure:
+    """Draw the states that a sweep ended with at every value."""
+    return _points(found.parameter, [(found.direction, found.values, found.states[..., 0])])
+
+
+def _points(parameter: str, families: Sequence[tuple[str, Array, Array]]) -> Figure:
+    with sheet(None, height=3.4) as (drawn, (axes,)):
+        for (name, values, states), colour in zip(families, colours(len(families)), strict=True):
+            x = np.broadcast_to(values[:, None], states.shape).ravel()
+            axes.plot(x, states.ravel(), ".", markersize=3, color=colour, label=name)
+        axes.set(xlabel=f"{parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
+    return drawn
+
+
+def multi_sweep(found: dynamics.MultiSweep) -> Figure:
+    """Draw every attractor that the sweeps met, periodic ones by their period."""
+    kinds: dict[str, list[Array]] = {}
+    for motion in (one for met in found.motions for one in met):
+        name = f"period {motion.periods}" if motion.periods else "aperiodic"
+        states = motion.states[:, 0]
+        kinds.setdefault(name, []).append(np.column_stack([np.full(states.size, motion.value), states]))
+    with sheet(None, height=3.6, legend=4) as (drawn, (axes,)):
+        for (name, pieces), colour in zip(kinds.items(), 5 * colours(7), strict=False):
+            axes.plot(*np.concatenate(pieces).T, ".", markersize=3, color=colour, label=name)
+        axes.set(xlabel=f"{found.parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
+    return drawn
+
+
+def basins(found: dynamics.BasinResult) -> Figure:
+    """Colour the starting states by the attractor that they come to; white where they come to none."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    count = len(found.attractors)
+    labels = np.where(found.labels < 0, np.nan, found.labels.astype(float))
+    with sheet(None, width=5.4, height=4.8, legend=0) as (drawn, (axes,)):
+        shades = 3 * colours(7)
+        axes.pcolormesh(
+            found.x,
+            found.v,
+            labels.T,
+            cmap=ListedColormap(shades[: max(count, 1)]),
+            vmin=-0.5,
+            vmax=max(count, 1) - 0.5,
+            shading="nearest",
+            rasterized=True,
+        )
+        handles = [
+            Patch(color=shade, label=f"{one.label}: {100 * one.share:.3g} %")
+            for one, shade in zip(found.attractors, shades, strict=False)
+        ]
+        axes.set(xlabel=STATE[0], ylabel=STATE[1])
+        drawn.legend(handles=handles, loc="outside upper left", ncols=3)
+    return drawn
+
+
+def exponents(found: Any) -> Figure:
+    """Draw both Lyapunov exponents over the parameter, with their standard errors."""
+    with sheet(None, height=3.2) as (drawn, (axes,)):
+        for column, (name, colour) in enumerate(zip(("larger", "smaller"), colours(2), strict=True)):
+            axes.errorbar(
+                found.values,
+                found.exponents[:, column],
+                found.standard_errors[:, column],
+                color=colour,
+                label=name,
+            )
+        axes.set(xlabel=f"{found.parameter.replace('_', ' ')} [-]", ylabel="Lyapunov exponent [-]")
+    return drawn
+
+
+def locus(found: Any) -> Figure:
+    """Draw a curve of special points in the plane of its two parameters, with its points of codimension two."""
+    with sheet(None, height=3.6) as (drawn, (axes,)):
+        axes.plot(*found.values.T, color=colours(1)[0], label=found.kind)
+        first, second = (name.replace("_", " ") for name in found.parameters)
+        axes.set(xlabel=f"{first} [-]", ylabel=f"{second} [-]")
+    return drawn
+
+
+def speed_sweep(found: SpeedSweep) -> Figure:
+    """Draw greatest force and time without contact over the speed, up and down."""
+    x = read_figure(found, "frequency" if found.speed is None else "speed")
+    with sheet(None, 2, height=4.4) as (drawn, panels):
+        for axes, name, scale, label in zip(
+            panels,
+            ("force_factor", "separated"),
+            (1.0, 100.0),
+            ("greatest over mean force [-]", "time without contact [%]"),
+            strict=True,
+        ):
+            for (way, values), colour, dash in zip(
+                getattr(found, name).items(), colours(2), DASHES, strict=False
+            ):
+                axes.plot(x.values, scale * values, color=colour, linestyle=dash, label=f"sweep {way}")
+            axes.set_ylabel(label)
+        panels[-1].set_xlabel(x.label)
+    return drawn
+
+
+def speed_diagram(found: SpeedDiagram) -> Figure:
+    """Draw all branches over the frequency, and where a stable motion ends with its error."""
+
+    def jumps(axes: Axes) -> None:
+        for number, (at, error) in enumerate(zip(found.jump_frequency, found.jump_error, strict=True)):
+            axes.axvline(at, color="#999999", linewidth=1.0, label=None if number else "jump, with its error")
+            if np.isfinite(error):
+                axes.axvspan(at * (1.0 - error), at * (1.0 + error), color="#dddddd")
+
+    return _branches(found.diagram.branches, found.diagram.parameter, jumps)
+
+
+def series_of(found: PairOscillator) -> Figure:
+    """Draw the stiffness that drives the oscillator."""
+    return series(found.series)
+
+
+def series(found: MeshSeries) -> Figure:
+    """Draw the series over one mesh period, with the samples that it was fitted to."""
+    turn = np.linspace(0.0, 1.0, 401)
+    shown, scale = ("N/m", 1.0) if found.kind == "given" else ("N/µm", 1e-6)
+    with sheet(None, height=3.2) as (drawn, (axes,)):
+        name = f"series of order {found.order}"
+        stiffness = np.asarray(found.stiffness(2.0 * np.pi * turn))
+        if found.samples is not None and found.position is not None:
+            axes.plot(
+                found.position, scale * found.samples, ".", markersize=3, color="#555555", label="mesh cycle"
+            )
+        axes.plot(turn, scale * stiffness, color=colours(1)[0], label=name)
+        axes.set(xlabel="position, base pitches from A [-]", ylabel=f"mesh stiffness, {found.kind} [{shown}]")
+    return drawn
+
+
+def verification(found: Verification) -> Figure:
+    """Draw one pair of teeth along the path by every closed form and by finite elements, with the latter's error."""
+    width = found.pair.face_width
+    x = read_figure(found, "rho1")
+    with sheet(None, height=3.6, legend=2) as (drawn, (axes,)):
+        like = found.like_for_like
+        for one, colour in ((found.references[0], "#000000"), (like, "#777777")):
+            axes.plot(x.values, 1e-9 / width * one.single_stiffness, color=colour, label=one.label)
+        if like.error is not None:
+            base = 1e-9 / width * like.single_stiffness
+            axes.fill_between(
+                x.values, base * (1 - like.error), base * (1 + like.error), color="#bbbbbb", linewidth=0.0
+            )
+        drawn_models = [model for model in found.models if model.single_stiffness.size]
+        for one, colour, dash in zip(drawn_models, colours(len(drawn_models)), DASHES, strict=False):
+            axes.plot(
+                x.values, 1e-9 / width * one.single_stiffness, color=colour, linestyle=dash, label=one.label
+            )
+        axes.set(xlabel=x.label, ylabel=f"stiffness of one pair [{unit_text(PER_FACE)}]")
+    return drawn

@@ -1,0 +1,58 @@
+"""Which records show themselves how: names alone, so that nothing is loaded before a record is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from base import show_with
+from base.views import ANY
+
+PICTURES: Mapping[str, str] = {
+    "gears.pair:GearPair": "pair",
+    "gears.path:PathOfContact": "curves",
+    "gears.closed_form.record:ClosedForm": "closed_form",
+    "fem.cycle:MeshCycle": "curves",
+    "fem.tooth_root:RootStress": "root_stress",
+    "ehl.film:Film": "curves",
+    "ehl.mixed:MixedFilm": "mixed_film",
+    "dynamics.motions:Trajectory": "portrait",
+    "dynamics.shooting:Orbit": "orbit",
+    "dynamics.branch:Branch": "branch",
+    "dynamics.diagrams:Diagram": "branches",
+    "dynamics.sweeps:SweepResult": "sweep",
+    "dynamics.multi_sweeps:MultiSweep": "multi_sweep",
+    "dynamics.attraction:BasinResult": "basins",
+    "dynamics.exponents:LyapunovScan": "exponents",
+    "dynamics.loci:Locus": "locus",
+    "flankfilm.coupling.cycle:MeshCycle": "curves",
+    "flankfilm.coupling.along_path:FilmAlongPath": "curves",
+    "flankfilm.coupling.loads:TorqueCurves": "curves",
+    "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",
+    "flankfilm.coupling.jumps:SpeedDiagram": "speed_diagram",
+    "flankfilm.coupling.roots:RootStresses": "root_stresses",
+    "flankfilm.coupling.oscillator:PairOscillator": "series_of",
+    "flankfilm.coupling.series:MeshSeries": "series",
+    "flankfilm.coupling.verification:Verification": "verification",
+    "flankfilm.results:Results": "results",
+    "flankfilm.studies.run:StudyResults": "study",
+    "flankfilm.optimisation.optimum:Optimum": "optimum",
+}
+"""Record to the function that draws it, in `flankfilm.figures.of_records` or, for runs and rows, `of_runs`."""
+
+RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")
+
+VIEWS: Mapping[str, str] = {
+    "flankfilm.results:Results": "flankfilm.notebook:results_html",
+    "flankfilm.studies.run:StudyResults": "flankfilm.notebook:study_html",
+    "flankfilm.optimisation.optimum:Optimum": "flankfilm.notebook:optimum_html",
+    "gears.closed_form.record:ClosedForm": "flankfilm.notebook:closed_form_html",
+    ANY: "flankfilm.notebook:record_html",
+}
+"""Record to the function that gives its HTML; a pair's is the gears' own."""
+
+
+def register() -> None:
+    """Register views and pictures; the entry point ``base.views`` of the distribution."""
+    module = {place: "of_runs" if place.startswith(RUNS) else "of_records" for place in PICTURES}
+    pictures = {place: f"flankfilm.figures.{module[place]}:{name}" for place, name in PICTURES.items()}
+    show_with(VIEWS, pictures)

@@ -1,0 +1,124 @@
+"""`result.plot()`: a figure with units for every record that has one, registered without loading what draws."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+import dynamics
+import flankfilm as ff
+from base import InputError, has_picture, plot
+from base.views import GROUP
+from flankfilm.running import run_scene
+from flankfilm.scene import parse_scene
+from flankfilm.views import PICTURES, VIEWS, register
+from gears import Gear, GearPair, closed_form, dimensions
+from tests.flankfilm.scenes import ishikawa
+
+register()
+
+PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04)
+OSCILLATOR = dynamics.GearOscillator(
+    stiffness=dynamics.FourierStiffness(mean=1.0, amplitudes=(0.18,), phases=(0.0,)),
+    damping_ratio=0.05,
+    mean_force=0.1,
+    error_amplitude=0.2,
+    frequency=0.6,
+    half_backlash=0.2,
+)
+
+
+def labels(figure):
+    shown = [axes for axes in figure.axes if axes.axison]
+    assert shown
+    return [text for axes in shown for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
+
+
+def records():
+    path = PAIR.path_of_contact(9)
+    yield PAIR
+    yield path
+    yield closed_form.ishikawa(PAIR, path)
+    orbit = dynamics.find_orbit(OSCILLATOR, guess=(0.5, 0.2), periods=1)
+    yield orbit
+    yield dynamics.trajectory(OSCILLATOR, (0.5, 0.2))
+    yield dynamics.continue_branch(orbit, parameter="frequency", bounds=(0.55, 0.65))
+    yield dynamics.sweep(OSCILLATOR, parameter="frequency", values=np.linspace(0.5, 0.6, 3), direction="up")
+    yield dynamics.multi_sweep(OSCILLATOR, parameter="frequency", values=np.linspace(0.5, 0.6, 3))
+    yield dynamics.basins(OSCILLATOR, x=(-1, 1, 6), v=(-1, 1, 6))
+    yield ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
+
+
+def test_every_name_of_a_picture_is_there():
+    for place in (*PICTURES, *(place for place in VIEWS if ":" in place)):
+        module, _, name = place.partition(":")
+        assert isinstance(getattr(importlib.import_module(module), name), type), place
+    register()
+    for function in (*VIEWS.values(), *(f"flankfilm.figures.of_records:{n}" for n in ("curves", "basins"))):
+        module, _, name = function.partition(":")
+        assert callable(getattr(importlib.import_module(module), name))
+
+
+@pytest.mark.slow
+def test_records_draw_themselves_with_units_and_show_figures_and_picture():
+    for record in records():
+        figure = record.plot()
+        for label in labels(figure):
+            assert "[" in label or label == "point [-]", (type(record), label)
+        html = record._repr_html_()
+        assert "<script" not in html
+        tree = ET.fromstring(f"<div>{html}</div>")
+        assert tree.find(".//img") is not None or tree.find(".//svg") is not None, type(record)
+
+
+def test_a_mesh_cycle_shows_values_errors_and_the_curves_of_the_record():
+    cycle = ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
+    stiffness, error = cycle.plot().axes
+    drawn = stiffness.lines[0].get_ydata()
+    assert np.allclose(drawn / drawn[0], cycle.secant_stiffness / cycle.secant_stiffness[0])
+    assert np.allclose(error.lines[0].get_ydata(), 1e6 * cycle.transmission_error)
+    assert error.get_ylabel().endswith("[µm]")
+
+
+def test_one_without_a_picture_says_which_have_one():
+    sizes = dimensions(PAIR)
+    assert not has_picture(sizes)
+    with pytest.raises(InputError, match=r"has no picture. These have one: .*ehl\.film\.Film"):
+        sizes.plot()
+    with pytest.raises(InputError, match=r"float\.plot"):
+        plot(3.0)
+
+
+def test_a_run_draws_what_it_went_furthest_for():
+    found = run_scene(parse_scene(ishikawa("drawn", "closed-forms", "stiffness")), None, use_cache=False)
+    assert any("stiffness" in label for label in labels(found.plot()))
+    assert "<img" in found._repr_html_()
+    bare = run_scene(parse_scene(ishikawa("drawn", "geometry")), None, use_cache=False)
+    assert labels(bare.plot())
+
+
+ALONE = """
+import sys
+sys.path.insert(0, {folder!r})
+import dynamics, gears
+from gears import Gear, GearPair
+pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04)
+assert not {{"matplotlib", "flankfilm"}} & set(sys.modules)
+figure = pair.plot()
+assert type(figure).__module__ == "matplotlib.figure"
+assert "matplotlib.pyplot" not in sys.modules
+"""
+
+
+def test_the_ground_packages_load_what_draws_by_an_entry_point_alone(tmp_path):
+    """The distribution names the function; gears knows nothing of what draws."""
+    about = tmp_path / "drawers-1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: drawers\nVersion: 1.0\n", encoding="utf-8")
+    (about / "entry_points.txt").write_text(f"[{GROUP}]\na = flankfilm.views:register\n", encoding="utf-8")
+    subprocess.run([sys.executable, "-c", ALONE.format(folder=str(tmp_path))], check=True)
