@@ -93,7 +93,13 @@ def plot(result: object) -> Figure:
 
 
 def has_picture(result: object) -> bool:
-    """Whether `plot` draws a record."""
+    """Whether `plot` draws a record.
+
+    Examples
+    --------
+    >>> has_picture(3.0)
+    False
+    """
     _ask()
     return _registered(_PICTURES, result) is not None
 
