@@ -32,7 +32,7 @@ exclude_patterns = ["_extension"]
 nitpicky = True
 
 # Formulas stand between dollars, as forges show them; here they become MathML, which browsers draw by themselves.
-myst_enable_extensions = ["dollarmath"]
+myst_enable_extensions = ["dollarmath", "attrs_block"]
 myst_dmath_double_inline = True
 myst_heading_anchors = 4
 html_math_renderer = "mathml"

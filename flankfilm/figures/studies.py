@@ -52,7 +52,7 @@ def study(
         raise ValueError(
             f"no number varies among {', '.join(keys)}: there is nothing to draw the outputs against"
         )
-    others = [k for k in keys if k != numbers[0]]
+    others = [k for k in keys if k != numbers[0] and not _follows(found, k, numbers[0])]
     columns = min(2, len(outputs))
     lines = -(-len(outputs) // columns)
     width, height = 3.6 * columns, 2.5 * lines + 0.7
@@ -73,10 +73,20 @@ def varied_numbers(found: xr.Dataset, keys: Sequence[str]) -> list[str]:
     return [k for k in keys if np.issubdtype(found[k].dtype, np.number) and np.ptp(found[k].values) > 0]
 
 
+def _follows(found: xr.Dataset, key: str, number: str) -> bool:
+    """Whether a key changes with a number along a straight line, as one that follows it does: then it makes no family."""
+    x, y = found[number].values, found[key].values
+    if not np.issubdtype(y.dtype, np.number):
+        return False
+    about = x - x.mean(), y - y.mean()
+    slope = (about[0] @ about[1]) / (about[0] @ about[0])
+    return bool(np.max(np.abs(about[1] - slope * about[0])) <= 1e-9 * np.max(np.abs(y)))
+
+
 def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], name: str) -> None:
     x, y = found[across].values, found[name].values
     rows = list(zip(*(found[key].values.tolist() for key in others), strict=True)) or [()] * x.size
-    family = sorted(set(rows), key=str) if others else [()]
+    family = sorted(set(rows), key=lambda row: [(isinstance(v, str), v) for v in row])
     if len(family) > FAMILY:
         shade = found[others[0]].values
         if np.issubdtype(shade.dtype, np.number):
