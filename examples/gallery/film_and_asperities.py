@@ -19,10 +19,8 @@ TORQUE, RPM = 100.0, math.pi / 30.0  # N m, rad/s
 OIL = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 SPEEDS = np.geomspace(20e3, 10.0, 25)  # rpm of the pinion
 RA = 0.4e-6  # m, of both flanks
-SLENDERNESS = (
-    0.01,
-    0.001,
-)  # sigma/beta: the tip radius of the asperities is known to a factor of ten at best
+# sigma/beta: the tip radius of the asperities is known to a factor of ten at best
+SLENDERNESS = (0.01, 0.001)
 
 
 def draw() -> Figure:

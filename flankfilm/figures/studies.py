@@ -74,7 +74,7 @@ def varied_numbers(found: xr.Dataset, keys: Sequence[str]) -> list[str]:
 
 
 def _follows(found: xr.Dataset, key: str, number: str) -> bool:
-    """Whether a key changes with a number along a straight line, as one that follows it does: then it makes no family."""
+    """Whether a key changes with a number along a straight line, as one that follows it does: no family then."""
     x, y = found[number].values, found[key].values
     if not np.issubdtype(y.dtype, np.number):
         return False
