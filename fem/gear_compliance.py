@@ -8,7 +8,9 @@ load and bisector, Michell's wedge under a force at its apex gives
     u_r ~ c ln d,   c = [2/pi - cos^2 gamma/(beta + sin(2 beta)/2) - sin^2 gamma/(beta - sin(2 beta)/2)]/E*
 
 (S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, 1970, article 38). That part is taken out before
-the rest is fitted by Chebyshev polynomials in the curvature radius rho.
+the rest is interpolated by Chebyshev polynomials. What is left of ``own`` begins as d ln d at the corner, close beyond
+the last load: it is a polynomial in the root of rho_end - rho, which moves that singularity away and brings loads close
+to it. Cross terms have no such part, and are fitted in rho itself.
 """
 
 from __future__ import annotations
@@ -68,7 +70,7 @@ class GearCompliance:
     logarithm : float
         Coefficient c of ln(d/module) [m per N/m].
     own_series : (n,) array
-        Chebyshev coefficients of u_r - c ln(d/module) over ``rho_range``.
+        Chebyshev coefficients of u_r - c ln(d/module) over ``rho_range`` in (rho_end - rho)^(1/2).
     cross_series : mapping of int to (k, k) array
         For the k-th tooth on the side of growing rho: coefficients over (load's rho, point's rho).
     corner_series : mapping of int to (k,) array
@@ -144,11 +146,17 @@ class GearCompliance:
         low, high = self.rho_range
         return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
 
+    def _root(self, rho: Array) -> tuple[Array, Array]:
+        """Argument of ``own_series``, -1 to 1, and its derivative by rho [1/m]."""
+        near, far = (float(np.sqrt(self.rho_end - end)) for end in self.rho_range[::-1])
+        root = np.sqrt(self.rho_end - rho)
+        return np.clip((2 * root - near - far) / (far - near), -1.0, 1.0), -1.0 / (root * (far - near))
+
     def own(self, rho: Array) -> Array:
         """u_r at the load along the load [m per N/m]; rho [m] beyond the range is moved to its end."""
         rho = np.clip(rho, *self.rho_range)
         away = (self.rho_end**2 - rho**2) / (2 * self.base_radius)
-        own = chebyshev.chebval(self._unit(rho), self.own_series)
+        own = chebyshev.chebval(self._root(rho)[0], self.own_series)
         return np.asarray(own + self.logarithm * np.log(away / self.module))
 
     @cached_property
@@ -166,18 +174,19 @@ class GearCompliance:
 
     def own_slope(self, rho: Array) -> Array:
         """Differentiate ``own`` by rho [1 per N/m]; places beyond the range are moved to its end."""
-        low, high = self.rho_range
-        rho = np.clip(rho, low, high)
-        slope = chebyshev.chebval(self._unit(rho), self._own_slopes[0]) * 2 / (high - low)
+        rho = np.clip(rho, *self.rho_range)
+        unit, by_rho = self._root(rho)
+        slope = chebyshev.chebval(unit, self._own_slopes[0]) * by_rho
         return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
 
     def own_bend(self, rho: Array) -> Array:
         """Differentiate ``own_slope`` by rho [1/m per N/m]; places beyond the range are moved to its end."""
-        low, high = self.rho_range
-        rho = np.clip(rho, low, high)
-        bend = chebyshev.chebval(self._unit(rho), self._own_slopes[1]) * (2 / (high - low)) ** 2
+        rho = np.clip(rho, *self.rho_range)
+        unit, by_rho = self._root(rho)
+        slope, bend = (chebyshev.chebval(unit, series) for series in self._own_slopes)
         away = self.rho_end**2 - rho**2
-        return np.asarray(bend - self.logarithm * (2 / away + (2 * rho / away) ** 2))
+        whole = bend * by_rho**2 + slope * by_rho / (2 * (self.rho_end - rho))
+        return np.asarray(whole - self.logarithm * (2 / away + (2 * rho / away) ** 2))
 
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
         """Displacement along the inward normal of another tooth by a load on tooth 0.
@@ -308,10 +317,16 @@ class FlankSamples:
 
 
 def sample_places(profile: ToothProfile, count: int) -> Array:
-    """Chebyshev points in rho, stretched to include both ends of the flank, whatever the mate reaches (count,) [m]."""
-    low, high = profile.flank_rho[0], profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
-    unit = -np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    return np.asarray(np.clip(low + 0.5 * (high - low) * (1 - unit / unit[0]), low, high))
+    """Chebyshev points in the root of what rho lacks to the tip corner, stretched to include both ends of the flank.
+
+    Whatever the mate reaches (count,) [m].
+    """
+    low, end = profile.flank_rho
+    high = end - CORNER_CLEARANCE * profile.module
+    unit = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    near, far = np.sqrt(end - high), np.sqrt(end - low)
+    root = near + 0.5 * (far - near) * (1 + unit / unit[0])
+    return np.asarray(np.clip(end - root**2, low, high))
 
 
 def flank_loads(ring: Ring, rho: Array, flank: str = "left") -> LineLoads:
@@ -356,7 +371,9 @@ def gear_compliance(
     _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
     smooth = samples.own - logarithm * np.log(away / profile.module)
-    own = np.asarray(np.linalg.solve(chebyshev.chebvander(unit, len(rho) - 1), smooth), dtype=float)
+    near, far = np.sqrt(rho_end - high), np.sqrt(rho_end - low)
+    root = (2 * np.sqrt(rho_end - rho) - near - far) / (far - near)
+    own = np.asarray(np.linalg.solve(chebyshev.chebvander(root, len(rho) - 1), smooth), dtype=float)
     degree = max(CROSS_DEGREE, CROSS_SHARE * len(rho) // 8)
     basis = chebyshev.chebvander(unit, min(degree, len(rho) - 1))
     fit = np.linalg.pinv(basis)

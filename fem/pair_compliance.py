@@ -40,9 +40,11 @@ TOLERANCE = Limit(2e-6, remedy="0.001 is 0.1 %")
 
 REFINEMENTS = Limit(1, FINEST + 1, remedy="leave it out", whole=True)
 
-SAMPLES = (20, 32, 48, 64)
-"""Loads along a flank: more of them where the fit leaves too much."""
+SAMPLES, FIT = (32, 48, 64), 0.03
+"""Loads along a flank, more of them where the fit leaves more than this part of the tolerance.
 
+So little that errors are those of the mesh, whose sign and place nested meshes show; those of a fit wave.
+"""
 
 STEPS = 4
 """Of the edge length when it is halved for a tolerance: so few meshes are tried that pairs share their gears'."""
@@ -174,7 +176,7 @@ def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks
     for count in SAMPLES:
         found = gears.flanks(meshed, count)
         least = local + float(np.min(found.flexible.own(found.rho)))
-        if found.flexible.fit_error <= 0.1 * tolerance * least:
+        if found.flexible.fit_error <= FIT * tolerance * least:
             break
     return found
 

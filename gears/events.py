@@ -86,8 +86,8 @@ def arcs_between_events(
         Base pitches to be covered.
     tolerance : float
         What the last quarter of an arc's series may be, relative to the range of the curve, or to a hundredth of its
-        size where that is more. On arcs shorter than a quarter of a base pitch it may be more in proportion, since
-        extremes of short arcs are at their ends.
+        size where that is more. On arcs shorter than a quarter of a base pitch it may be more in proportion, unless
+        an extreme of the curve may lie between their ends.
 
     Returns
     -------
@@ -225,7 +225,12 @@ class _Search:
         """Whether the series of all curves have decayed."""
         size = np.maximum(self.high - self.low, 0.01 * np.maximum(np.abs(self.low), np.abs(self.high)))
         arc = piece.arc()
-        return bool(np.all(arc.tail * min(1.0, 4.0 * arc.width) <= self.tolerance * size))
+        nodes, tail = arc.values, arc.tail
+        short = np.full(len(tail), min(1.0, 4.0 * arc.width))
+        for sign, most in ((1.0, self.high), (-1.0, -self.low)):
+            inside, ends = (sign * nodes[:, 1:-1]).max(axis=1), (sign * nodes[:, [0, -1]]).max(axis=1)
+            short[(inside > ends) & (inside + tail >= most)] = 1.0
+        return bool(np.all(tail * short <= self.tolerance * size))
 
     def _located(self, brackets: list[Bracket], width: float = LOCATED) -> list[End]:
         """Events in brackets, all at once, to a width [base pitches]."""

@@ -61,7 +61,8 @@ def share_load(
     With l_i = 1 this is the minimum of a convex energy, so the solution is unique. Newton's method runs on the pairs in
     contact, at first the one with the smallest gap; a pair that would overlap is taken in with a small force.
     hertz is concave, so from too small a force Newton rises monotonically; a step that would make a force
-    negative releases the pair only if it stands clear at zero force, else keeps a tenth of the force.
+    negative releases the pair only if it stands clear at zero force, else keeps a tenth of the force. A pair that
+    comes back is taken in with a tenth of what it had: about to touch, it bears less than any start would leave it.
     Leading dimensions are torques, mesh positions and so on, all solved together; arguments need only have
     those that they depend on.
 
@@ -122,6 +123,7 @@ def share_load(
         return _first_touch(stiff, hertz, film, at_zero, arms)
     clear = np.where(touchable, clear, 0.0)
     active = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
+    start = np.full(clear.shape, _START)
     loads, approach = np.where(active, each / arms, 0.0), at_zero.min(axis=-1)
     for iteration in range(1, _ITERATIONS + 1):
         jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
@@ -138,7 +140,8 @@ def share_load(
         taken = touchable & ~active & (unloaded < -_ROUNDING * size[..., None])
         settled = np.abs(moved - loads).max(axis=-1) <= _STEP * whole + _ROUNDING * size * tangent
         loads = np.where(negative & ~released, _BACKOFF * loads, kept)
-        loads = np.where(taken, _START * each, loads)
+        loads = np.where(taken, start * each, loads)
+        start = np.where(taken, _BACKOFF * start, start)
         active = (active & ~released) | taken
         if settled.all() and not (negative.any() or taken.any()):
             return LoadShare(loads, approach, tangent, slopes, iteration)

@@ -240,3 +240,20 @@ def test_independent_pairs_share_in_proportion():
     assert np.allclose(broken.forces, [0, 600])
     with pytest.raises(LoadSharingError):
         independent_pairs(600.0, [[0.0, 0.0]])
+
+
+@pytest.mark.parametrize("overlap", [1e-15, 1e-14, 1e-12, 1e-10])
+def test_a_pair_about_to_touch_is_taken_in_with_next_to_nothing(overlap):
+    """Any start is more than it will bear: it was released for ever, since its neighbour then bears too much."""
+    bulk, levers, hertz = (
+        np.array([[5.0e-8, 4.96e-8], [4.96e-8, 5.0e-8]]),
+        np.array([0.9795, 1.0352]),
+        Hertz(1.6e-9),
+    )
+    alone = np.array([264.0 / levers[1]])
+    whole = float(bulk[1, 1] * alone[0] + hertz.approach(alone)[0])
+    gaps = np.array([whole - bulk[0, 1] * alone[0] - overlap, 0.0])
+    found = share_load(264.0, bulk, hertz, gaps, levers=levers)
+    assert found.forces @ levers == pytest.approx(264.0, rel=1e-12)
+    assert 0.0 <= found.forces[0] < 100 * overlap / (bulk[0, 0] - bulk[0, 1])
+    assert found.transmission_error == pytest.approx(whole, rel=1e-4)
