@@ -157,6 +157,7 @@ def moved_share(
     clear = np.where(touchable, gaps, 0.0)
     at_zero = clear if film is None else clear - film.approach(np.zeros_like(share.forces))
     active, loads, approach = share.forces > 0, share.forces, share.transmission_error
+    start = np.full(loads.shape, 1e-2)
     for iteration in range(1, ITERATIONS + 1):
         residual, jacobian, reach = _linearised(bulk, laws, film, clear, moves, loads, approach)
         carried, stiff = np.sum((levers - 0.5 * (1 - reach)) * loads, axis=-1), 0.0
@@ -175,7 +176,8 @@ def moved_share(
         negative = active & (moved <= 0)
         kept = np.where(negative, 0.0, moved)
         approach = approach + lift
-        # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it
+        # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it; one that
+        # comes back is taken in with less
         unloaded = (bulk @ kept[..., None])[..., 0] + at_zero
         unloaded += approach[..., None] * (moves.rolled(kept) - 1)
         if own is not None:
@@ -184,7 +186,8 @@ def moved_share(
         taken = touchable & ~active & (unloaded < -ROUNDING * np.abs(approach)[..., None])
         settled = np.all(np.abs(step) <= CLOSE * whole[..., None])
         loads = np.where(negative & ~released, 0.1 * loads, kept)
-        loads = np.where(taken, 1e-2 * whole[..., None], loads)
+        loads = np.where(taken, start * whole[..., None], loads)
+        start = np.where(taken, 0.1 * start, start)
         active = (active & ~released) | taken
         if not (np.all(np.isfinite(loads)) and np.all(tangent > 0)):
             return None
