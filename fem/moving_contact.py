@@ -176,8 +176,8 @@ def moved_share(
         negative = active & (moved <= 0)
         kept = np.where(negative, 0.0, moved)
         approach = approach + lift
-        # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it; one that
-        # comes back is taken in with less
+        # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it; one
+        # that comes back is taken in with less
         unloaded = (bulk @ kept[..., None])[..., 0] + at_zero
         unloaded += approach[..., None] * (moves.rolled(kept) - 1)
         if own is not None:
