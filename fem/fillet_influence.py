@@ -91,7 +91,8 @@ class FilletInfluence:
         if tooth not in self.series:
             return np.zeros((len(rho), 2, len(self.line.arc)))
         unit = (2 * rho - low - high) / (high - low)
-        stress = np.moveaxis(chebyshev.chebval(unit, self.series[tooth]), -1, 0)
+        series = self.series[tooth]
+        stress = np.tensordot(chebyshev.chebvander(unit, len(series) - 1), series, 1)
         return np.asarray(stress + self._half_plane(rho) if tooth == 0 else stress)
 
     def _half_plane(self, rho: Array) -> Array:

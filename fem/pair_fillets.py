@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Cost, Faults, Limit, RangeWarning, Stopwatch, part, quantity, record
+from base import Array, Cost, Faults, Limit, RangeWarning, Stopwatch, described, part, quantity, record
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.fillet_influence import FilletInfluence, fillet_influence
 from fem.gear_shape import GearShape, shapes
@@ -46,12 +46,19 @@ class Fillets:
     pinion: FilletInfluence = part("influence on the fillets of the pinion")
     wheel: FilletInfluence = part("influence on the fillets of the wheel")
     fillet_edge: float = quantity("1", "edge length on the fillets of the mesh in use, in modules")
-    error: float = quantity(
-        "1", "estimated relative error of the greatest stress on a fillet, from two nested meshes"
+    errors: Array = quantity(
+        "1",
+        "estimated relative error of the greatest stress on a gear's fillet, from two nested meshes",
+        "gear",
     )
     cost: Cost
     converged: bool
     message: str
+
+    @described("1")
+    def error(self) -> float:
+        """Larger of both gears' estimated errors."""
+        return float(self.errors.max())
 
 
 @record
@@ -133,7 +140,8 @@ def fillets(
                 break
             gear_edge *= 0.5
         results.append((solved, gear_edge))
-    error = max(solved.error for solved, _ in results)
+    errors = np.array([solved.error for solved, _ in results])
+    error = float(errors.max())
     converged = error <= tolerance or fillet_edge is not None
     finest = min(gear_edge for _, gear_edge in results)
     message = f"edges of {0.5 * finest:.3g} modules on the fillets, error {error:.1e}"
@@ -149,7 +157,7 @@ def fillets(
         parts=sum(gears.costs, Cost(0.0)).parts,
         counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
     )
-    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, error, cost, converged, message)
+    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, errors, cost, converged, message)
 
 
 def _warn_of_held_rims(pair: GearPair) -> None:

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from base import Array, Integers, quantity, record
 from fem.elasticity import MIRROR
+from fem.fillet import FilletLine
 from fem.fillet_influence import FilletInfluence
+from gears.arc_series import OVERSHOOT, left_out, to_series
 from gears.arcs import Arcs
 
 __all__ = ["LOADED", "OTHER", "RootNodes", "RootPeak", "extreme", "peak_of"]
 
 LOADED, OTHER = 0, 1
 """Fillet under the loaded flank, in tension when its tooth bears, and the one on the other side."""
+
+_SIGNS = {LOADED: 1.0, OTHER: -1.0}
+
+FINER = 4
+"""Points between the nodes of an arc, of which the greatest has a parabola through its neighbours."""
 
 
 @record
@@ -44,38 +54,99 @@ class RootPeak:
 
 @record
 class RootNodes:
-    """Stress at all nodes of a cycle's arcs (n, teeth, 2, samples), and with the forces of the mesh before."""
+    """Stress at all nodes of a cycle's arcs, one after the other (n, teeth, 2, samples), and their positions (n,)."""
 
     arcs: Arcs
     position: Array
-    teeth: Integers
     stress: Array
-    before: Array
-    gain: float
+
+    def greatest(self, line: FilletLine, side: int) -> Greatest:
+        """Greatest stress on one side of all teeth, on the series through the stress at every sample and arc.
+
+        Between nodes only arcs and teeth are looked at on which it may be: by as much as the stress changes there.
+        """
+        ends, found = np.cumsum([len(one.position) for one in self.arcs.arcs])[:-1], []
+        positions, stress = (
+            np.split(self.position, ends),
+            np.split(_SIGNS[side] * self.stress[:, :, side], ends),
+        )
+        nodes = [extreme(line.arc, one)[0] for one in stress]
+        most = max(float(one.max()) for one in nodes)
+        for arc, position, here, values in zip(self.arcs.arcs, positions, stress, nodes, strict=True):
+            for tooth in np.flatnonzero(2.0 * values.max(axis=0) - values.min(axis=0) >= most).tolist():
+                value, off, unit, along = _on_arc(here[:, tooth], line.arc, arc.crowded)
+                at = float(np.interp(arc.place(np.array(unit)), arc.position, position))
+                found.append(Greatest(value, off, tooth, at, along))
+        best = max(found, key=lambda one: one.value)
+        above, below = (max(one.value + sign * one.off for one in found) for sign in (1.0, -1.0))
+        return replace(best, off=max(above - best.value, best.value - below))
 
 
-def peak_of(nodes: RootNodes, influence: FilletInfluence, side: int) -> RootPeak:
-    """Greatest stress on one side of all teeth, and what is missed between the nodes."""
-    line, law, sign = influence.line, influence.law, 1.0 if side == LOADED else -1.0
-    most, arc = extreme(line.arc, sign * nodes.stress[:, :, side])
-    coarse, _ = extreme(line.arc, sign * nodes.before[:, :, side])
-    ends = np.cumsum([len(one.position) for one in nodes.arcs.arcs])[:-1]
-    row, column = np.unravel_index(np.argmax(most), most.shape)
-    value, place = float(most[row, column]), float(arc[row, column])
-    greatest, error = nodes.arcs.with_curves("tooth", np.split(most, ends)).greatest_of_all()
+@dataclass(frozen=True)
+class Greatest:
+    """Greatest stress, or least with its sign turned; its error between nodes; tooth, position and fillet there."""
+
+    value: float
+    off: float
+    tooth: int
+    position: float
+    along: Array
+
+
+def _on_arc(stress: Array, samples: Array, crowded: bool) -> tuple[float, float, float, Array]:
+    """Greatest on an arc of one tooth (nodes, samples): its error, the argument of the series, the stress there."""
+    degree = len(stress) - 1
+    angle = np.linspace(0.0, np.pi, FINER * degree + 1)
+    series = to_series(degree) @ stress
+    values = extreme(samples, chebyshev.chebvander(-np.cos(angle), degree) @ series)[0]
+    top = int(np.argmax(values))
+    if top in (0, len(values) - 1):  # ends of arcs are nodes, which are exact
+        along = stress[-1 if top else 0]
+        return float(extreme(samples, along)[0]), 0.0, 1.0 if top else -1.0, along
+    unit = np.array([-np.cos(extreme(angle, values)[1])])
+    along = (chebyshev.chebvander(unit, degree) @ series)[0]
+    value, beyond = float(extreme(samples, along)[0]), float(values.max() - values[::FINER].max())
+    off = np.linalg.norm(left_out(series[:, np.argmax(along)], unit, np.ones(1), crowded))
+    return value, min(float(off), OVERSHOOT * max(beyond, 0.0)), float(unit[0]), along
+
+
+def peak_of(
+    nodes: RootNodes,
+    before: RootNodes | None,
+    gain: float,
+    teeth: Integers,
+    influence: FilletInfluence,
+    side: int,
+) -> RootPeak:
+    """Greatest stress on one side of all teeth, and what is missed between the nodes.
+
+    Parameters
+    ----------
+    nodes, before : RootNodes
+        By the forces of the mesh in use, and of the one before the last refinement; None where there is none.
+    gain : float
+        By how much the refinement reduced the error.
+    teeth : (teeth,) array of int
+    influence : FilletInfluence
+    side : int
+    """
+    line, law = influence.line, influence.law
+    best = nodes.greatest(line, side)
+    coarse = best if before is None else before.greatest(line, side)
+    value, place = best.value, float(extreme(line.arc, best.along)[1])
     nu = law.nu if law.plane == "strain" else 0.0
     point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
     return RootPeak(
-        sign * value,
+        _SIGNS[side] * value,
         float(np.sqrt(1 - nu + nu**2)) * value,
-        int(nodes.teeth[column]),
-        float(nodes.position[row] + nodes.teeth[column]),
+        int(teeth[best.tooth]),
+        best.position + float(teeth[best.tooth]),
         place,
         float(np.interp(place, line.arc, line.tangent_angle)),
         point * MIRROR if side == LOADED else point,
-        nodes.stress[row, column, side],
-        (greatest + error) / value - 1.0,
-        abs(float(coarse.max()) / value - 1.0) / nodes.gain,
+        _SIGNS[side] * best.along,
+        best.off / value,
+        abs(coarse.value / value - 1.0) / gain,
     )
 
 

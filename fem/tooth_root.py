@@ -9,6 +9,7 @@ nu sigma_t.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,6 +58,18 @@ class GearRootStress:
         "bound fillet sample",
         shown="MPa",
     )
+    fillets_error: float = quantity(
+        "1", "estimated relative error of the greatest stresses by the fillets' mesh"
+    )
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Estimated relative errors of the greatest stresses by their names."""
+        peaks = {
+            "greatest_tension_Pa": self.greatest_tension,
+            "greatest_compression_Pa": self.greatest_compression,
+        }
+        return {name: self.fillets_error + one.forces + one.sampling for name, one in peaks.items()}
 
     @described("1", "position tooth")
     def tooth_position(self) -> Array:
@@ -83,12 +96,12 @@ class GearRootStress:
         """Place of the least stress: arc length from the middle of the gap."""
         return extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
 
-    @described("Pa", shown="MPa")
+    @described("Pa", shown="MPa", error="errors")
     def greatest_tension_Pa(self) -> float:
         """Greatest tension under a loaded flank, of all teeth and positions."""
         return self.greatest_tension.stress_Pa
 
-    @described("Pa", shown="MPa")
+    @described("Pa", shown="MPa", error="errors")
     def greatest_compression_Pa(self) -> float:
         """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
         return self.greatest_compression.stress_Pa
@@ -127,19 +140,25 @@ class RootStress:
     wheel: GearRootStress = part("of the wheel")
     error: float = quantity(
         "1",
-        "estimated relative numerical error of the greatest stresses: of the fillets' mesh, of the forces, and of what "
-        "lies between the instants",
+        "largest estimated relative numerical error of the greatest stresses: of the fillets' mesh, of the forces, and "
+        "of what lies between the instants",
     )
     cost: Cost
     converged: bool
     message: str
 
-    @described("Pa", shown="MPa", error="error")
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Estimated relative errors of the greatest tensions by their names."""
+        both = {"pinion_tension_Pa": self.pinion, "wheel_tension_Pa": self.wheel}
+        return {name: one.errors["greatest_tension_Pa"] for name, one in both.items()}
+
+    @described("Pa", shown="MPa", error="errors")
     def pinion_tension_Pa(self) -> float:
         """Greatest tension on the pinion's fillets."""
         return self.pinion.greatest_tension_Pa
 
-    @described("Pa", shown="MPa", error="error")
+    @described("Pa", shown="MPa", error="errors")
     def wheel_tension_Pa(self) -> float:
         """Greatest tension on the wheel's fillets."""
         return self.wheel.greatest_tension_Pa
@@ -202,17 +221,13 @@ def root_stress(
     watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = watch.seconds
-    pinion, wheel = (
-        _gear_stress(pair, cycle, arcs, influence, gear)
-        for gear, influence in enumerate((roots.pinion, roots.wheel))
-    )
-    peaks = [peak for one in (pinion, wheel) for peak in (one.greatest_tension, one.greatest_compression)]
+    pinion, wheel = (_gear_stress(pair, cycle, arcs, roots, gear) for gear in (0, 1))
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
     cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
         pinion,
         wheel,
-        roots.error + max(peak.forces + peak.sampling for peak in peaks),
+        max(max(one.errors.values()) for one in (pinion, wheel)),
         cost,
         roots.converged and cycle.converged,
         roots.message,
@@ -220,18 +235,23 @@ def root_stress(
 
 
 def _gear_stress(
-    pair: GearPair, cycle: MeshCycle, found: MeshArcs, influence: FilletInfluence, gear: int
+    pair: GearPair, cycle: MeshCycle, found: MeshArcs, roots: Fillets, gear: int
 ) -> GearRootStress:
-    """Stress at the cycle's positions, and the greatest at all nodes of its arcs."""
+    """Stress at the cycle's positions, and the greatest on its arcs."""
+    influence, fillets_error = (roots.pinion, roots.wheel)[gear], float(roots.errors[gear])
     offsets = cycle.pair_offset
     teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
     forces = _Forces(offsets, teeth, pair.face_width, gear)
     total = forces.stress(influence, cycle.forces, cycle.flank_rho[gear])
-    at_nodes = forces.at_nodes(influence, found.arcs)
-    before = at_nodes if found.before is None else forces.at_nodes(influence, found.before)
-    low, high = at_nodes.min(axis=(0, 1)), at_nodes.max(axis=(0, 1))
-    nodes = RootNodes(found.arcs, _positions(cycle, found.arcs), teeth, at_nodes, before, found.gain)
-    tension, compression = (peak_of(nodes, influence, side) for side in (LOADED, OTHER))
+    nodes, before = (
+        None if arcs is None else RootNodes(arcs, _positions(cycle, arcs), forces.at_nodes(influence, arcs))
+        for arcs in (found.arcs, found.before)
+    )
+    assert nodes is not None
+    low, high = nodes.stress.min(axis=(0, 1)), nodes.stress.max(axis=(0, 1))
+    tension, compression = (
+        peak_of(nodes, before, found.gain, teeth, influence, side) for side in (LOADED, OTHER)
+    )
     return GearRootStress(
         influence.line,
         influence.law,
@@ -241,6 +261,7 @@ def _gear_stress(
         tension,
         compression,
         np.stack([low, high]),
+        fillets_error,
     )
 
 

@@ -26,7 +26,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array
 
-__all__ = ["ceiling", "gauss", "greatest_of", "left_out", "lobatto", "to_series"]
+__all__ = ["OVERSHOOT", "ceiling", "gauss", "greatest_of", "left_out", "lobatto", "to_series"]
 
 OVERSHOOT = 3.0
 """Largest error of a greatest value between nodes, over what it exceeds theirs by."""

@@ -201,18 +201,19 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     """Stress at the roots by finite elements, beside ISO 6336-3."""
     peaks = [
-        (f"{name}, greatest {kind}", getattr(getattr(stage.stress, name), f"greatest_{kind}"))
-        for name in ("pinion", "wheel")
+        (f"{name}, greatest {kind}", getattr(gear, f"greatest_{kind}"), gear.errors[f"greatest_{kind}_Pa"])
+        for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel))
         for kind in ("tension", "compression")
     ]
-    columns: dict[str, Callable[[tuple[str, RootPeak]], str]] = {
+    columns: dict[str, Callable[[tuple[str, RootPeak, float]], str]] = {
         "": lambda row: row[0],
         "principal [MPa]": lambda row: number(1e-6 * row[1].stress_Pa),
+        "numerical error": lambda row: percent(row[2]),
         "von Mises [MPa]": lambda row: number(1e-6 * row[1].von_mises_Pa),
         "at [base pitches after A]": lambda row: f"{row[1].position:.3f}",
         "tangent of the fillet [deg]": lambda row: f"{math.degrees(row[1].tangent_angle):.1f}",
     }
-    tables = [Table.of(peaks, columns, f"Numerical error: {percent(stage.error)}.")]
+    tables = [Table.of(peaks, columns)]
     note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))

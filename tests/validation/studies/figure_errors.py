@@ -122,9 +122,10 @@ def root_ratios(pair, usual, best) -> dict[str, float]:
     first, second = (root_stress(pair, cycle, roots) for cycle in (usual, best))
     found = {}
     for gear in ("pinion", "wheel"):
-        ours, true = (getattr(one, gear).greatest_tension_Pa for one in (first, second))
-        reported = first.error - roots.error
-        found[f"root tension, {gear}"] = _ratio(reported, ours / true - 1, 1.0)
+        for kind in ("tension", "compression"):
+            peak, true = (getattr(getattr(one, gear), f"greatest_{kind}") for one in (first, second))
+            off = peak.stress_Pa / true.stress_Pa - 1
+            found[f"root {kind}, {gear}"] = _ratio(peak.forces + peak.sampling, off, 1.0)
     return found
 
 
