@@ -17,7 +17,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from typing import Any
@@ -26,7 +26,10 @@ ENDS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") i
 """Signals that ask for an end; the first is Ctrl-C."""
 
 AGAIN = 3.0
-"""Seconds after which an end is asked for once more: what is raised within a destructor or a callback is lost."""
+"""Seconds after which an end is asked for once more: a library may have swallowed what was raised within it."""
+
+AT_ONCE = 0.02
+"""The same where it surely was lost: raised within a destructor or a callback."""
 
 DEATH_OF_PARENT = 1
 """PR_SET_PDEATHSIG of Linux's prctl: the signal that a process is sent when its parent has died."""
@@ -82,27 +85,53 @@ def answering_signals() -> Iterator[None]:
         return
 
     def end(number: int, _frame: object) -> None:
-        if hasattr(signal, "setitimer"):
-            signal.signal(signal.SIGALRM, lambda *_: stop(number))
-            signal.setitimer(signal.ITIMER_REAL, AGAIN)
-        stop(number)
-
-    def stop(number: int) -> None:
-        if number == signal.SIGINT:
-            raise KeyboardInterrupt
-        raise Ended(number)
+        _ask_again(AGAIN, number)
+        _stop(number)
 
     # a signal that is ignored, as under nohup, stays so
     before = {one: signal.getsignal(one) for one in ENDS if signal.getsignal(one) is not signal.SIG_IGN}
     for one in before:
         signal.signal(one, end)
+    note, sys.unraisablehook = sys.unraisablehook, _or_again(sys.unraisablehook)
     try:
         yield
     finally:
-        if hasattr(signal, "setitimer"):
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        sys.unraisablehook = note
+        on_its_way()
         for one, handler in before.items():
             signal.signal(one, handler if handler is not None else signal.SIG_DFL)
+
+
+def on_its_way() -> None:
+    """Do not ask for an end once more: what closes files and ends workers is at it."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
+def _ask_again(seconds: float, number: int) -> None:
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, lambda *_: _stop(number))
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+
+
+def _stop(number: int) -> None:
+    if number == signal.SIGINT:
+        raise KeyboardInterrupt
+    raise Ended(number)
+
+
+def _or_again(note: Callable[[Any], object]) -> Callable[[Any], object]:
+    """Note of what a destructor cannot raise; an end that is asked for is no such thing, and is asked for again."""
+
+    def swallowed(fault: Any) -> None:
+        if isinstance(fault.exc_value, Ended):
+            _ask_again(AT_ONCE, fault.exc_value.signal)
+        elif issubclass(fault.exc_type, KeyboardInterrupt):
+            _ask_again(AT_ONCE, signal.SIGINT)
+        else:
+            note(fault)
+
+    return swallowed
 
 
 def work_until_told(told: Connection) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import sys
 import warnings
@@ -29,6 +30,8 @@ PART_FAILED = 4
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says of a disk or quota that is full, and of a file that may not grow."""
 INTERRUPTED = 130
+BY_SIGNAL = 128
+"""What a signal's number is added to in the exit status of a command that it ended."""
 
 app = App(
     name="flankfilm",
@@ -327,7 +330,7 @@ def guarded(command: Callable[[], int]) -> int:
             f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache",
             file=sys.stderr,
         )
-        return 128 + stop.signal if isinstance(stop, Ended) else INTERRUPTED
+        return BY_SIGNAL + stop.signal if isinstance(stop, Ended) else INTERRUPTED
 
 
 def _open_streams() -> None:
@@ -353,4 +356,7 @@ def main() -> None:
     """Entry point of the ``flankfilm`` script."""
     _open_streams()
     warnings.showwarning = _say
-    sys.exit(guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0)))
+    status = guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0))
+    if status > BY_SIGNAL:
+        logging.disable()  # what libraries say of work that was broken off
+    sys.exit(status)

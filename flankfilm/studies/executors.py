@@ -5,14 +5,18 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from base import InputError
-from flankfilm.children import environment, work_until_told
+from flankfilm.children import environment, on_its_way, work_until_told
+
+if TYPE_CHECKING:
+    from dask.distributed import Client
 
 Kind = Literal["processes", "dask", "mpi"]
 
@@ -88,15 +92,29 @@ def _dask(workers: int) -> Iterator[Pool]:
     except ImportError as fault:
         raise _missing("dask", "distributed") from fault
     address = os.environ.get("DASK_SCHEDULER_ADDRESS")
-    with environment(**ONE_THREAD):
+    with environment(**ONE_THREAD), _logging_as_before():
         here = {"n_workers": workers, "threads_per_worker": 1, "preload": "flankfilm.children"}
-        client = Client(address) if address else Client(**here)
-        with _logging_as_before(), client:
-            try:
-                yield Pool(client.get_executor(), lambda: len(client.nthreads()))
-            except BaseException:
-                logging.disable()  # what dask makes, with tracebacks, of rows that nobody waits for any more
-                raise
+        try:
+            with Client(address) if address else Client(**here) as client:
+                try:
+                    yield Pool(client.get_executor(), lambda: len(client.nthreads()))
+                except BaseException:
+                    _end_at_once(client)
+                    raise
+        except BaseException:
+            logging.disable()  # what dask makes, with tracebacks, of a cluster that is left half-way
+            raise
+
+
+def _end_at_once(client: Client) -> None:
+    """Kill the workers that were started here: rows that nobody waits for any more, and what these would say."""
+    logging.disable()
+    on_its_way()
+    for nanny in getattr(client.cluster, "workers", {}).values():
+        nanny.close_gracefully()  # it starts no other worker then
+        if nanny.pid:
+            with suppress(ProcessLookupError):
+                os.kill(nanny.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
 
 
 @contextmanager

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -99,25 +100,45 @@ def test_a_signal_becomes_an_exception_and_then_what_it_was():
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch):
-    """What is raised in a destructor is ignored there, with a note, and nothing would end."""
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch, name):
+    """What is raised in a destructor is ignored there, with a note: nothing would end, and it is no fault of ours."""
+    notes = []
 
     class Swallows:
-        def __del__(self):
-            signal.raise_signal(signal.SIGINT)
+        def __init__(self, fault):
+            self.fault = fault
 
-    monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
-    monkeypatch.setattr("sys.unraisablehook", lambda note: None)
+        def __del__(self):
+            if self.fault:
+                raise self.fault
+            signal.raise_signal(getattr(signal, name))
 
     def work() -> None:
         with answering_signals():
-            Swallows()
+            Swallows(ValueError("ours"))
+            Swallows(None)
             time.sleep(5.0)
 
+    monkeypatch.setattr("sys.unraisablehook", lambda note: notes.append(str(note.exc_value)))
     began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt if name == "SIGINT" else Ended):
         work()
-    assert time.monotonic() - began < 3.0
+    assert time.monotonic() - began < 1.0
+    assert notes == ["ours"]
+
+
+def test_an_end_that_something_else_swallowed_is_asked_for_again(monkeypatch):
+    monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
+
+    def work() -> None:
+        with answering_signals():
+            with suppress(BaseException):
+                signal.raise_signal(signal.SIGTERM)
+            time.sleep(5.0)
+
+    with pytest.raises(Ended):
+        work()
 
 
 HOLDS = """
