@@ -22,6 +22,12 @@ from base.views import plot, view
 T = TypeVar("T")
 LONGEST_LINE = 200
 
+EXACT = "exact: it follows from what is given"
+"""Why a figure has no error: it errs by rounding alone."""
+
+ITSELF = "it is an error, or the measure of one, itself"
+"""Why a figure has no error: it says what others err by."""
+
 
 @runtime_checkable
 class Result(Protocol):
@@ -59,8 +65,11 @@ class Figure:
     shown : str
         Unit that people read it in; the SI one unless given.
     error : str
-        Name of the record's figure that holds its relative error, or those of several by their names; empty where
-        that is unknown.
+        Name of the record's figure or property that holds its relative error, those of several by their names, or an
+        array with one for each entry; empty where that is unknown.
+    no_error : str
+        Why it has none, or why where the record has none this time; empty where the record's own `no_error`, an
+        attribute or a property, says so of all its figures.
     """
 
     unit: str
@@ -68,6 +77,7 @@ class Figure:
     dims: tuple[str, ...] = ()
     shown: str = ""
     error: str = ""
+    no_error: str = ""
 
     @property
     def read_in(self) -> str:
@@ -105,6 +115,7 @@ def quantity(
     *,
     shown: str = "",
     error: str = "",
+    no_error: str = "",
     default: Any = dataclasses.MISSING,
     default_factory: Any = dataclasses.MISSING,
 ) -> Any:
@@ -112,7 +123,7 @@ def quantity(
 
     Parameters
     ----------
-    unit, meaning, shown, error : str
+    unit, meaning, shown, error, no_error : str
         As of `Figure`.
     dims : str
         Names of its axes, separated by blanks.
@@ -127,7 +138,7 @@ def quantity(
     >>> Film(0.5e-6)
     Film(minimum 5e-07 m)
     """
-    figure = Figure(unit, meaning, tuple(dims.split()), shown, error)
+    figure = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error)
     return _field({"figure": figure}, default=default, default_factory=default_factory)
 
 
@@ -171,13 +182,13 @@ class Described(property, Generic[T]):
 
 
 def described(
-    unit: str, dims: str = "", *, shown: str = "", error: str = "", kept: bool = False
+    unit: str, dims: str = "", *, shown: str = "", error: str = "", no_error: str = "", kept: bool = False
 ) -> Callable[[Callable[[Any], T]], Described[T]]:
     """Make a function a property that is a figure; its docstring's first line is the meaning.
 
     Parameters
     ----------
-    unit, dims, shown, error : str
+    unit, dims, shown, error, no_error : str
         As of `quantity`.
     kept : bool
         Whether the value is kept once it has been computed.
@@ -200,7 +211,7 @@ def described(
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
         found: Any = cached_property(function) if kept else Described(function)
-        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error)
+        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error)
         return found
 
     return made
@@ -258,6 +269,27 @@ def quantities(result: object) -> dict[str, Quantity]:
     return {
         name: Quantity(name, figure, value) for name, (figure, value) in values.items() if value is not None
     }
+
+
+def why_no_error(record: object, name: str) -> str:
+    """Why a figure of a record, or of its class, has no error; empty where nothing says so.
+
+    Examples
+    --------
+    >>> @record
+    ... class Tooth:
+    ...     height: float = quantity("m", "height", no_error=EXACT)
+    ...     deflection: float = quantity("m", "deflection", error="error")
+    ...     error: float = quantity("1", "relative error of the deflection")
+    >>> [why_no_error(Tooth, name) for name in ("height", "deflection", "error")] == [EXACT, "", ITSELF]
+    True
+    """
+    every = figures(record if isinstance(record, type) else type(record))
+    if every[name].no_error:
+        return every[name].no_error
+    if name == "error" or any(one.error == name for one in every.values()):
+        return ITSELF
+    return str(getattr(record, "no_error", ""))
 
 
 def headline(result: object) -> str:

@@ -75,6 +75,8 @@ class LineContact:
     (5.03, 12.21, 0.483)
     """
 
+    no_error = "exact: Hertz's law for the load as given"
+
     load: float
     entrainment: float
     radius: float

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, described, part, quantity, record
+from base.results import ITSELF
 from ehl.contact import LineContact
 from ehl.regressions import formula_stiffness
 
@@ -35,6 +36,8 @@ unsolved = partial(quantity, default=math.nan)
 class FilmErrors:
     """Estimated relative errors, from the grid of half as many cells and from the length of the inlet."""
 
+    no_error = ITSELF
+
     film: float = quantity("1", "error of central and minimum film")
     separation: float = unsolved("1", "error of the film separation")
     approach_stiffness: float = unsolved("1", "error of the stiffness by separation")
@@ -49,6 +52,8 @@ class FilmErrors:
 @record
 class Spike:
     """The second pressure maximum, before the outlet."""
+
+    no_error = "not estimated; the pressure of the tip has one"
 
     position: float = quantity("m", "place of the tip", shown="um")
     pressure: float = quantity("Pa", "pressure of the tip", shown="GPa", error="error")
@@ -67,6 +72,8 @@ class Film:
     Figures are NaN when ``converged`` is False; ``message`` then says what to do.
     ``cost.counts["restarts"]`` counts the starts that did not converge.
     """
+
+    no_error = "not estimated in single places; the central and the least film have one"
 
     headline = ("central_thickness", "minimum_thickness", "separation")
 

@@ -55,6 +55,8 @@ _INDEX_TABLE = np.array(
 class GradedOil:
     """What a grade gives at one temperature."""
 
+    no_error = "not estimated: values of a grade, whose oils differ"
+
     viscosity: float = quantity("Pa s", "viscosity eta0 at ambient pressure")
     pressure_viscosity: float = quantity("1/Pa", "pressure-viscosity coefficient alpha", shown="1/GPa")
     density: float = quantity("kg/m3", "density rho0 at ambient pressure")

@@ -37,6 +37,8 @@ class MixedFilm:
     ``central_slope`` are the derivatives with all of that, -1/slope the whole stiffness.
     """
 
+    no_error = "not estimated; the film has one"
+
     headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")
 
     contact: LineContact = part("the contact, with its whole load")

@@ -175,6 +175,8 @@ class FormulaFilm:
     Its model error is unknown until it is compared with the solver; ``error`` says so with NaN.
     """
 
+    no_error = "unknown: a regression"
+
     contact: LineContact = part("the contact that it is of")
     central_thickness: float = quantity("m", "central film by Dowson and Toyoda", shown="um")
     minimum_thickness: float = quantity("m", "minimum film by Dowson and Higginson", shown="um")

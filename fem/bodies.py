@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Cost, Faults, described, part, quantity, record
+from base.results import ITSELF
 from fem.back_compliance import BackCompliance
 from fem.flamant import hertz_half_width, hertz_indentation
 from fem.flank_motion import FlankMotion
@@ -37,6 +38,8 @@ PARTS = ("hub_windup", "coupling", "support")
 @record
 class Compliance:
     """Compliance of both gears of a pair as functions of the contact's place."""
+
+    no_error = "not estimated: what a deflection is made of, whose error is `error`"
 
     headline = ("plane", "refinements")
 
@@ -69,8 +72,12 @@ class Compliance:
     back_before: tuple[BackCompliance, BackCompliance] | None = part(
         "the same on the mesh before the last refinement; None where that is unknown", default=None
     )
-    fit_error: float = quantity("1", "part of the error by the fit along the flanks", default=0.0)
-    gain: float = quantity("1", "by how much the last refinement reduced the mesh's error", default=1.0)
+    fit_error: float = quantity(
+        "1", "part of the error by the fit along the flanks", no_error=ITSELF, default=0.0
+    )
+    gain: float = quantity(
+        "1", "by how much the last refinement reduced the mesh's error", no_error=ITSELF, default=1.0
+    )
     before: tuple[GearCompliance, GearCompliance] | None = part(
         "of pinion and wheel on the mesh before the last refinement", default=None
     )

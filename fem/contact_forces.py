@@ -23,6 +23,8 @@ __all__ = ["ContactForces", "contact_forces"]
 class ContactForces:
     """Contact forces on both gears in the common frame; each contact is listed once for each gear."""
 
+    no_error = "not estimated for single contacts; the cycle has errors of its means and extremes"
+
     points: Array = quantity("m", "where the flanks touch", "point axis")
     force_N: Array = quantity("N", "force on the gear of that row", "point axis")
     pressure_Pa: Array = quantity(

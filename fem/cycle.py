@@ -21,6 +21,7 @@ from base import (
     quantity,
     record,
 )
+from base.results import EXACT, ITSELF
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
@@ -33,6 +34,9 @@ from gears import GearPair, half_width, peak_pressure
 from gears.mesh_figures import MeshArcs, MeshFigures
 
 __all__ = ["MeshCycle", "check_row", "require_row"]
+
+
+HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
 
 
 @record
@@ -48,12 +52,16 @@ class MeshCycle(MeshFigures):
 
     headline = ("torque", "mean_stiffness", "mean_secant_stiffness", "transmission_error_range")
 
-    torque: float = quantity("N m", "torque of the pinion")
-    force: float = quantity("N", "torque over the pinion's base radius, negative where back flanks bear")
+    torque: float = quantity("N m", "torque of the pinion", no_error=EXACT)
+    force: float = quantity(
+        "N", "torque over the pinion's base radius, negative where back flanks bear", no_error=EXACT
+    )
     position: Array = quantity(
         "1", "base pitches from A, of the pair that entered last at first: midpoints of intervals", "position"
     )
-    pair_offset: Integers = quantity("1", "base pitches ahead of the pair that entered last", "pair")
+    pair_offset: Integers = quantity(
+        "1", "base pitches ahead of the pair that entered last", "pair", no_error=EXACT
+    )
     rho1: Array = quantity(
         "m",
         "curvature radius on the pinion; nan where there is no contact between A and E",
@@ -64,12 +72,14 @@ class MeshCycle(MeshFigures):
         "1",
         "whether a candidate is outside the path, where a tip edge touches if it is loaded",
         "position pair",
+        no_error=EXACT,
     )
     flank_rho: Array = quantity(
         "m",
         "curvature radius of pinion's and wheel's flank at the contact, tip edges included",
         "gear position pair",
         shown="mm",
+        no_error=EXACT,
     )
     forces: Array = quantity("N", "normal force; zero where unloaded", "position pair")
     load_share: Array = quantity(
@@ -84,6 +94,7 @@ class MeshCycle(MeshFigures):
         "inf where a pair cannot touch",
         "position pair",
         shown="um",
+        no_error=EXACT,
     )
     transmission_error: Array = quantity(
         "m",
@@ -116,7 +127,9 @@ class MeshCycle(MeshFigures):
     candidates: ContactCandidates = part(
         "places, teeth, levers and unloaded gaps of all contacts that were looked for"
     )
-    friction: float = quantity("1", "coefficient of friction with which the forces were tilted", default=0.0)
+    friction: float = quantity(
+        "1", "coefficient of friction with which the forces were tilted", default=0.0, no_error=EXACT
+    )
     moving_contact: bool = part("whether contacts on the path move under load", default=False)
     strips_at_corners: tuple[bool, bool] = part(
         "whether contacts beside the tip corners of pinion and wheel press on them by strips of plain flanks that stay",
@@ -141,7 +154,7 @@ class MeshCycle(MeshFigures):
         "", 'what the deflection is measured against: "bore", "body" or "teeth"', default="bore"
     )
     bore_inertia: tuple[float, float] = quantity(
-        "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0)
+        "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0), no_error=EXACT
     )
     loaded: LoadedContacts | None = part(
         "what `model_error` is found from; None where the contact has no solution", default=None
@@ -248,7 +261,7 @@ class MeshCycle(MeshFigures):
         """Take the arcs along instead of what they are found from."""
         return {**self.__dict__, "_found": self._found, "problem": None}
 
-    @described("1", kept=True)
+    @described("1", no_error=ITSELF, kept=True)
     def model_error(self) -> float:
         """Estimated relative error by the model of the contacts, apart from `error`.
 
@@ -257,13 +270,13 @@ class MeshCycle(MeshFigures):
         """
         return float("nan") if self.loaded is None else self.loaded.model_error()
 
-    @described("m", "position", shown="um")
+    @described("m", "position", shown="um", no_error=EXACT)
     def unloaded_transmission_error(self) -> Array:
         """D at which the loaded flanks touch without load: the smallest gap, beyond the backlash for back flanks."""
         least = self.gaps.min(axis=1)
         return np.asarray(least if self.flank == "front" else -(self.pair.backlash + least))
 
-    @described("1", "position")
+    @described("1", "position", no_error=EXACT)
     def loaded_position(self) -> Array:
         """Positions at which the loaded flanks stand on the path of contact: of back flanks in the mirror."""
         if self.flank == "front":
@@ -296,7 +309,7 @@ class MeshCycle(MeshFigures):
         """Numbers of the teeth of pinion and wheel in each pair (2, n, pairs)."""
         return self.candidates.teeth
 
-    @described("m", "position", shown="um")
+    @described("m", "position", shown="um", no_error=EXACT)
     def back_gap(self) -> Array:
         """Smallest gap of the flanks on the other side without load: below zero the teeth jam."""
         return self.candidates.back_gap
@@ -308,7 +321,7 @@ class MeshCycle(MeshFigures):
         load = np.where(touching, self.forces / self.pair.face_width, np.nan)
         return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
 
-    @described("Pa", "position pair", shown="MPa")
+    @described("Pa", "position pair", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
         """Greatest Hertz pressure; nan where two flanks do not touch.
 
@@ -316,7 +329,7 @@ class MeshCycle(MeshFigures):
         """
         return peak_pressure(*self._loaded_radius())
 
-    @described("m", "position pair", shown="um")
+    @described("m", "position pair", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
         """Half-width of the Hertz contact; nan where two flanks do not touch."""
         return half_width(*self._loaded_radius())
@@ -343,7 +356,7 @@ class MeshCycle(MeshFigures):
         first, second = self.surface_speeds(speed)
         return np.asarray(first - second)
 
-    @described("1", "gear position pair")
+    @described("1", "gear position pair", no_error=EXACT)
     def specific_sliding(self) -> Array:
         """Sliding over the surface's own speed, (u1 - u2)/u1 and (u2 - u1)/u2.
 

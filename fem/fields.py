@@ -44,6 +44,8 @@ INDICATIVE = 0.3
 class GearField:
     """Fields of one gear in the common frame (pinion's axis at the origin, wheel's axis above it)."""
 
+    no_error = "not estimated; cells next to a contact are marked indicative"
+
     headline = ("greatest_von_mises_Pa",)
 
     points: Array = quantity(

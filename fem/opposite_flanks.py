@@ -38,6 +38,8 @@ ROUNDING = 1e-12
 class OppositeFlanks:
     """Contacts on the other side of the teeth at the positions of a cycle; rho and levers of the mirrored gears."""
 
+    no_error = "not estimated in single positions; the cycle has errors of its means and extremes"
+
     forces: Array = quantity("N", "normal force; zero where unloaded", "position pair")
     pair_stiffness: Array = quantity("N/m", "slope of the force by D, not above zero", "position pair")
     flank_rho: Array = quantity("m", "curvature radii on pinion and wheel", "gear position pair", shown="mm")

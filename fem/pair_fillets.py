@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, Limit, RangeWarning, Stopwatch, described, part, quantity, record
+from base.results import ITSELF
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.fillet_influence import FilletInfluence, fillet_influence
 from fem.gear_shape import GearShape, shapes
@@ -38,6 +39,8 @@ FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
 @record
 class Fillets:
     """Influence of loads on the fillets of both gears, and how exact it is."""
+
+    no_error = ITSELF
 
     headline = ("plane", "fillet_edge")
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, Integers, quantity, record
+from base.results import ITSELF
 from fem.elasticity import MIRROR
 from fem.fillet import FilletLine
 from fem.fillet_influence import FilletInfluence
@@ -29,6 +30,8 @@ FINER = 4
 class RootPeak:
     """The greatest stress of a cycle and where it acts."""
 
+    no_error = "not estimated by itself; the greatest stress has an error"
+
     headline = ("stress_Pa", "position")
 
     stress_Pa: float = quantity(
@@ -46,9 +49,13 @@ class RootPeak:
         shown="mm",
     )
     along_Pa: Array = quantity("Pa", "stress along that fillet at that instant", "sample", shown="MPa")
-    sampling: float = quantity("1", "estimated relative error by what is greater between the instants")
+    sampling: float = quantity(
+        "1", "estimated relative error by what is greater between the instants", no_error=ITSELF
+    )
     forces: float = quantity(
-        "1", "estimated relative error by the forces, from those of the mesh before the last refinement"
+        "1",
+        "estimated relative error by the forces, from those of the mesh before the last refinement",
+        no_error=ITSELF,
     )
 
 

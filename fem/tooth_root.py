@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
+from base.results import ITSELF
 from fem.contact import MeshCycle
 from fem.elasticity import PlaneElasticity
 from fem.fillet import FilletLine
@@ -35,6 +36,8 @@ __all__ = ["GearRootStress", "RootStress", "root_stress"]
 @record
 class GearRootStress:
     """Stress along the fillets of one gear's teeth, at the sample points of ``line``."""
+
+    no_error = "not estimated at single instants; the greatest stresses have errors"
 
     headline = ("greatest_tension_Pa", "greatest_compression_Pa")
 
@@ -59,7 +62,7 @@ class GearRootStress:
         shown="MPa",
     )
     fillets_error: float = quantity(
-        "1", "estimated relative error of the greatest stresses by the fillets' mesh"
+        "1", "estimated relative error of the greatest stresses by the fillets' mesh", no_error=ITSELF
     )
 
     @property

@@ -46,6 +46,8 @@ def graded(unit: Array, towards: int) -> tuple[Array, Array]:
 class Arc:
     """Curves between two events."""
 
+    no_error = "what the estimates of a cycle are made of: gears.mesh_figures.MeshFigures has the errors"
+
     low: float = quantity("1", "where it begins, base pitches")
     high: float = quantity("1", "where it ends, base pitches")
     values: Array = quantity("", "curves at Chebyshev points of the arc, ends included", "curve node")
@@ -104,6 +106,8 @@ class Arc:
 @record
 class Arcs:
     """Smooth arcs of curves over some base pitches, in order and without gaps."""
+
+    no_error = "what the estimates of a cycle are made of: gears.mesh_figures.MeshFigures has the errors"
 
     names: tuple[str, ...] = part("of the curves")
     arcs: tuple[Arc, ...] = part("all of them")

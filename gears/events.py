@@ -63,6 +63,8 @@ class Events:
 class Division:
     """Arcs between the events of a mesh cycle."""
 
+    no_error = "what the estimates of a cycle are made of: gears.mesh_figures.MeshFigures has the errors"
+
     arcs: Arcs = part("curves on them")
     events: Events = part("where they meet")
     resolved: bool = part("whether all arcs are resolved to the tolerance")

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from base import Array, Booleans, Faults, Limit, part, quantity, record, rounded_down, rounded_up
+from base.results import EXACT
 from gears.bisection import bisect
 from gears.errors import GeometryError
 from gears.gear import Gear
@@ -92,6 +93,8 @@ class Heat:
 @record
 class WarmPair:
     """A pair at its temperatures, beside what it was."""
+
+    no_error = EXACT
 
     cold: GearPair = part("at the temperature of reference")
     pair: GearPair = part("with both gears grown alike, at the centre distance of the warm housing")

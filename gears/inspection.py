@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import Array, Faults, Limit, quantity, record
+from base.results import EXACT
 from gears.errors import GeometryError
 from gears.involute import involute_function, tangent_from_involute
 
@@ -28,6 +29,8 @@ class Dimensions:
     Diameters go from the tip to the root. Symbols of ISO 21771. A size that a gear does not have, such as a span whose
     points of contact would lie off the involute, is nan, and its number of teeth 0.
     """
+
+    no_error = EXACT
 
     teeth: NDArray[np.int64] = quantity("1", "number of teeth z", "gear")
     profile_shift: Array = quantity("1", "profile shift coefficient x, modules", "gear")

@@ -31,6 +31,8 @@ class DeflectionLaw(Protocol):
 class LoadShare:
     """Forces of the tooth pairs at one mesh position, or at several."""
 
+    no_error = "rounding of the iteration; that of the compliance is not known here"
+
     forces: Array = quantity("N", "normal forces F_i, zero where a pair does not touch", "... pair")
     transmission_error: Array = quantity(
         "m", "common approach D of the gears along the line of action", "...", shown="um"

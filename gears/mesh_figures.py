@@ -60,6 +60,8 @@ class Estimate:
 class MeshArcs:
     """Curves of a mesh cycle on smooth arcs, and the same on the mesh before for an estimate."""
 
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
     division: Division = part("arcs and events")
     before: Arcs | None = part("curves on the mesh before the last refinement; None where there is no mesh")
     gain: float = quantity("1", "by how much the last refinement reduced the error")
@@ -177,8 +179,16 @@ class MeshArcs:
         return Estimate(value, hypot(sampling, mesh, other, *varied))
 
 
+IN_SINGLE_POSITIONS = "not estimated in single positions; means and extremes have errors"
+
+
 class MeshFigures(ABC):
     """Figures of a cycle that has arcs; nan where its contact has no solution at one of its positions."""
+
+    @property
+    def no_error(self) -> str:
+        """Why figures that say nothing of their error have none."""
+        return IN_SINGLE_POSITIONS
 
     @property
     @abstractmethod
@@ -243,7 +253,7 @@ class MeshFigures(ABC):
         """Greatest share of the torque that a pair takes."""
         return self._estimates["greatest_load_share"].value
 
-    @described("1", "harmonic")
+    @described("1", "harmonic", error="stiffness_harmonics_error")
     def stiffness_harmonics(self) -> Array:
         """Amplitudes of the tangent stiffness' harmonics over its mean."""
         return self._harmonics("stiffness")[0]
@@ -253,7 +263,7 @@ class MeshFigures(ABC):
         """Estimated errors of the tangent stiffness' harmonics over the mean."""
         return self._harmonics("stiffness")[1]
 
-    @described("1", "harmonic")
+    @described("1", "harmonic", error="secant_stiffness_harmonics_error")
     def secant_stiffness_harmonics(self) -> Array:
         """Amplitudes of the secant stiffness' harmonics over its mean."""
         return self._harmonics("secant_stiffness")[0]
@@ -263,7 +273,7 @@ class MeshFigures(ABC):
         """Estimated errors of the secant stiffness' harmonics over the mean."""
         return self._harmonics("secant_stiffness")[1]
 
-    @described("m", "harmonic", shown="um")
+    @described("m", "harmonic", shown="um", error="transmission_error_harmonics_error")
     def transmission_error_harmonics(self) -> Array:
         """Amplitudes of the transmission error's harmonics."""
         return self._harmonics("transmission_error")[0]
@@ -280,7 +290,7 @@ class MeshFigures(ABC):
             return np.full(HARMONICS, np.nan), None
         return self.arcs.amplitudes(name, order, over_mean=name != "transmission_error")
 
-    @described("1", "event")
+    @described("1", "event", no_error="not estimated")
     def event_position(self) -> Array:
         """Events: where contacts begin or end, base pitches from A."""
         return np.zeros(0) if self.arcs is None else self.arcs.events
@@ -293,17 +303,17 @@ class MeshFigures(ABC):
         unit = np.linspace(0.0, 1.0, SHOWN)
         return np.concatenate([arc.low + arc.width * unit for arc in self.arcs.arcs.arcs])
 
-    @described("N/m", "dense")
+    @described("N/m", "dense", error="error")
     def dense_stiffness(self) -> Array:
         """Tangent stiffness on the arcs."""
         return self._dense("stiffness")
 
-    @described("N/m", "dense")
+    @described("N/m", "dense", error="error")
     def dense_secant_stiffness(self) -> Array:
         """Secant stiffness on the arcs."""
         return self._dense("secant_stiffness")
 
-    @described("m", "dense", shown="um")
+    @described("m", "dense", shown="um", error="error")
     def dense_transmission_error(self) -> Array:
         """Transmission error on the arcs."""
         return self._dense("transmission_error")

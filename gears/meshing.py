@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from base import Array, quantity, record
+from base.results import EXACT
 from gears.errors import GeometryError
 from gears.pair import GearPair
 from gears.plane import mirrored, turned
@@ -21,6 +22,8 @@ _ZOOMS = 9
 @record
 class MeshingCheck:
     """What was found when the gears were rolled together."""
+
+    no_error = EXACT
 
     angle_deviation: float = quantity(
         "1",

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from base import Array, Described, Figure, described
+from base.results import EXACT
 from gears.errors import GeometryError
 from gears.gear import Gear
 from gears.involute import involute_function, tangent_from_involute
@@ -32,6 +33,8 @@ def _of_both(name: str, meaning: str) -> Described[tuple[float, float]]:
 @dataclass(frozen=True)
 class PairGeometry:
     """Sizes of a pair, not yet known to mesh, and what follows from them; see `gears.GearPair`."""
+
+    no_error = EXACT
 
     pinion: Gear
     wheel: Gear

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array, described, quantity, record
+from base.results import EXACT
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class PathOfContact:
     >>> path.sliding(speed=200.0).round(3)
     array([-1.922, -0.012,  1.899])
     """
+
+    no_error = EXACT
 
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "point", shown="mm")
     rho2: Array = quantity("m", "curvature radius of the wheel's flank", "point", shown="mm")

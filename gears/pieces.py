@@ -28,6 +28,8 @@ SPREAD = np.concatenate([-(10.0 ** -np.arange(1.0, 8.0)), [0.0], 10.0 ** -np.ara
 class Sampled:
     """Curves at some positions, and what decides where they are smooth."""
 
+    no_error = "what the estimates of a cycle are made of: gears.mesh_figures.MeshFigures has the errors"
+
     curves: Array = quantity("", "values", "curve position")
     reserve: Array = quantity(
         "1",

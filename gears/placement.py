@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, quantity, record
+from base.results import EXACT
 from gears.plane import turned
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ class Placement:
     bring a tooth's own frame (centre line +y) into the common frame, for the tooth in contact: the next tooth
     of the pinion to come into contact has pinion_angle - 2 pi / z1, that of the wheel wheel_angle + 2 pi / z2.
     """
+
+    no_error = EXACT
 
     pinion_angle: float = quantity("rad", "turn of the pinion's tooth", shown="deg")
     wheel_angle: float = quantity("rad", "turn of the wheel's tooth", shown="deg")

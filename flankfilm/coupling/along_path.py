@@ -10,10 +10,13 @@ import numpy as np
 import ehl
 import gears
 from base import Array, Cost, described, part, quantity, record
+from fem.cycle import HERTZ
 from flankfilm.coupling import film_points
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import FilmModel, PathFilms, film_inside
 from flankfilm.coupling.least_film import least_of
+
+FORMULA = "unknown: Dowson's formula"
 
 
 @record
@@ -29,13 +32,13 @@ class FilmAlongPath:
     model: str = quantity("", "model of the film")
     supply: str = quantity("", "what is held at the inlet")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank at the film", "point", shown="mm")
-    load: Array = quantity("N/m", "force per length of face", "point", shown="N/mm")
+    load: Array = quantity("N/m", "force per length of face", "point", shown="N/mm", no_error=HERTZ)
     central_thickness: Array = quantity(
         "m", "central film, on the line of centres", "point", shown="um", error="error"
     )
     minimum_thickness: Array = quantity("m", "minimum film", "point", shown="um", error="error")
     hertz_pressure: Array = quantity(
-        "Pa", "Hertz pressure, the largest of the dry contact", "point", shown="GPa"
+        "Pa", "Hertz pressure, the largest of the dry contact", "point", shown="GPa", no_error=HERTZ
     )
     stiffness: Mapping[str, Array] = quantity("N/m", "film stiffness of the whole face", "point")
     inlet: Array | None = quantity(
@@ -58,6 +61,11 @@ class FilmAlongPath:
     converged: bool = True
     message: str = ""
 
+    @property
+    def no_error(self) -> str:
+        """Why figures that say nothing of their error have none."""
+        return FORMULA if self.error is None else "not estimated; the films themselves have an error"
+
     @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:
         """Least film along the path, between the films as well."""
@@ -78,7 +86,7 @@ class FilmAlongPath:
     def _least(self) -> tuple[float, float]:
         return least_of(self.minimum_thickness, self.load)
 
-    @described("Pa", shown="GPa")
+    @described("Pa", shown="GPa", no_error=HERTZ)
     def greatest_pressure(self) -> float:
         """Largest Hertz pressure along the path."""
         return float(self.hertz_pressure.max())

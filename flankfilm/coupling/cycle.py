@@ -10,6 +10,8 @@ import numpy as np
 
 import fem
 from base import Array, Cost, InputError, described, part, quantity, record
+from base.results import ITSELF
+from gears.closed_form.record import UNKNOWN
 from gears.mesh_figures import MeshArcs, MeshFigures
 
 
@@ -118,7 +120,12 @@ class MeshCycle(MeshFigures):
             return self.contact.arcs
         return None if self.by_pairs is None else self.by_pairs.arcs()
 
-    @described("1", shown="%")
+    @property
+    def no_error(self) -> str:
+        """Why figures that say nothing of their error have none."""
+        return UNKNOWN if self.error is None else super().no_error
+
+    @described("1", shown="%", no_error=ITSELF)
     def model_error(self) -> float | None:
         """Estimated relative error of transmission error and secant stiffness by the model of the contacts.
 
@@ -126,12 +133,12 @@ class MeshCycle(MeshFigures):
         """
         return None if self.contact is None else self.contact.model_error
 
-    @described("1")
+    @described("1", no_error=ITSELF)
     def mean_error(self) -> float | None:
         """Estimated relative numerical error of the mean secant stiffness, of meshes and arcs."""
         return self.errors["mean_secant_stiffness"]
 
-    @described("1")
+    @described("1", no_error=ITSELF)
     def range_error(self) -> float | None:
         """Estimated relative numerical error of the peak-to-peak transmission error, of meshes and arcs."""
         return self.errors["transmission_error_range"]

@@ -16,6 +16,7 @@ import numpy as np
 
 import dynamics
 from base import Cost, Stopwatch, part, quantity, record
+from base.results import EXACT
 from flankfilm.coupling.jumps import Jump, SpeedDiagram, jump_points, jump_speeds
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MOST_HARMONICS, MeshSeries, mesh_series
@@ -28,6 +29,8 @@ MOST_DIAGRAMS = 4
 @record
 class OrderedJumps:
     """Diagram with as many harmonics as its jumps need."""
+
+    no_error = EXACT
 
     headline = ("order", "worst")
 

@@ -63,6 +63,8 @@ class Jump:
 class SpeedDiagram:
     """Branches of periodic motions over the mesh frequency, and what follows from them."""
 
+    no_error = "rounding of the exact flow; errors of the stiffness stand with the jumps"
+
     headline = ("branches", "jump_count")
 
     diagram: dynamics.Diagram = part("branches over the frequency")
@@ -95,7 +97,7 @@ class SpeedDiagram:
     converged: bool
     message: str
 
-    @described("1", "jump")
+    @described("1", "jump", error="jump_error")
     def jump_frequency(self) -> Array:
         """Frequencies at which a stable motion ends in a saddle node."""
         return np.array([jump.frequency for jump in self.jumps])

@@ -18,6 +18,9 @@ HARMONICS = range(1, 6)
 """Harmonics of the transmission error that are given over torque."""
 
 
+OVER_TORQUE = "not estimated over torque; the dry cycle's is that of the scene's own torque"
+
+
 @record
 class TorqueCurves:
     """Mesh stiffness and transmission error over torque, dry; ``message`` says why torques are missing."""
@@ -28,9 +31,15 @@ class TorqueCurves:
     transmission_error: Array = quantity(
         "m", "transmission error, peak to peak", "torque", shown="um", error="range_error"
     )
-    harmonic_1: Array = quantity("1", "first harmonic of the secant stiffness over its mean", "torque")
+    harmonic_1: Array = quantity(
+        "1", "first harmonic of the secant stiffness over its mean", "torque", no_error=OVER_TORQUE
+    )
     transmission_error_harmonic: Mapping[str, Array] = quantity(
-        "m", "amplitude of a harmonic of the transmission error", "torque", shown="um"
+        "m",
+        "amplitude of a harmonic of the transmission error",
+        "torque",
+        shown="um",
+        error="harmonics_error",
     )
     harmonics_error: Array = quantity("m", "largest error of those harmonics", "torque", shown="um")
     range_error: float = quantity("1", "largest relative error of the peak-to-peak transmission errors")

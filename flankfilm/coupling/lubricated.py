@@ -11,8 +11,9 @@ import numpy as np
 import ehl
 import gears
 from base import Array, SolverError, Stopwatch, described, part, quantity, record, unclocked
+from base.results import EXACT, ITSELF
 from fem.local_law import film_yielding
-from flankfilm.coupling.along_path import FilmAlongPath, gathered
+from flankfilm.coupling.along_path import FORMULA, FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.coupling.films import (
@@ -40,6 +41,8 @@ BETWEEN = 1.0
 A third where the law is smooth; extremes lie where pairs come and go, where halving the step halves the error.
 """
 
+DIFFERENCE = "not estimated: the difference of two means that have errors"
+
 SOLVED = FilmModel()
 """Flooded films between smooth flanks, solved."""
 
@@ -56,10 +59,14 @@ class LubricatedCycle(MeshCycle):
 
     _: KW_ONLY
     least_film: Array = quantity(
-        "m", "least film of each pair; nan where unloaded", "position pair", shown="um"
+        "m",
+        "least film of each pair; nan where unloaded",
+        "position pair",
+        shown="um",
+        no_error="not estimated in single positions; thinnest_film has one where films are solved",
     )
-    rounds: int = quantity("1", "times that films and load share were brought into agreement")
-    mismatch: float = quantity("1", "last change of a pair's force over the whole force")
+    rounds: int = quantity("1", "times that films and load share were brought into agreement", no_error=EXACT)
+    mismatch: float = quantity("1", "last change of a pair's force over the whole force", no_error=ITSELF)
     dry: MeshCycle = part("the cycle without film")
     film: FilmAlongPath = part("film along the path, with the error of its own")
     otherwise: Mapping[str, MeshCycle] = part(
@@ -75,7 +82,7 @@ class LubricatedCycle(MeshCycle):
         others = {name: one.against(reference, bore_inertia) for name, one in self.otherwise.items()}
         return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
 
-    @described("m", shown="um", error="thinnest_film_error")
+    @described("m", shown="um", error="thinnest_film_error", no_error=FORMULA)
     def thinnest_film(self) -> float:
         """Least film of all pairs along the path."""
         return self.film.least_film
@@ -85,12 +92,12 @@ class LubricatedCycle(MeshCycle):
         """Relative error of the least film; None by formula."""
         return self.film.least_film_error
 
-    @described("1", shown="%")
+    @described("1", shown="%", no_error=DIFFERENCE)
     def secant_stiffness_change(self) -> float:
         """What the film changes the mean secant stiffness by, relative."""
         return self.mean_secant_stiffness / self.dry.mean_secant_stiffness - 1
 
-    @described("1", shown="%")
+    @described("1", shown="%", no_error=DIFFERENCE)
     def stiffness_change(self) -> float:
         """What the film changes the mean tangent stiffness by, relative."""
         return self.mean_stiffness / self.dry.mean_stiffness - 1

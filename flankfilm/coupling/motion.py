@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 import dynamics
 from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
+from base.results import EXACT, ITSELF
 from flankfilm.coupling.first_loss import grazing_budget
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.resonance import vibrations
@@ -52,6 +53,14 @@ class Portrait:
     section: Array
 
 
+SCALED = "not estimated: the backlash over the length scale, which follows from the mean stiffness"
+
+STRAIGHT = (
+    "not estimated: crossings between samples of a period are taken as straight; force_change is what a longer series "
+    "changes"
+)
+
+
 @record
 class SpeedSweep:
     """Motion swept up and down in speed.
@@ -64,18 +73,26 @@ class SpeedSweep:
     frequency: Array = quantity("1", "mesh frequency over natural frequency", "frequency")
     speed: Array | None = quantity("rad/s", "pinion speed", "frequency", shown="rpm")
     states: Mapping[str, Array] = quantity(
-        "1", "displacement and velocity at tau = 0", "frequency kept state"
+        "1", "displacement and velocity at tau = 0", "frequency kept state", error="error"
     )
     labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "frequency")
     grazings: Array = quantity(
-        "1", "where the orbit that never leaves contact touches the backlash", "grazing"
+        "1",
+        "where the orbit that never leaves contact touches the backlash",
+        "grazing",
+        error="grazing_error",
+        no_error="rounding of the exact flow, for the stiffness as given",
     )
-    half_backlash: float = quantity("1", "half the backlash D")
+    half_backlash: float = quantity("1", "half the backlash D", no_error=SCALED)
     force_factor: Mapping[str, Array] = quantity(
         "1", "greatest force over the mean force", "frequency", error="sampling_error"
     )
     separated: Mapping[str, Array] = quantity(
-        "1", "part of the time without contact of the driving flanks", "frequency", shown="%"
+        "1",
+        "part of the time without contact of the driving flanks",
+        "frequency",
+        shown="%",
+        no_error=STRAIGHT,
     )
     spread: Mapping[str, Array] = quantity(
         "1", "root mean square of the displacement about its mean", "frequency", error="sampling_error"
@@ -87,7 +104,9 @@ class SpeedSweep:
         "source of error to relative error of the least speed at which contact is lost: stiffness, truncation, flow"
     )
     longer_order: int | None = quantity(
-        "1", "harmonics of the longer series that the figures are held against; None for a given series"
+        "1",
+        "harmonics of the longer series that the figures are held against; None for a given series",
+        no_error=EXACT,
     )
     grazing_error: Array | None = quantity(
         "1",
@@ -95,16 +114,23 @@ class SpeedSweep:
         "grazing",
     )
     checked: Array | None = quantity(
-        "1", "frequencies at which motions are computed with the longer series as well", "checked"
+        "1",
+        "frequencies at which motions are computed with the longer series as well",
+        "checked",
+        no_error=EXACT,
     )
     force_change: Mapping[str, Array] | None = quantity(
         "1",
         "relative change of the greatest force there by the longer series; nan where the motion does not repeat, "
         "infinite where there is none of the same label",
         "checked",
+        no_error=ITSELF,
     )
     spread_change: Mapping[str, Array] | None = quantity(
-        "1", "relative change of the displacement's root mean square there, likewise", "checked"
+        "1",
+        "relative change of the displacement's root mean square there, likewise",
+        "checked",
+        no_error=ITSELF,
     )
     portraits: tuple[Portrait, ...] = part("settled motions at chosen values")
     error: float

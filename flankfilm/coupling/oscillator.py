@@ -8,6 +8,7 @@ from dataclasses import replace
 import dynamics
 import gears
 from base import Cost, InputError, described, part, quantity, record
+from base.results import EXACT
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.series import MeshSeries, mesh_series
@@ -31,13 +32,15 @@ class PairOscillator:
     )
     series: MeshSeries = part("of the mesh stiffness")
     pair: gears.GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
-    force: float = quantity("N", "normal force", default=0.0)
+    force: float = quantity("N", "normal force", no_error=EXACT, default=0.0)
     error_amplitude: float = quantity(
-        "m", "amplitude of the unloaded transmission error", shown="um", default=0.0
+        "m", "amplitude of the unloaded transmission error", shown="um", no_error=EXACT, default=0.0
     )
-    backlash: float = quantity("m", "whole backlash along the line of action", shown="um", default=0.0)
+    backlash: float = quantity(
+        "m", "whole backlash along the line of action", shown="um", no_error=EXACT, default=0.0
+    )
     inertias: tuple[float, float] = quantity(
-        "kg m2", "moments of inertia of pinion and wheel", "gear", default=(0.0, 0.0)
+        "kg m2", "moments of inertia of pinion and wheel", "gear", no_error=EXACT, default=(0.0, 0.0)
     )
     cost: Cost = Cost(0.0)
     converged: bool = True
@@ -47,6 +50,11 @@ class PairOscillator:
     def error(self) -> float | None:
         """Relative error of the mean stiffness; None where it is unknown."""
         return None if self.series.cycle is None else self.series.cycle.mean_error
+
+    @property
+    def no_error(self) -> str:
+        """Why figures that say nothing of their error have none."""
+        return "unknown: it follows from the mean stiffness, whose error is not known"
 
     @described("")
     def reference(self) -> str | None:
@@ -88,7 +96,7 @@ class PairOscillator:
         """Mean stiffness that frequencies refer to; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.mean_stiffness
 
-    @described("kg")
+    @described("kg", no_error=EXACT)
     def equivalent_mass(self) -> float | None:
         """Equivalent mass along the line of action; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.equivalent_mass

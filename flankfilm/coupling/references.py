@@ -10,6 +10,7 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, InputError, Stopwatch, quantity, record
+from gears.closed_form.record import STANDARD
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
@@ -33,6 +34,9 @@ PARTS: Mapping[str, str] = {
 """Parts of a deflection, in words."""
 
 
+IN_PARTS = "not estimated in parts; the whole has the error of the mean secant stiffness"
+
+
 @record
 class StiffnessReferences:
     """Mean mesh stiffness of a dry pair by every reference of the deflection, and the parts of the latter."""
@@ -41,17 +45,28 @@ class StiffnessReferences:
 
     reference: tuple[str, ...] = quantity("", "what the deflection is measured against", "reference")
     mean_stiffness: Array = quantity(
-        "N/m", "mean mesh stiffness (tangent) by what the deflection is measured against", "reference"
+        "N/m",
+        "mean mesh stiffness (tangent) by what the deflection is measured against",
+        "reference",
+        error="mean_error",
     )
     mean_secant_stiffness: Array = quantity(
-        "N/m", "mean mesh stiffness (secant) by what the deflection is measured against", "reference"
+        "N/m",
+        "mean mesh stiffness (secant) by what the deflection is measured against",
+        "reference",
+        error="mean_error",
     )
     mean_error: Array = quantity(
         "1", "estimated relative numerical error of these means of the stiffness", "reference"
     )
-    iso_mesh_stiffness: float = quantity("N/m", "mesh stiffness c_gamma by ISO 6336-1, of the face width")
+    iso_mesh_stiffness: float = quantity(
+        "N/m", "mesh stiffness c_gamma by ISO 6336-1, of the face width", no_error=STANDARD
+    )
     deflection: Mapping[str, float] = quantity(
-        "m", "mean over the cycle of a part of the deflection against the bores", shown="um"
+        "m",
+        "mean over the cycle of a part of the deflection against the bores",
+        shown="um",
+        no_error=IN_PARTS,
     )
     error: float
     cost: Cost

@@ -17,7 +17,9 @@ import numpy as np
 
 import dynamics
 from base import Array, Cost, SolverError, Stopwatch, described, part, quantity, record
+from base.results import EXACT, ITSELF
 from flankfilm.coupling.cycle import MeshCycle
+from gears.closed_form.record import UNKNOWN
 from gears.mesh_figures import SHOWN
 
 MOST_HARMONICS = 50
@@ -63,6 +65,24 @@ class MeshSeries:
     converged: bool = True
     message: str = ""
 
+    @property
+    def no_error(self) -> str:
+        """Why figures that say nothing of their error have none."""
+        if self.cycle is None:
+            return EXACT
+        return UNKNOWN if self.cycle.error is None else "not estimated; the amplitudes have harmonic_error"
+
+    @property
+    def mean_error(self) -> float | None:
+        """Relative error of the mean; None where it is unknown, and of a given series."""
+        kinds = {"secant": "mean_secant_stiffness", "tangent": "mean_stiffness"}
+        return None if self.cycle is None else self.cycle.errors[kinds[self.kind]]
+
+    @property
+    def samples_error(self) -> float | None:
+        """Relative error of the samples; None where it is unknown."""
+        return None if self.cycle is None else self.cycle.error
+
     @described("")
     def reference(self) -> str | None:
         """What the deflection of the stiffness is measured against."""
@@ -73,17 +93,17 @@ class MeshSeries:
         """Position, base pitches from A."""
         return None if self.cycle is None else self.cycle.position
 
-    @described("N/m", "position")
+    @described("N/m", "position", error="samples_error")
     def samples(self) -> Array | None:
         """Samples of the stiffness that were fitted."""
         return None if self.cycle is None else self.cycle.curve(self.kind)
 
-    @described("N/m")
+    @described("N/m", error="mean_error")
     def mean(self) -> float:
         """Mean of the stiffness."""
         return self.stiffness.mean
 
-    @described("N/m", "harmonic")
+    @described("N/m", "harmonic", error="harmonic_error")
     def amplitude(self) -> Array:
         """Amplitude of cos(j omega tau + phase)."""
         return np.array(self.stiffness.amplitudes)
@@ -113,12 +133,12 @@ class MeshSeries:
         """Amplitudes of the harmonics over the mean."""
         return None if self.fit is None else np.array(self.fit.harmonics)
 
-    @described("1")
+    @described("1", no_error=EXACT)
     def order(self) -> int:
         """Highest harmonic of the series."""
         return len(self.stiffness.amplitudes)
 
-    @described("1")
+    @described("1", no_error=ITSELF)
     def remainder(self) -> float | None:
         """Root mean square of curve less series, over the mean."""
         return None if self.fit is None else self.fit.remainder_rms

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 import fem
 import gears
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record, unclocked
+from gears.closed_form.record import UNKNOWN
 
 CLOSED_FORMS = {
     "ishikawa": "Ishikawa",
@@ -34,13 +35,20 @@ class SinglePairs:
 
     travel: Array = quantity("m", "travel from A along the path of contact", "path", shown="mm")
     rho1: Array = quantity("m", "curvature radius of the pinion's flank", "path", shown="mm")
-    stiffness: Mapping[str, Array] = quantity("N/m", "stiffness of one pair", "path")
+    stiffness: Mapping[str, Array] = quantity(
+        "N/m", "stiffness of one pair", "path", error="errors", no_error=UNKNOWN
+    )
     iso: gears.closed_form.Iso6336Stiffness = part("stiffness by ISO 6336-1")
     contact: gears.closed_form.Iso6336ContactStress = part("nominal contact stress by ISO 6336-2")
     error: float | None
     cost: Cost
     converged: bool = True
     message: str = ""
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Relative errors of the stiffness by its label, where they are known."""
+        return {} if self.error is None else {MODELS["fem"]: self.error}
 
 
 def closed_form(model: str, pair: gears.GearPair, path: gears.PathOfContact, force: float) -> Array:

@@ -14,6 +14,7 @@ from base import Array, Cost, Stopwatch, part, quantity, record
 from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth, contact_places
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
+from gears.closed_form.record import UNKNOWN
 from gears.mesh_figures import Estimate, MeshArcs
 
 POSITIONS = 360
@@ -54,10 +55,13 @@ class Curves:
     finite elements that are left out.
     """
 
+    no_error = "not estimated in single positions; the figures have errors where they are known"
     headline = ("label",)
 
     label: str = quantity("", "model")
-    single_stiffness: Array = quantity("N/m", "stiffness of one pair, secant, under the whole force", "path")
+    single_stiffness: Array = quantity(
+        "N/m", "stiffness of one pair, secant, under the whole force", "path", error="error", no_error=UNKNOWN
+    )
     secant_stiffness: Array = quantity(
         "N/m", "secant stiffness of the mesh: force over deflection", "position"
     )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import Array, Figure, Quantity
+from base.results import EXACT
 from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,9 @@ PICTURED = 2.7
 """Half-width of the pictured part of the mesh, in pitches."""
 
 
-SLIDING = Figure("m/s", "sliding, u1 - u2", ("station",))
+INDICATIVE = "not estimated; cells next to a contact are marked indicative in the files for ParaView"
+
+SLIDING = Figure("m/s", "sliding, u1 - u2", ("station",), no_error=EXACT)
 """Sliding of the flanks along the path of contact."""
 
 
@@ -44,9 +47,13 @@ def outlines(pair: GearPair) -> tuple[Quantity, ...]:
     )
     centres = np.array([np.zeros(2), placed.wheel_centre])
     return (
-        figure_of("pinion", "m", "outline of the pinion", "node_pinion axis", pinion, shown="mm"),
-        figure_of("wheel", "m", "outline of the wheel", "node_wheel axis", wheel, shown="mm"),
-        figure_of("centre", "m", "axes of pinion and wheel", "gear axis", centres, shown="mm"),
+        figure_of(
+            "pinion", "m", "outline of the pinion", "node_pinion axis", pinion, shown="mm", no_error=EXACT
+        ),
+        figure_of("wheel", "m", "outline of the wheel", "node_wheel axis", wheel, shown="mm", no_error=EXACT),
+        figure_of(
+            "centre", "m", "axes of pinion and wheel", "gear axis", centres, shown="mm", no_error=EXACT
+        ),
     )
 
 
@@ -56,9 +63,15 @@ def points(pair: GearPair) -> Iterator[Quantity]:
     places = np.array([pair.placement(rho).contact_point for rho in rho1])
     meaning = "curvature radius of the pinion's flank there"
     yield figure_of("point", "", "points of the path of contact", "point", tuple("ABCDE"))
-    yield figure_of("point_rho1", "m", meaning, "point", rho1, shown="mm")
+    yield figure_of("point_rho1", "m", meaning, "point", rho1, shown="mm", no_error=EXACT)
     yield figure_of(
-        "point_place", "m", "place in the frame of the outlines", "point axis", places, shown="mm"
+        "point_place",
+        "m",
+        "place in the frame of the outlines",
+        "point axis",
+        places,
+        shown="mm",
+        no_error=EXACT,
     )
 
 
@@ -78,12 +91,12 @@ def path(pair: GearPair, speed: float | None = None) -> Iterator[Quantity]:
         ("rho2", "curvature radius of the wheel's flank"),
         ("radius", "radius of relative curvature"),
     ):
-        yield figure_of(name, "m", meaning, "station", getattr(along, name), shown="mm")
+        yield figure_of(name, "m", meaning, "station", getattr(along, name), shown="mm", no_error=EXACT)
     sliding = np.stack(along.specific_sliding, axis=-1)
-    yield figure_of("specific_sliding", "1", "specific sliding", "station gear", sliding)
+    yield figure_of("specific_sliding", "1", "specific sliding", "station gear", sliding, no_error=EXACT)
     if speed is not None:
         mean = along.entrainment(speed)
-        yield figure_of("entrainment", "m/s", "entrainment, (u1 + u2)/2", "station", mean)
+        yield figure_of("entrainment", "m/s", "entrainment, (u1 + u2)/2", "station", mean, no_error=EXACT)
         yield Quantity("sliding", SLIDING, along.sliding(speed))
 
 
@@ -95,11 +108,20 @@ def near_mesh(pair: GearPair, fields: tuple[GearField, GearField]) -> tuple[Quan
     corners = np.concatenate([cells[0], cells[1] + len(points[0])])
     stress = np.concatenate(stresses)
     return (
-        figure_of("point", "m", "unloaded place", "node axis", np.concatenate(points), shown="mm"),
-        figure_of("von_mises", "Pa", "von Mises stress", "node", stress, shown="MPa"),
-        figure_of("triangles", "1", "numbers of the nodes of each triangle", "triangle corner", corners),
-        figure_of("centre", "m", "pitch point", "axis", focus, shown="mm"),
-        figure_of("reach", "m", "half-width of the pictured part", "", reach, shown="mm"),
+        figure_of(
+            "point", "m", "unloaded place", "node axis", np.concatenate(points), shown="mm", no_error=EXACT
+        ),
+        figure_of("von_mises", "Pa", "von Mises stress", "node", stress, shown="MPa", no_error=INDICATIVE),
+        figure_of(
+            "triangles",
+            "1",
+            "numbers of the nodes of each triangle",
+            "triangle corner",
+            corners,
+            no_error=EXACT,
+        ),
+        figure_of("centre", "m", "pitch point", "axis", focus, shown="mm", no_error=EXACT),
+        figure_of("reach", "m", "half-width of the pictured part", "", reach, shown="mm", no_error=EXACT),
     )
 
 
@@ -136,9 +158,9 @@ def portraits(motions: Sequence[Portrait]) -> tuple[Quantity, ...]:
         figure_of("frequency", "1", "mesh over natural frequency", "portrait", each("frequency")),
         figure_of("direction", "", "sweep that met the motion", "portrait", each("direction")),
         figure_of("motion", "", "motion n-p-q", "portrait", each("label")),
-        figure_of("of_sample", "1", "portrait of the sample", "sample", of_sample),
+        figure_of("of_sample", "1", "portrait of the sample", "sample", of_sample, no_error=EXACT),
         figure_of("displacement", "1", "displacement X", "sample", all_of("displacement")),
         figure_of("velocity", "1", "velocity dX/dτ", "sample", all_of("velocity")),
-        figure_of("of_point", "1", "portrait of the point", "point", of_point),
+        figure_of("of_point", "1", "portrait of the point", "point", of_point, no_error=EXACT),
         figure_of("section", "1", "displacement and velocity at tau = 0", "point state", all_of("section")),
     )

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from base.results import EXACT, ITSELF
 from flankfilm.output.variables import figure_of, of_quantities
+from gears.closed_form.record import STANDARD
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,6 +19,10 @@ if TYPE_CHECKING:
     from flankfilm.coupling.truncation import MissedJump
 
 SOURCES = ("stiffness", "truncation", "flow")
+
+ROUNDING = "rounding of the exact flow; errors of the stiffness stand with the jumps"
+
+LONGER = "not estimated: of the longer series that the truncation of jumps is measured with"
 
 COLUMNS: Mapping[str, tuple[str, str]] = {
     "branch": ("i8", "branch of periodic motions"),
@@ -40,21 +46,41 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
 }
 """Type and meaning of the columns; all numbers are pure."""
 
+REASONS: Mapping[str, str] = {
+    **dict.fromkeys(("branch", "stable"), EXACT),
+    **dict.fromkeys(("error", *(f"error_by_{source}" for source in SOURCES)), ITSELF),
+    "longer_frequency": LONGER,
+    "factor_iso6336": STANDARD,
+}
+"""Why columns have no error of their own, where their table's reason is another one."""
+
 
 def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
     """Variables of a diagram, table by table, the pinion's speed beside every frequency where it has one."""
 
-    def table(prefix: str, axis: str, names: str, rows: Iterable[tuple[Any, ...]]) -> xr.Dataset:
+    def table(
+        prefix: str, axis: str, names: str, rows: Iterable[tuple[Any, ...]], no_error: str = ROUNDING
+    ) -> xr.Dataset:
         columns = {name: COLUMNS.get(f"{prefix}_{name}", COLUMNS[name]) for name in names.split()}
         held = np.array(list(rows), dtype=[(name, kind) for name, (kind, _) in columns.items()])
         figures = [
-            figure_of(name, "" if kind.startswith("U") else "1", meaning, axis, held[name])
+            figure_of(
+                name,
+                "" if kind.startswith("U") else "1",
+                meaning,
+                axis,
+                held[name],
+                no_error=REASONS.get(f"{prefix}_{name}", REASONS.get(name, no_error)),
+            )
             for name, (kind, meaning) in columns.items()
         ]
         if found.speed_of_one is not None and "frequency" in columns:
             speed = found.speed_of_one * held["frequency"]
-            figures.insert(0, figure_of("speed", "rad/s", "pinion speed", axis, speed, shown="rpm"))
-        return of_quantities(prefix, figures)
+            speeds = figure_of("speed", "rad/s", "pinion speed", axis, speed, shown="rpm", no_error=no_error)
+            figures.insert(0, speeds)
+        return of_quantities(
+            prefix, figures, dict.fromkeys(("frequency", "speed"), "error") if prefix == "jump" else None
+        )
 
     points, special = map(tuple, found.diagram.columns().tolist()), (row[:5] for row in found.diagram.table())
     stable = ((stretch.label, stretch.low, stretch.high) for stretch in found.stable)
@@ -69,7 +95,7 @@ def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
             f"frequency direction motion longer_frequency error {errors}",
             map(_jump, found.jumps),
         ),
-        table("missed", "jump", "frequency direction motion width", map(_missed, found.missed)),
+        table("missed", "jump", "frequency direction motion width", map(_missed, found.missed), LONGER),
         table("stable", "range", "motion from_frequency to_frequency", stable),
         table("force", "force", "frequency factor factor_iso6336", forces),
         *_truncated(found),
@@ -82,14 +108,24 @@ def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
         return []
     meant = "largest relative change of the ranges of stable motions that {} by the longer series"
     changes = [
-        figure_of("longer_order", "1", "harmonics of the longer series", "", found.longer_order),
-        figure_of("separated_error", "1", meant.format("lose contact"), "", found.truncation["separated"]),
+        figure_of(
+            "longer_order", "1", "harmonics of the longer series", "", found.longer_order, no_error=EXACT
+        ),
+        figure_of(
+            "separated_error",
+            "1",
+            meant.format("lose contact"),
+            "",
+            found.truncation["separated"],
+            no_error=ITSELF,
+        ),
         figure_of(
             "back_contact_error",
             "1",
             meant.format("touch the back flank"),
             "",
             found.truncation["back_contact"],
+            no_error=ITSELF,
         ),
         figure_of(
             "greatest_force",
@@ -104,9 +140,10 @@ def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
             "relative change of the greatest force by the longer series; infinite where it is unknown",
             "",
             found.truncation["greatest_force"],
+            no_error=ITSELF,
         ),
     ]
-    return [of_quantities("diagram", changes)]
+    return [of_quantities("diagram", changes, {"greatest_force": "greatest_force_error"})]
 
 
 def _jump(jump: Jump) -> tuple[Any, ...]:

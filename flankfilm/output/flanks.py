@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Quantity
+from base.results import EXACT
 from flankfilm.output.variables import figure_of, of_quantities
 from gears.flank_curves import FlankCurve
 
@@ -37,7 +38,9 @@ def measured_flanks(pair: GearPair, both: Both | None) -> Iterator[xr.Dataset]:
 
 
 def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Quantity]:
-    yield figure_of("diameter", "m", "diameter", "place", 2 * np.hypot(base_radius, rho), shown="mm")
+    yield figure_of(
+        "diameter", "m", "diameter", "place", 2 * np.hypot(base_radius, rho), shown="mm", no_error=EXACT
+    )
     mean = found.mean
     for name, meaning, curve, each in (
         ("material", "deviation from the involute", mean.profile, found.profile),
@@ -46,9 +49,19 @@ def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Q
         if not isinstance(curve, FlankCurve):
             continue
         yield figure_of(
-            f"mean_{name}", "m", f"{meaning}, mean of all teeth", "place", curve.at(rho), shown="um"
+            f"mean_{name}",
+            "m",
+            f"{meaning}, mean of all teeth",
+            "place",
+            curve.at(rho),
+            shown="um",
+            no_error=EXACT,
         )
         if isinstance(each, tuple):
             values = np.stack([one.at(rho) for one in each])
-            yield figure_of(name, "m", f"{meaning}, of each tooth", "tooth place", values, shown="um")
-            yield figure_of("tooth", "1", "tooth, in the order of meshing", "tooth", np.arange(len(each)))
+            yield figure_of(
+                name, "m", f"{meaning}, of each tooth", "tooth place", values, shown="um", no_error=EXACT
+            )
+            yield figure_of(
+                "tooth", "1", "tooth, in the order of meshing", "tooth", np.arange(len(each)), no_error=EXACT
+            )

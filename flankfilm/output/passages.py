@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Quantity
+from base.results import EXACT
 from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
     from fem.tooth_root import GearRootStress
 
 __all__ = ["fillet_stress", "passage"]
+
+FLAT = "not estimated: where the stress is greatest it is flat"
 
 TANGENT = "angle of the fillet's tangent to the tooth's centre line"
 
@@ -25,7 +28,9 @@ def passage(gear: GearRootStress) -> tuple[Quantity, ...]:
         tangent = np.interp(arc.ravel()[order], gear.line.arc, gear.line.tangent_angle)
         return (
             figure_of(name, "Pa", meaning, "instant", values.ravel()[order], shown="MPa"),
-            figure_of(f"{name}_tangent", "rad", f"where: {TANGENT}", "instant", tangent, shown="deg"),
+            figure_of(
+                f"{name}_tangent", "rad", f"where: {TANGENT}", "instant", tangent, shown="deg", no_error=FLAT
+            ),
         )
 
     travel = gear.tooth_position.ravel()[order]
@@ -33,7 +38,12 @@ def passage(gear: GearRootStress) -> tuple[Quantity, ...]:
     compression = "least principal stress along the other fillet"
     return (
         figure_of(
-            "travel", "1", "travel since the tooth's pair was at A, in base pitches", "instant", travel
+            "travel",
+            "1",
+            "travel since the tooth's pair was at A, in base pitches",
+            "instant",
+            travel,
+            no_error=EXACT,
         ),
         *stress("tension", tension, gear.tension_Pa, gear.tension_arc),
         *stress("compression", compression, gear.compression_Pa, gear.compression_arc),
@@ -54,7 +64,15 @@ def fillet_stress(gear: GearRootStress) -> tuple[Quantity, ...]:
         "loaded_side_mean": (f"mean of the {loaded} over a passage", mean[0]),
     }
     return (
-        figure_of("arc", "m", "arc length from the middle of the gap", "arc", gear.line.arc, shown="mm"),
-        figure_of("tangent", "rad", TANGENT, "arc", gear.line.tangent_angle, shown="deg"),
+        figure_of(
+            "arc",
+            "m",
+            "arc length from the middle of the gap",
+            "arc",
+            gear.line.arc,
+            shown="mm",
+            no_error=EXACT,
+        ),
+        figure_of("tangent", "rad", TANGENT, "arc", gear.line.tangent_angle, shown="deg", no_error=EXACT),
         *(figure_of(name, "Pa", text, "arc", curve, shown="MPa") for name, (text, curve) in stresses.items()),
     )

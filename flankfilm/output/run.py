@@ -12,12 +12,12 @@ import numpy as np
 
 import gears
 from base import Quantity
-from base.results import figures
+from base.results import EXACT, figures, why_no_error
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
 from flankfilm.figures import drawn
 from flankfilm.output.branches import branch_tables
-from flankfilm.output.errors import explain
+from flankfilm.output.convergence import with_convergence
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.geometry import geometry_columns
@@ -46,6 +46,13 @@ GEARS = ("pinion", "wheel")
 
 DIMENSIONLESS = ("mean_force", "half_backlash", "frequency")
 """Figures of an oscillator in its own units."""
+
+OTHERS = "unknown: closed forms, or pairs without a common body; other_mean_error and other_range_error are numerical"
+
+MEANS = {"mean_secant_stiffness": "mean_error", "transmission_error_range": "range_error"}
+"""Figures of mesh cycles to those that hold their errors."""
+
+HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
 
 CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
 
@@ -143,7 +150,7 @@ def results_dataset(scene: Scene, values: Mapping[str, Any], failures: Sequence[
     parts = list(_records(values, _speed(scene)))
     if (pair := values.get("pair")) is not None:
         parts += measured_flanks(pair, deviations(scene, pair, every_tooth=True))
-    return explain(merged(parts, attributes), values)
+    return with_convergence(merged(parts, attributes), values)
 
 
 def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
@@ -185,7 +192,8 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         known = [name for name in figures(type(revolution)) if name not in vars(MeshFigures)]
         yield of_record("revolution", revolution, known)
     if others := values.get("other cycles"):
-        yield of_models("other", {cycle.label: cycle for cycle in others}, "model of the mesh cycle")
+        labelled = {cycle.label: cycle for cycle in others}
+        yield of_models("other", labelled, "model of the mesh cycle", errors=MEANS, no_error=OTHERS)
     if (lubricated := values.get("film")) is not None:
         yield from _lubricated(lubricated, values["pair"].reduced_modulus)
     if (roots := values.get("root stress")) is not None:
@@ -207,12 +215,22 @@ def _sliding(contact: fem.MeshCycle, speed: float | None) -> Iterator[Quantity]:
     touching = contact.forces > 0
     specific = np.where(touching, contact.specific_sliding, np.nan)
     yield figure_of(
-        "specific_sliding", "1", "sliding over the flank's own speed", "gear position pair", specific
+        "specific_sliding",
+        "1",
+        "sliding over the flank's own speed",
+        "gear position pair",
+        specific,
+        no_error=EXACT,
     )
     if speed is not None:
         sliding = np.where(touching, contact.sliding(speed), np.nan)
         yield figure_of(
-            "sliding", "m/s", "sliding speed u1 - u2, negative before C", "position pair", sliding
+            "sliding",
+            "m/s",
+            "sliding speed u1 - u2, negative before C",
+            "position pair",
+            sliding,
+            no_error=EXACT,
         )
 
 
@@ -232,7 +250,8 @@ def _lubricated(cycle: LubricatedCycle, modulus: float) -> Iterator[xr.Dataset]:
         yield of_quantities(prefix, _whole_pressure(film, modulus, cycle.film.film_ratio is not None))
     if cycle.otherwise:
         held = {held_as_it_is(cycle): cycle, **cycle.otherwise}
-        yield of_models("held", held, "mesh cycle with films that differ in what is held")
+        meaning = "mesh cycle with films that differ in what is held"
+        yield of_models("held", held, meaning, no_error="not estimated for each of them")
 
 
 def _whole_pressure(film: ehl.Film, modulus: float, rough: bool) -> Iterator[Quantity]:
@@ -243,12 +262,19 @@ def _whole_pressure(film: ehl.Film, modulus: float, rough: bool) -> Iterator[Qua
     part = film.contact.reduced_modulus / modulus
     greatest = film.contact.peak_pressure / part
     yield figure_of(
-        "hertz_pressure", "Pa", "Hertz pressure, the largest of the dry contact", "", greatest, shown="GPa"
+        "hertz_pressure",
+        "Pa",
+        "Hertz pressure, the largest of the dry contact",
+        "",
+        greatest,
+        shown="GPa",
+        no_error=HERTZ,
     )
     if rough:
         whole = film.pressure / part
         meaning = "pressure of film and asperities together"
-        yield figure_of("total_pressure", "Pa", meaning, "node", whole, shown="GPa")
+        about = why_no_error(film, "pressure")
+        yield figure_of("total_pressure", "Pa", meaning, "node", whole, shown="GPa", no_error=about)
 
 
 def _fourier(series: MeshSeries) -> xr.Dataset:
@@ -264,8 +290,9 @@ def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
     """Root stress of a passing tooth and along the fillets of both gears, and nominal stress."""
     for name in GEARS:
         gear = getattr(found.stress, name)
-        yield of_quantities(f"root_{name}", passage(gear))
-        yield of_quantities(f"fillet_{name}", fillet_stress(gear))
+        for prefix, found_there in ((f"root_{name}", passage(gear)), (f"fillet_{name}", fillet_stress(gear))):
+            stresses = [one.name for one in found_there if one.figure.unit == "Pa"]
+            yield of_quantities(prefix, found_there, dict.fromkeys(stresses, found.stress.error))
     if found.iso is not None:
         yield of_record("iso6336_3", found.iso)
         yield of_list("iso6336_3", "gear", found.iso.sections)
@@ -277,7 +304,8 @@ def _sweep(found: SpeedSweep) -> Iterator[xr.Dataset]:
     names |= {f"sweep_labels_{up}": f"sweep_{up}_label" for up in found.labels}
     yield of_record("sweep", found).rename(names)
     if found.portraits:
-        yield of_quantities("portrait", drawn.portraits(found.portraits))
+        motion = dict.fromkeys(("displacement", "velocity", "section"), found.error)
+        yield of_quantities("portrait", drawn.portraits(found.portraits), motion)
 
 
 def _speed(scene: Scene) -> float | None:

@@ -2,7 +2,9 @@
 
 The variable of a figure is called ``<prefix>_<figure>``. Its axes are the record's own, ``<prefix>_<axis>``, but for
 those that mean the same in every record. Attributes: ``units`` (SI), ``long_name``, ``display_units`` where people
-read another unit, ``error`` where the relative error is known.
+read another unit; ``error``, where the relative error is known, ``error_variable``, the variable that holds those
+of its entries, or ``error_note``, why there is none. A figure of which nothing says so has none of them, which a test
+finds.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base.results import Figure, Quantity, figures, quantities
+from base.results import Figure, Quantity, figures, quantities, why_no_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,6 +45,9 @@ PLACES = (
 """Figures that say where others hold: coordinates of the dataset."""
 
 
+NAME, PLACE = "a name", "a place"
+"""Why variables that are no results have no error."""
+
 NAMES = ("Dowson", "Fourier", "Hertz", "Ishikawa", "Lambda", "Moes", "Poisson")
 """Words that begin with a capital wherever they stand."""
 
@@ -65,19 +70,26 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
     >>> @record
     ... class Curve:
     ...     position: object = quantity("1", "base pitches from A", "position")
-    ...     deflection: object = quantity("m", "deflection", "position", shown="um")
+    ...     deflection: object = quantity("m", "deflection", "position", shown="um", error="error")
+    ...     error: float = 0.01
     >>> data = of_record("dry", Curve([0.25, 0.75], [2e-6, 3e-6]))
     >>> data.dry_deflection.dims, data.dry_deflection.attrs
-    (('dry_position',), {'units': 'm', 'long_name': 'deflection', 'display_units': 'um'})
+    (('dry_position',), {'units': 'm', 'long_name': 'deflection', 'display_units': 'um', 'error': 0.01})
     """
-    known = quantities(record).values()
-    wanted = (one for one in known if names is None or one.name in names)
+    known = quantities(record)
+    wanted = (
+        replace(one, figure=replace(one.figure, no_error=why_no_error(record, name)))
+        for name, one in known.items()
+        if names is None or name in names
+    )
     return of_quantities(prefix, wanted, _errors(record, known))
 
 
-def of_quantities(
-    prefix: str, quantities: Iterable[Quantity], errors: Mapping[str, float] | None = None
-) -> xr.Dataset:
+Errors = Mapping[str, "float | str | Mapping[str, float]"]
+"""Of figures by name: a relative error, the name of the figure with those of the entries, or errors by key."""
+
+
+def of_quantities(prefix: str, quantities: Iterable[Quantity], errors: Errors | None = None) -> xr.Dataset:
     """Variables of figures of a record, or of ones that stand in none.
 
     Parameters
@@ -85,14 +97,15 @@ def of_quantities(
     prefix : str
     quantities : iterable of Quantity
     errors : mapping, optional
-        Name to relative error, where it is known.
+        Where they are known.
     """
     import xarray as xr
 
-    known, found = errors or {}, {}
+    errors, found = errors or {}, {}
     for quantity in quantities:
-        for name, figure, value in _entries(quantity.name, quantity.figure, quantity.value):
-            error = {"error": known[quantity.name]} if quantity.name in known else {}
+        for name, key, figure, value in _entries(quantity.name, quantity.figure, quantity.value):
+            known = errors.get(quantity.name)
+            error = _error(prefix, name, figure, known.get(key) if isinstance(known, Mapping) else known)
             attributes = {**_attributes(figure), **error}
             found[joined(prefix, name)] = (_dims(prefix, figure.dims), _plain(value), attributes)
     data = xr.Dataset(found)
@@ -100,9 +113,11 @@ def of_quantities(
     return data.set_coords([name for name in map(str, data.data_vars) if name in places])
 
 
-def figure_of(name: str, unit: str, meaning: str, dims: str, value: Any, *, shown: str = "") -> Quantity:
+def figure_of(
+    name: str, unit: str, meaning: str, dims: str, value: Any, *, shown: str = "", no_error: str = ""
+) -> Quantity:
     """Give a figure that stands in no record; arguments as of `base.quantity`."""
-    return Quantity(name, Figure(unit, meaning, tuple(dims.split()), shown), value)
+    return Quantity(name, Figure(unit, meaning, tuple(dims.split()), shown, no_error=no_error), value)
 
 
 def of_list(prefix: str, axis: str, records: Sequence[object]) -> xr.Dataset:
@@ -114,17 +129,30 @@ def of_list(prefix: str, axis: str, records: Sequence[object]) -> xr.Dataset:
     records : sequence of object
         At least one.
     """
+    first = records[0]
     return of_quantities(
         prefix,
         (
-            Quantity(name, replace(figure, dims=(axis,)), [getattr(record, name) for record in records])
-            for name, figure in figures(type(records[0])).items()
+            Quantity(
+                name,
+                replace(figure, dims=(axis,), no_error=why_no_error(first, name)),
+                [getattr(record, name) for record in records],
+            )
+            for name, figure in figures(type(first)).items()
             if not figure.dims
         ),
     )
 
 
-def of_models(prefix: str, records: Mapping[str, object], meaning: str, axis: str = "model") -> xr.Dataset:
+def of_models(
+    prefix: str,
+    records: Mapping[str, object],
+    meaning: str,
+    axis: str = "model",
+    *,
+    errors: Mapping[str, str] | None = None,
+    no_error: str = "",
+) -> xr.Dataset:
     """Variables of equal records beside each other, along an axis that names them.
 
     Parameters
@@ -135,20 +163,31 @@ def of_models(prefix: str, records: Mapping[str, object], meaning: str, axis: st
     meaning : str
         Of the labels.
     axis : str
+    errors : mapping, optional
+        Figures to those that hold their errors, one for each record.
+    no_error : str
+        Why those have none that do not have it in all records.
     """
     import xarray as xr
 
-    about = {"units": "", "long_name": meaning}
+    about = {"units": "", "long_name": meaning, "error_note": NAME}
     labels = xr.Variable((joined(prefix, axis),), np.array(list(records)), about)
     # arcs and events are as many as a model has
     own = [joined(prefix, axis) for axis in OWN]
     each = [of_record(prefix, record).drop_dims(own, errors="ignore") for record in records.values()]
     whole = xr.concat(each, dim=labels, data_vars="all", coords="minimal", compat="override", join="override")
-    for name, variable in whole.data_vars.items():  # the first one's error is not that of all
+    held = {joined(prefix, name): joined(prefix, error) for name, error in (errors or {}).items()}
+    for name, variable in whole.data_vars.items():  # what the first one says is not what all say
         known = [one[name].attrs["error"] for one in each if name in one and "error" in one[name].attrs]
-        variable.attrs.pop("error", None)
-        if len(known) == len(each):
+        notes = {one[name].attrs.get("error_note") if name in one else None for one in each}
+        for attribute in ("error", "error_variable", "error_note"):
+            variable.attrs.pop(attribute, None)
+        if name in held:
+            variable.attrs["error_variable"] = held[str(name)]
+        elif len(known) == len(each):
             variable.attrs["error"] = max(known)
+        else:
+            variable.attrs["error_note"] = (notes.pop() if len(notes) == 1 else None) or no_error
     return whole
 
 
@@ -166,7 +205,8 @@ def merged(parts: Iterable[xr.Dataset], attributes: Mapping[str, str | float]) -
     whole = xr.merge(parts, join="exact", compat="no_conflicts", combine_attrs="override")
     for axis, labels in COMMON.items():
         if axis in whole.dims:
-            whole = whole.assign_coords({axis: (axis, np.array(labels), {"units": "", "long_name": axis})})
+            about = {"units": "", "long_name": axis, "error_note": NAME}
+            whole = whole.assign_coords({axis: (axis, np.array(labels), about)})
     return whole.assign_attrs(attributes)
 
 
@@ -205,28 +245,45 @@ def identifier(label: str) -> str:
     return "_".join("".join(c if c.isalnum() else " " for c in label.lower()).split())
 
 
-def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, Figure, Any]]:
-    """A figure, or each one of a mapping of them; the key stands after a colon in the meaning."""
+def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, str, Figure, Any]]:
+    """A figure, or each one of a mapping of them by its key, which stands after a colon in the meaning."""
     if not isinstance(value, Mapping):
-        yield name, figure, value
+        yield name, "", figure, value
         return
     for key, one in value.items():
-        yield f"{name}_{identifier(key)}", replace(figure, meaning=f"{figure.meaning}: {key}"), one
+        yield f"{name}_{identifier(key)}", key, replace(figure, meaning=f"{figure.meaning}: {key}"), one
 
 
-def _errors(record: object, known: Iterable[Quantity]) -> dict[str, float]:
-    """Relative errors of a record's figures, where they are known."""
-    whole = getattr(record, "error", None)
-    found = dict.fromkeys(getattr(type(record), "headline", ()), whole)
-    for one in known:
-        if one.figure.error:
-            error = getattr(record, one.figure.error)
-            found[one.name] = error[one.name] if isinstance(error, Mapping) else error
-    return {
-        name: float(error)
-        for name, error in found.items()
-        if isinstance(error, float | np.floating) and np.isfinite(error)
-    }
+def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
+    """Errors of a record's figures, where they are known."""
+    headline = getattr(type(record), "headline", ())
+    found: dict[str, Any] = {}
+    for name, one in known.items():
+        holds = one.figure.error or ("error" if name in headline and not one.figure.no_error else "")
+        error: Any = getattr(record, holds, None) if holds else None
+        if isinstance(error, Mapping):
+            error = error.get(name, error)
+        if np.ndim(error) and holds in known:
+            error = holds
+        if isinstance(error, str | Mapping) or _finite(error):
+            found[name] = error
+    return found
+
+
+def _finite(error: Any) -> bool:
+    return isinstance(error, float | np.floating) and bool(np.isfinite(error))
+
+
+def _error(prefix: str, name: str, figure: Figure, known: float | str | None) -> dict[str, float | str]:
+    """What a variable says of its error."""
+    if figure.unit == "":
+        return {"error_note": NAME}
+    if isinstance(known, str):
+        return {"error_variable": joined(prefix, known)}
+    if known is not None and _finite(known):
+        return {"error": float(known)}
+    why = PLACE if name in PLACES else figure.no_error
+    return {"error_note": why} if why else {}
 
 
 def _attributes(figure: Figure) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from base.results import EXACT
 from flankfilm.coupling.verification import Curves, Verification
 from flankfilm.figures.drawn import outlines, points
 from flankfilm.output.files import provenance, write_csv, write_netcdf
@@ -57,7 +58,7 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
     import xarray as xr
 
     models = {model.label: model for model in found.models if model.single_stiffness.size}
-    like = {"units": "1", "long_name": "reference without what closed forms lack"}
+    like = {"units": "1", "long_name": "reference without what closed forms lack", "error_note": EXACT}
     parts = (
         of_record("pair", found.pair),
         of_quantities("outline", outlines(found.pair)),

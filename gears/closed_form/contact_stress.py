@@ -6,6 +6,7 @@ import math
 import warnings
 
 from base import Faults, RangeWarning, quantity, record
+from gears.closed_form.record import STANDARD
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
@@ -36,6 +37,7 @@ class Iso6336ContactStress:
         shown="MPa",
     )
 
+    no_error = STANDARD
     headline = ("stresses", "Z_H", "Z_E", "Z_eps", "Z_B", "Z_D")
 
     def __repr__(self) -> str:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from base import Array, Faults, Limit, quantity, record
 from base.units import factor
+from gears.closed_form.record import STANDARD
 from gears.closed_form.tooth_stiffness import iso6336
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
@@ -36,6 +37,7 @@ class Iso6336DynamicFactor:
     B_f: float = quantity("1", "effect of the profile deviation, over the deflection")
     B_k: float = quantity("1", "effect of the tip relief, over the deflection")
 
+    no_error = STANDARD
     headline = ("resonance_speed", "N_S", "B_p", "B_f", "B_k")
 
 

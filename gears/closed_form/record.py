@@ -10,6 +10,10 @@ from numpy.typing import DTypeLike
 
 from base import Array, described, record
 
+UNKNOWN = "unknown: a closed form, until it is compared with finite elements (flankfilm verify)"
+
+STANDARD = "unknown: a standard's formula"
+
 
 @record
 class ClosedForm:
@@ -27,6 +31,8 @@ class ClosedForm:
 
     model: str
     parts: Mapping[str, Array]
+
+    no_error = UNKNOWN
 
     @classmethod
     def of_both(cls, model: str, pinion: Mapping[str, Array], wheel: Mapping[str, Array]) -> ClosedForm:

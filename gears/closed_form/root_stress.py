@@ -6,6 +6,7 @@ import math
 import warnings
 
 from base import Faults, RangeWarning, described, part, quantity, record
+from gears.closed_form.record import STANDARD
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.involute import involute_function
@@ -34,6 +35,7 @@ class RootSection:
     Y_F: float = quantity("1", "form factor")
     Y_S: float = quantity("1", "stress-correction factor")
 
+    no_error = STANDARD
     headline = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F")
 
     @described("1")
@@ -50,6 +52,8 @@ class Iso6336RootStress:
     Y_B: tuple[float, float] = quantity("1", "rim-thickness factors", "gear")
     stresses: tuple[float, float] = quantity("Pa", "tooth-root stress sigma_F0", "gear", shown="MPa")
     load_at: str = quantity("", "where the load was taken to act, D or tip")
+
+    no_error = STANDARD
 
     def __repr__(self) -> str:
         """One line: stresses and rims of both gears."""

@@ -7,6 +7,7 @@ import warnings
 
 from base import RangeWarning, described, quantity, record
 from base.units import factor
+from gears.closed_form.record import STANDARD
 from gears.errors import GeometryError
 from gears.hertz import NORMAL_FORCE
 from gears.pair import GearPair
@@ -38,6 +39,7 @@ class Iso6336Stiffness:
     C_B: float = quantity("1", "basic rack factor")
     face_width: float = quantity("m", "face width b", shown="mm")
 
+    no_error = STANDARD
     headline = ("c_th", "c_prime", "c_gamma", "C_R", "C_B")
 
     @described("N/m")

@@ -1,0 +1,53 @@
+"""For every variable whether its solver believes it, and what it says where not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STAGES: Mapping[str, str] = {
+    "single_pair": "closed forms",
+    "dry": "dry cycle",
+    "reference": "references",
+    "torque": "torques",
+    "revolution": "revolution",
+    "other": "other cycles",
+    **dict.fromkeys(("lubricated", "film", "held"), "film"),
+    **dict.fromkeys(("root", "fillet", "iso6336_3"), "root stress"),
+    "iso6336_2": "closed forms",
+    "oscillator": "scaling",
+    "fourier": "fourier",
+    **dict.fromkeys(("sweep", "portrait"), "sweep"),
+    **dict.fromkeys(("diagram", "special", "jump", "missed", "stable", "force"), "diagram"),
+    "field": "fields",
+}
+"""Stage that the variables of each prefix are of; those of the geometry alone are of none."""
+
+
+def with_convergence(data: xr.Dataset, values: Mapping[str, Any]) -> xr.Dataset:
+    """Give every variable ``converged`` where a solver found it, and its ``message`` where it did not converge.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        All variables of a run.
+    values : mapping
+        Stage name to result.
+    """
+    for name in map(str, data.variables):
+        data[name].attrs |= _converged(name, values)
+    return data
+
+
+def _converged(name: str, values: Mapping[str, Any]) -> dict[str, int | str]:
+    """Whether the solver believes a variable, and what it says where not."""
+    prefix = next((one for one in STAGES if f"{name}_".startswith(f"{one}_")), None)
+    found = None if prefix is None else values.get(STAGES[prefix])
+    every = found if isinstance(found, tuple) else (found,)
+    if any(getattr(one, "converged", None) is None for one in every):
+        return {}
+    message = "; ".join(one.message for one in every if not one.converged)
+    return {"converged": int(not message), **({"message": message} if message else {})}
