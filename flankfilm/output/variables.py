@@ -182,7 +182,7 @@ def of_models(
         notes = {one[name].attrs.get("error_note") if name in one else None for one in each}
         for attribute in ("error", "error_variable", "error_note"):
             variable.attrs.pop(attribute, None)
-        if name in held:
+        if held.get(str(name)) in whole:
             variable.attrs["error_variable"] = held[str(name)]
         elif len(known) == len(each):
             variable.attrs["error"] = max(known)

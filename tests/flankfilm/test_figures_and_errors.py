@@ -135,5 +135,7 @@ def test_models_beside_each_other_have_the_largest_error_where_all_have_one():
     assert said(of_models("other", both, "model"))["other_mean"] == 0.03
     one = said(of_models("other", {"a": curve(), "b": curve(None)}, "model", no_error="not of all"))
     assert one["other_mean"] == "not of all"
-    held = said(of_models("other", both, "model", errors={"mean": "mean_error"}))
-    assert held["other_mean"] == "other_mean_error"
+    held = said(of_models("other", both, "model", errors={"force": "share_error"}))
+    assert held["other_force"] == "other_share_error"
+    lacking = said(of_models("other", both, "model", errors={"force": "gone_error"}))
+    assert lacking["other_force"] == 0.03
