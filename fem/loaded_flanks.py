@@ -107,14 +107,14 @@ def loaded_flanks(
 
 
 def _levers(given: Setting, where: ContactCandidates) -> Array:
-    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs)."""
+    """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs); 1 if none can act."""
     lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
     first, second = given.pair.base_radii
     arm = np.where(where.touchable, arm, 0.0)
     slip = np.sign(arm[0] / first - arm[1] / second)
     # the gears turn on, whichever flanks bear: on the back flanks all surfaces move the other way
     turning = -given.friction if given.back else given.friction
-    return np.asarray(lever[0] + turning * slip * arm[0] / first)
+    return np.asarray(np.where(where.touchable, lever[0], 1.0) + turning * slip * arm[0] / first)
 
 
 def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:

@@ -105,6 +105,23 @@ def test_tip_edges_of_undercut_teeth_at_light_and_heavy_load(name, factor):
         assert abs(off) < 2e-3
 
 
+def test_friction_tilts_no_force_of_teeth_that_cannot_touch():
+    """Of so few teeth the next ones stand askew: a lever below zero was taken for one of a tilted force."""
+    pair = GearPair(
+        Gear(12, profile_shift=0.693),
+        Gear(9, profile_shift=0.298),
+        2e-3,
+        0.04,
+        rack_of(0.84, 1.09, 0.28, 25.0),
+    )
+    bodies = fem.compliance(pair, 0.002)
+    free, rough = (fem.mesh_cycle(pair, 50.0, 20, bodies, friction=mu) for mu in (0.0, 0.08))
+    assert rough.converged
+    # the power lost is that of an efficient gear, and the wheel lacks what it takes
+    lost = 1.0 - rough.wheel_torque.mean() / free.wheel_torque.mean()
+    assert 0.0 < lost < 0.08
+
+
 def test_modules_of_a_twentieth_and_of_fifty_millimetres_are_the_same_gear():
     """Displacement per line load is a number of the shape alone."""
     flexible = []
