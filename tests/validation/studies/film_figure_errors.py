@@ -50,7 +50,9 @@ def arcs_of(teeth: LoadedTeeth, speed: float, oil: ehl.Lubricant, positions: int
     asked = resolution_of(TOLERANCE, teeth.model)
     asked = replace(asked, films=asked.films / finer, agreement=asked.agreement / finer)
     if finer > 1.0:
-        asked = replace(asked, sampling=asked.sampling / finer, transmission_error=asked.transmission_error / finer)
+        asked = replace(
+            asked, sampling=asked.sampling / finer, transmission_error=asked.transmission_error / finer
+        )
     with patch.object(lubricated, "FILM_POSITIONS", positions):
         dry = teeth.sampled(asked.sampling, asked.transmission_error)
         found = lubricate(teeth, dry, speed, oil, asked, profiles=False).arcs
