@@ -36,7 +36,7 @@ POSITIONS, FINER = 3 * lubricated.FILM_POSITIONS, 10.0
 def drawn(rng: np.random.Generator):
     """A pair, its torque, speed of the pinion [rad/s] and oil."""
     while True:
-        pair, torque, options = figure_errors.drawn(rng)
+        pair, torque, _ = figure_errors.drawn(rng)
         if {one.youngs_modulus for one in pair.materials} == {figure_errors.STEEL.youngs_modulus}:
             break
     speed = np.exp(rng.uniform(np.log(1.0), np.log(30.0))) / pair.base_radii[0]
