@@ -14,7 +14,7 @@ from base import InputError
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, find_orbits
 from dynamics.inverse import Event, OneOf, Ranged, identify
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
-from dynamics.inverse.events import Problem
+from dynamics.inverse.events import MAX_TRIALS, Problem, checked
 from dynamics.inverse.reduction import reduced, scaled
 from dynamics.inverse.refinement import Fit, fit
 from dynamics.inverse.rounding import rounded
@@ -47,6 +47,15 @@ def printed(points, digits=8):
 
 def problem_of(here, events, unknowns=None, bounds=BOUNDS):
     return Problem(here, "frequency", tuple(events), RANGES if unknowns is None else unknowns, bounds)
+
+
+def test_as_many_trials_as_allowed_are_taken_and_one_more_is_not(points):
+    values = OneOf(tuple(np.linspace(0.01, 0.08, MAX_TRIALS).tolist()))
+    events = printed(points)
+    assert checked(TRUE, "frequency", events, {ZETA: values}, BOUNDS).unknowns[ZETA] is values
+    more = OneOf((*values.values, 0.09))
+    with pytest.raises(InputError, match=f"at most {MAX_TRIALS} combinations"):
+        checked(TRUE, "frequency", events, {ZETA: more}, BOUNDS)
 
 
 def test_all_faults_of_the_input_are_named():

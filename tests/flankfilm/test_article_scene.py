@@ -123,3 +123,24 @@ def test_the_report_shows_every_section(folder):
         assert f"<h2>{title}</h2>" in page
     assert page.count("<svg") >= 10
     assert len(page) < 5e6
+
+
+TABLES = {
+    "path_of_contact": "rho1_mm rho2_mm radius_mm entrainment_m_per_s sliding_m_per_s",
+    "mesh_cycle_dry": "position secant_stiffness_N_per_m stiffness_N_per_m transmission_error_um load_share",
+    "contacts_dry": "position forces_N hertz_pressure_MPa half_width_um sliding_m_per_s",
+    "mesh_cycle_lubricated": "position secant_stiffness_N_per_m stiffness_N_per_m transmission_error_um load_share",
+    "film_along_path": "rho1_mm load_N_per_mm central_thickness_um minimum_thickness_um hertz_pressure_GPa",
+    "sweep_up": "speed_rpm frequency",
+}
+"""Columns that a reader of the tables relies on; those of several entries have their numbers at the end."""
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_hold_the_figures_that_the_pages_name(folder, name):
+    head, *rows = (folder / "first" / "csv" / f"{name}.csv").read_text(encoding="utf-8").splitlines()
+    columns = head.split(",")
+    for wanted in TABLES[name].split():
+        assert any(column.startswith(wanted) for column in columns), (wanted, columns)
+    assert rows
+    assert {len(row.split(",")) for row in rows} == {len(columns)}

@@ -17,15 +17,16 @@ from base import InputError
 from flankfilm.bench.case import Answer, Case, PeerWork, Series, Value, level, true_error
 from flankfilm.bench.catalogue import SOLVERS
 from flankfilm.bench.element_cases import elements
-from flankfilm.bench.examples import example_pair
-from flankfilm.bench.gear_cases import enclosed_area
+from flankfilm.bench.examples import TORQUE, example_pair
+from flankfilm.bench.gear_cases import enclosed_area, independent_pairs
 from flankfilm.bench.machine import this_machine
 from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
 from flankfilm.bench.stepwise_cases import stepwise
-from flankfilm.bench.tables import read_bench, remarks, summaries, write_tables
+from flankfilm.bench.tables import clock, read_bench, remarks, summaries, write_tables
 from flankfilm.bench.work_cases import work_contact, work_film, work_geometry
+from flankfilm.coupling import mesh_cycle
 from flankfilm.figures.bench import error_against_cost
 from tests.flankfilm.program import flankfilm
 
@@ -291,3 +292,22 @@ def test_works_whose_time_alone_counts_have_rows_without_errors(build):
     assert {row.failure for row in found.rows} == {""}
     assert all(math.isnan(row.error) and row.cpu > 0 for row in found.rows)
     assert found.finest == ""
+
+
+@pytest.mark.parametrize("form", ["ishikawa", "weber_banaschek"])  # the third is taken without a force here
+def test_pairs_added_are_those_of_the_mesh_cycle(form):
+    """The benchmark's own sum against the cycle whose pairs have no body in common, which solves for the deflection."""
+    pair = example_pair()
+    options = {"model": form.replace("_", "-"), "pairs": "independent", "positions": 10}
+    cycle = mesh_cycle(pair, torque=TORQUE, **options)
+    # the cycle's force is shared among pairs, on which the Hertz part of one form depends
+    allowed = 0.05 if form == "weber_banaschek" else 1e-9
+    np.testing.assert_allclose(independent_pairs(pair, form, 10), cycle.secant_stiffness, rtol=allowed)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(math.nan, "-"), (5e-7, "0.5 µs"), (9.99e-4, "999 µs"), (1e-3, "1 ms"), (0.999, "999 ms"), (1.0, "1 s")],
+)
+def test_times_are_told_in_the_unit_that_suits_them(seconds, text):
+    assert clock(seconds) == text

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from flankfilm.cli import app
 from flankfilm.output.files import write_csv
 from flankfilm.scene import template
 from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
@@ -198,3 +199,10 @@ def test_closed_streams_change_nothing(tmp_path, closed):
         assert "fault" not in done.stdout.decode()
     with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as results:
         assert results.sizes
+
+
+@pytest.mark.parametrize("name", [name for name in app if not name.startswith("-")])
+def test_every_argument_of_every_command_says_what_it_is(name):
+    for argument in app[name].assemble_argument_collection(parse_docstring=True):
+        if argument.name != "*":  # the options that follow, each with its own
+            assert len(argument.parameter.help or "") > 10, argument.name

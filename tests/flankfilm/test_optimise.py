@@ -17,6 +17,7 @@ from flankfilm.optimisation.files import dataset, phases
 from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.run import optimise
 from flankfilm.optimisation.search import front
+from flankfilm.optimisation.start import NOT_THERE
 from flankfilm.optimisation.task import read_task
 from flankfilm.optimisation.words import gained, tied
 from flankfilm.scene import read_scene
@@ -295,3 +296,14 @@ def test_faults_name_the_key(tmp_path, wanted, rest, expected):
 def test_every_example_is_in_order(path):
     task = read_task(path)
     assert task.outputs
+
+
+def test_the_scene_as_it_stands_has_no_value_of_a_key_that_only_the_ranges_bring():
+    """The example's scene has no relief; what its task sets beside the relief's amount goes with it."""
+    task = read_task(EXAMPLES / "optimise" / "shift_trade_off.toml")
+    values = dict(zip(task.keys, task.start.values, strict=True))
+    amounts = [values[f"pair.{gear}.tip_relief.amount_um"] for gear in ("pinion", "wheel")]
+    assert amounts == [NOT_THERE, NOT_THERE]
+    assert values["pair.pinion.profile_shift"] == 0.0
+    assert task.scene["pair"]["pinion"]["tip_relief"] == {"length_mm": 2.5}
+    assert "tip_relief" not in task.start.scene["pair"]["pinion"]

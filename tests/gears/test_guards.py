@@ -280,3 +280,14 @@ def test_a_chamfer_higher_than_the_tooth_is_refused(chamfer):
             pinion=Gear(teeth=36, tip_chamfer=chamfer), wheel=Gear(teeth=40), module=2e-3, face_width=0.04
         )
     assert [fault.where for fault in caught.value.faults] == ["pinion.tip_chamfer"]
+
+
+def test_a_thin_rim_is_told_over_the_depth_of_the_tooth():
+    """Tip to root 2.25 modules of 2 mm: 4.5 mm, of which a rim of 1 mm is 0.22, and one of 2.2 mm 0.49."""
+    root = GearPair(Gear(30), Gear(40), 2e-3, 0.02).root_radii[0]
+    for rim, share in ((1e-3, "0.22"), (2.2e-3, "0.49")):
+        with pytest.warns(GeometryWarning, match=f"pinion: the rim is {share} of the tooth depth thick"):
+            GearPair(Gear(30, bore_radius=root - rim), Gear(40), 2e-3, 0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        GearPair(Gear(30, bore_radius=root - 2.3e-3), Gear(40), 2e-3, 0.02)

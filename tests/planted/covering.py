@@ -93,10 +93,11 @@ class Map:
         beside = {test for test in self.all if test.partition("::")[0] in files}
         near = self._by(fault.path, self.lines.get(fault.path, {}))[0]
         groups = [ran | prepared, beside, near]
+        own = f"tests/{fault.path.partition('/')[0]}/"  # the package's own tests say most of it
         done: set[str] = set()
         out = []
         for group in groups:
-            out.append(sorted(group - done, key=self.cost))
+            out.append(sorted(group - done, key=lambda test: (not test.startswith(own), self.cost(test))))
             done |= group
         return out
 
