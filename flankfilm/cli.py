@@ -333,6 +333,17 @@ def guarded(command: Callable[[], int]) -> int:
         return BY_SIGNAL + stop.signal if isinstance(stop, Ended) else INTERRUPTED
 
 
+SETTINGS_OF_NUMBA = ".numba_config.yaml"
+"""File of the current folder that numba obeys, whoever has put it there, each time that it compiles."""
+
+
+def _commands() -> int:
+    if Path(SETTINGS_OF_NUMBA).is_file():
+        why = "must not lie in the current folder: it changes how results are computed"
+        raise InputError.at(SETTINGS_OF_NUMBA, "", why, "Move it away, or work in another folder")
+    return int(app(exit_on_error=True, print_error=True) or 0)
+
+
 def _open_streams() -> None:
     """Give streams that were closed a place that takes everything, lest the first file that is opened becomes one."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
@@ -356,7 +367,7 @@ def main() -> None:
     """Entry point of the ``flankfilm`` script."""
     _open_streams()
     warnings.showwarning = _say
-    status = guarded(lambda: int(app(exit_on_error=True, print_error=True) or 0))
+    status = guarded(_commands)
     if status > BY_SIGNAL:
         logging.disable()  # what libraries say of work that was broken off
     sys.exit(status)

@@ -16,6 +16,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from flankfilm.figures.style import load_matplotlib
+
 INK, PAPER = "#1c2126", "#ffffff"
 
 SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
@@ -99,6 +101,7 @@ def frames(view: View) -> Iterator[Any]:
 
 def plotter_of(view: View, **options: Any) -> Any:
     """Empty picture, seen from the front."""
+    load_matplotlib()
     import pyvista as pv
 
     plotter = pv.Plotter(window_size=list(view.size), lighting="none", **options)
@@ -125,6 +128,7 @@ def nearest(places: Iterable[float], at: float) -> float:
 
 def draw(plotter: Any, view: View, at: float) -> None:
     """The position nearest to `at`: a field on the deformed teeth, and their outlines; replaces the one before."""
+    load_matplotlib()
     import pyvista as pv
 
     chosen = steps(Path(view.folder))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import re
+import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,20 @@ from base.files import replacing
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+def load_matplotlib() -> None:
+    """Load matplotlib away from the current folder, whose ``matplotlibrc`` it would obey whoever had put it there."""
+    if "matplotlib" in sys.modules:
+        return
+    with (
+        suppress(FileNotFoundError),
+        chdir(Path(__file__).parent),
+    ):  # a folder that is gone holds no such file
+        import matplotlib  # noqa: F401
+
+
+load_matplotlib()
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 """Okabe and Ito's palette: distinct for colour-blind readers and in grey."""

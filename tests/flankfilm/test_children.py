@@ -92,6 +92,29 @@ def test_commands_import_nothing_from_the_current_folder(tmp_path):
     assert "PYTHONSAFEPATH" not in os.environ
 
 
+def test_settings_of_libraries_in_the_current_folder_are_not_obeyed(tmp_path):
+    """matplotlib would start LaTeX on what another one wrote, and numba compile otherwise."""
+    (tmp_path / "matplotlibrc").write_bytes(b"text.usetex: True\nfont.size: 80\n\xff\xfe no text\n")
+    draw = (
+        "from flankfilm import figures\nfrom flankfilm.figures.style import sheet\nimport matplotlib\n"
+        "assert not matplotlib.rcParams['text.usetex']\nwith sheet() as (drawn, panels): pass\n"
+    )
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    said = subprocess.run(
+        python("-c", draw),
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+    )
+    assert (said.returncode, said.stderr) == (0, "")
+    (tmp_path / ".numba_config.yaml").write_text("disable_jit: 1\n")
+    refused = subprocess.run([str(SCRIPT), "new", "scene.toml"], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert ".numba_config.yaml: must not lie in the current folder" in refused.stderr
+    assert not (tmp_path / "scene.toml").exists()
+
+
 def test_a_signal_becomes_an_exception_and_then_what_it_was():
     before = signal.getsignal(signal.SIGTERM)
     with pytest.raises(Ended, match="SIGTERM") as ended, answering_signals():
