@@ -309,12 +309,13 @@ def guarded(command: Callable[[], int]) -> int:
             return command()
     except InputError as error:
         count = len(error.faults)
-        print(f"flankfilm: {count} fault{'s' if count > 1 else ''}", file=sys.stderr)
-        for fault in error.faults:
-            print(f"  {printable(fault)}", file=sys.stderr)
+        _tell(
+            f"flankfilm: {count} fault{'s' if count > 1 else ''}",
+            *(f"  {printable(f)}" for f in error.faults),
+        )
         return USER_FAULT
     except SolverError as error:
-        print(f"flankfilm: {printable(error)}", file=sys.stderr)
+        _tell(f"flankfilm: {printable(error)}")
         return SOLVER_FAULT
     except BrokenPipeError:
         sys.stderr.close()
@@ -322,15 +323,21 @@ def guarded(command: Callable[[], int]) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         remedy = "; free some space, or name another folder with --out" if error.errno in FULL else ""
-        print(printable(f"flankfilm: {where}{error.strerror or error}{remedy}"), file=sys.stderr)
+        _tell(printable(f"flankfilm: {where}{error.strerror or error}{remedy}"))
         return USER_FAULT
     except (KeyboardInterrupt, Ended) as stop:
         how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
-        print(
-            f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache",
-            file=sys.stderr,
-        )
+        _tell(f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache")
         return BY_SIGNAL + stop.signal if isinstance(stop, Ended) else INTERRUPTED
+
+
+def _tell(*lines: str) -> None:
+    """Say why a command ends; where nothing takes it, such as a log on a full disk, its exit status says so alone."""
+    try:
+        for line in lines:
+            print(line, file=sys.stderr, flush=True)
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
 SETTINGS_OF_NUMBA = ".numba_config.yaml"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import stat
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from base import FlankfilmError, InputError, shorten
+from base import Faults, FlankfilmError, InputError, shorten
 from base.files import sweep_temporaries
 
 DAMAGE = (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError, EOFError, AttributeError,
@@ -15,19 +18,43 @@ DAMAGE = (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError
 """What libraries raise on damaged files: they follow references, sizes and exponents that are not there."""
 
 
-def claim(folder: Path) -> None:
-    """Make the folder and see that it can be written before anything is computed."""
+ELSEWHERE = "Name another with --out"
+
+AWAY = "Move it away, or name another folder with --out"
+
+
+def claim(folder: Path, files: Iterable[str] = (), folders: Iterable[str] = ()) -> None:
+    """Make the folder and see that it can be written before anything is computed.
+
+    Parameters
+    ----------
+    folder : Path
+    files, folders : iterable of str
+        Names in it that will be files and folders: none of them may be there as the other.
+    """
     if folder.exists() and not folder.is_dir():
-        raise InputError.at(folder, "", "is a file, not a folder", "Name another with --out")
+        raise InputError.at(folder, "", "is a file, not a folder", ELSEWHERE)
+    with Faults() as faults:
+        for path in (folder / name for name in files):
+            if path.is_dir():
+                faults.add(str(path), "", "is a folder, and a file of that name will be written", AWAY)
+        for path in (folder / name for name in folders):
+            if os.path.lexists(path) and not path.is_dir():
+                faults.add(str(path), "", "is no folder, and a folder of that name will be written", AWAY)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".flankfilm-probe"
-        probe.touch()
-        probe.unlink(missing_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
         sweep_temporaries(folder)
     except OSError as fault:
         allowed = f"cannot be written: {fault.strerror}"
-        raise InputError.at(folder, "", allowed, "Name another with --out") from fault
+        raise InputError.at(folder, "", allowed, ELSEWHERE) from fault
+
+
+def refuse_irregular(path: Path) -> None:
+    """Refuse what is there and is no plain file: a link would have us write elsewhere, a pipe wait for ever."""
+    if os.path.lexists(path) and not stat.S_ISREG(path.lstat().st_mode):
+        raise InputError.at(path, "", "is a link, a pipe or a folder, and must be a plain file", AWAY)
 
 
 def content_of(path: Path, largest: int, remedy: str, shorter: str) -> bytes:
@@ -72,7 +99,8 @@ def readable(path: Path, remedy: str = "Run the scene again") -> Iterator[None]:
 def refuse_missing(path: Path, remedy: str) -> None:
     """Refuse what is no file."""
     if not path.is_file():
-        raise InputError.at(path, "", "is a folder" if path.is_dir() else "does not exist", remedy)
+        there = "is a pipe or a device, not a file" if path.exists() else "does not exist"
+        raise InputError.at(path, "", "is a folder" if path.is_dir() else there, remedy)
 
 
 def write_new(path: Path, text: str, remedy: str) -> None:
@@ -98,7 +126,9 @@ def locked(folder: Path) -> Iterator[None]:
         return
     import fcntl
 
-    with (folder / ".lock").open("w") as file:
+    path = folder / ".lock"
+    refuse_irregular(path)
+    with path.open("a") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as fault:

@@ -75,7 +75,7 @@ def _listed(folder: Path) -> Mapping[str, str]:
     """Names and digests of an earlier run's files, those inside the folder alone; none where the list is not ours."""
     path = folder / MANIFEST
     try:
-        if path.stat().st_size > LARGEST:
+        if not path.is_file() or path.stat().st_size > LARGEST:
             return {}
         held = json.loads(path.read_text(encoding="utf-8"))["sha256"]
         return {name: digest for name, digest in held.items() if _inside(folder, name)}

@@ -11,7 +11,7 @@ from base import InputError, SolverError
 from flankfilm.beforehand import refuse
 from flankfilm.cache import results_cache
 from flankfilm.folder import claim, locked
-from flankfilm.manifest import conclude
+from flankfilm.manifest import MANIFEST, conclude
 from flankfilm.output.run import not_computed, results_dataset, write_data
 from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.results import Results
@@ -56,7 +56,7 @@ def run_scene(
     start = time.perf_counter()
     if folder is None:
         return _computed(scene, use_cache, progress)[0]
-    claim(folder)
+    claim(folder, files=("results.nc", "report.html", MANIFEST), folders=("csv", "vtk"))
     with locked(folder):
         found, engine = _computed(scene, use_cache, progress)
         progress("netCDF and CSV files", 1, 1)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from base import InputError
 from flankfilm.cache import PACKAGES, code_digest
-from flankfilm.folder import claim, locked
+from flankfilm.folder import claim, locked, refuse_irregular
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.table import ROWS, Columns, Line, append, forget, read_lines
@@ -82,6 +82,8 @@ def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
         other code, or of this work without `resume`.
     """
     claim(folder)
+    for path in (folder / ROWS, _note(folder, work)):
+        refuse_irregular(path)
     with locked(folder):
         digest = code_digest(PACKAGES)
         lines = _rows_there(folder, work, resume, digest)

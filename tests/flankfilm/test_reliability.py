@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,10 +18,13 @@ import xarray as xr
 
 from base import InputError
 from flankfilm.folder import locked
+from flankfilm.manifest import conclude
 from flankfilm.report.contents import summary
 from flankfilm.reproduce import scene_in
 from flankfilm.running import run_scene
-from flankfilm.scene import parse_scene
+from flankfilm.scene import parse_scene, read_scene
+from flankfilm.studies.kept import Work, kept_rows
+from flankfilm.studies.table import Columns
 from tests.flankfilm.scenes import ishikawa
 
 ROOT = Path(__file__).parents[2]
@@ -156,6 +160,66 @@ def test_two_runs_at_once_with_one_cache_end_well(tmp_path, small_run):
     for out in outs:
         same(tmp_path / out / "results.nc", small_run / "results.nc")
         assert [p.name for p in (tmp_path / out).rglob(".*")] == [".lock"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+class TestAFolderThatSomebodyPrepared:
+    """Links, pipes and folders stand where a run or study puts files: said at once, and nothing else is touched."""
+
+    @pytest.fixture
+    def begun(self, tmp_path):
+        (tmp_path / "victim").write_text("precious")
+        (tmp_path / "out").mkdir()
+        yield tmp_path / "out"
+        assert (tmp_path / "victim").read_text() == "precious"
+        assert not (tmp_path / "new").exists()
+
+    def put(self, path: Path, how: str) -> None:
+        match how:
+            case "pipe":
+                os.mkfifo(path)
+            case "folder":
+                path.mkdir()
+            case "file":
+                path.write_text("mine")
+            case target:
+                path.symlink_to(path.parent.parent / target)
+
+    @pytest.mark.timeout(30)
+    @pytest.mark.parametrize(
+        ("name", "how"),
+        [(".lock", "pipe"), (".lock", "victim"), (".lock", "new"), (".lock", "folder"), ("csv", "file"),
+         ("csv", "new"), ("results.nc", "folder"), ("report.html", "folder"), ("files.json", "folder")],
+    )  # fmt: skip
+    def test_a_run_refuses_it_before_it_computes(self, begun, name, how, monkeypatch):
+        monkeypatch.setattr("flankfilm.running._computed", lambda *_: pytest.fail("computed"))
+        self.put(begun / name, how)
+        with pytest.raises(InputError, match=re.escape(name)) as refused:
+            run_scene(parse_scene(SMALL), begun)
+        assert "Move it away" in str(refused.value)
+
+    @pytest.mark.timeout(30)
+    @pytest.mark.parametrize(
+        ("name", "how"), [("rows.csv", "new"), ("rows.csv", "pipe"), ("study.json", "pipe")]
+    )
+    def test_a_study_refuses_it(self, begun, name, how):
+        self.put(begun / name, how)
+        work = Work("study", "", {}, Columns(("a",), ("contact_ratio",)))
+        with pytest.raises(InputError, match=re.escape(name)), kept_rows(begun, work, True):
+            pass
+
+    @pytest.mark.timeout(30)
+    def test_a_list_of_files_that_is_a_pipe_is_none(self, begun):
+        os.mkfifo(begun / "files.json")
+        (begun / "results.nc").write_text("of this run")
+        assert conclude(begun, [begun / "results.nc"]) == ()
+        assert json.loads((begun / "files.json").read_text())["sha256"].keys() == {"results.nc"}
+
+    @pytest.mark.timeout(30)
+    def test_a_pipe_is_no_scene(self, begun):
+        os.mkfifo(begun / "scene.toml")
+        with pytest.raises(InputError, match="a pipe or a device, not a file"):
+            read_scene(begun / "scene.toml")
 
 
 def test_two_runs_do_not_share_a_folder(tmp_path):
