@@ -18,6 +18,7 @@ from fem.contact_forces import ContactForces, contact_forces
 from fem.cycle import MeshCycle
 from fem.drawing import GearDrawing
 from fem.fields import GearField, draw_gears, loaded_fields
+from fem.paraview_state import fillet_stress, write_paraview_state
 
 if TYPE_CHECKING:
     import pyvista
@@ -72,14 +73,8 @@ def field_blocks(
     """
     import pyvista
 
-    pinion, wheel = loaded_fields(pair, cycle, row, compliance, drawings)
-    return pyvista.MultiBlock(
-        {
-            "pinion": _gear_grid(pinion, 0),
-            "wheel": _gear_grid(wheel, 1),
-            "contacts": _contact_grid(contact_forces(pair, cycle, row)),
-        }
-    )
+    both = loaded_fields(pair, cycle, row, compliance, drawings)
+    return pyvista.MultiBlock(_blocks(*both, contact_forces(pair, cycle, row)))
 
 
 def write_vtk_series(
@@ -90,12 +85,13 @@ def write_vtk_series(
     positions: Sequence[int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Write the blocks of `field_blocks` over a cycle as ``vtk/*.vtu`` and ``mesh_cycle.pvd``.
+    """Write the blocks of `field_blocks` over a cycle as ``vtk/*.vtu`` and ``mesh_cycle.pvd``, and a state of ParaView.
 
     Parameters
     ----------
     folder : Path
-        Gets the ``.pvd`` and a folder ``vtk``.
+        Gets the ``.pvd``, a folder ``vtk``, and ``paraview_state.py``, which opens the series in ParaView with the mesh
+        in view and colours up to the stress of the fillets.
     pair : gears.GearPair
     cycle : MeshCycle
     bodies : Compliance
@@ -114,16 +110,29 @@ def write_vtk_series(
     rows = range(len(cycle.position)) if positions is None else positions
     drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
     steps: list[tuple[float, dict[str, Path]]] = []
+    stresses: list[float] = []
     for done, row in enumerate(rows):
-        blocks = field_blocks(pair, cycle, row, bodies, drawings)
+        both = loaded_fields(pair, cycle, row, bodies, drawings)
+        stresses += [fillet_stress(field) for field in both]
         files = {}
-        for name, grid in zip(blocks.keys(), blocks, strict=True):
+        for name, grid in _blocks(*both, contact_forces(pair, cycle, row)).items():
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
             write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
+    write_paraview_state(folder, pair, cycle, rows, stresses)
     return _write_series(folder / "mesh_cycle.pvd", steps)
+
+
+def _blocks(
+    pinion: GearField, wheel: GearField, contacts: ContactForces
+) -> dict[str, pyvista.UnstructuredGrid]:
+    return {
+        "pinion": _gear_grid(pinion, 0),
+        "wheel": _gear_grid(wheel, 1),
+        "contacts": _contact_grid(contacts),
+    }
 
 
 def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:

@@ -120,7 +120,9 @@ def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = T
 
 
 def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> list[Path]:
-    """Write the loaded mesh cycle of a scene for ParaView; return the ``.pvd`` that names all its files.
+    """Write the loaded mesh cycle of a scene for ParaView.
+
+    Returns the ``.pvd`` that names all its files, and the state of ParaView that opens it.
 
     Arguments are as of `run`.
 
@@ -128,7 +130,7 @@ def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> lis
     --------
     >>> from flankfilm import read_scene
     >>> write_vtk(read_scene("article.toml"), "out/fields")  # doctest: +SKIP
-    [PosixPath('out/fields/mesh_cycle.pvd')]
+    [PosixPath('out/fields/mesh_cycle.pvd'), PosixPath('out/fields/paraview_state.py')]
     """
     from flankfilm.stages.engine import Engine
     from flankfilm.stages.vtk import write_fields

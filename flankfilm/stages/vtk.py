@@ -15,19 +15,19 @@ STEPS = 20
 
 
 def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
-    """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files."""
+    """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files, and the state that opens it."""
+    from fem.paraview_state import STATE
     from fem.vtk import write_vtk_series
 
     cycle = loaded_contact(run)
     n = len(cycle.position)
     rows = sorted({int(i) for i in np.linspace(0, n - 1, min(n, STEPS)).round()})
-    return [
-        write_vtk_series(
-            folder,
-            run[PAIR],
-            cycle,
-            run[COMPLIANCE],
-            rows,
-            lambda done, total: progress("fields for ParaView", done, total),
-        )
-    ]
+    series = write_vtk_series(
+        folder,
+        run[PAIR],
+        cycle,
+        run[COMPLIANCE],
+        rows,
+        lambda done, total: progress("fields for ParaView", done, total),
+    )
+    return [series, series.with_name(STATE)]
