@@ -32,13 +32,17 @@ class Grid:
     centre: Array  # (n,): the same at X = 0
     weights: Array  # (n,): integral of phi_j
     quick: Array  # (n-1, 3): third-order weights of each face
+    upstream: Array  # (n-1,): share of each cell's wedge term that comes from upstream
     tail: Array  # (n,): integral of |t|^-3 ln|X_i - t| ahead of the first node; zeros for a bounded inlet
     tail_centre: float  # the same at X = 0
     open: bool  # oil fills the inlet beyond the first node
 
 
-def make_grid(half_widths: Array, ratio: float, *, open_inlet: bool) -> Grid:
-    """Return the grid of the given nodes [half-widths], scaled by a/b, with its influence matrix."""
+def make_grid(half_widths: Array, ratio: float, upstream: Array, *, open_inlet: bool) -> Grid:
+    """Return the grid of the given nodes [half-widths], scaled by a/b, with its influence matrix.
+
+    ``upstream`` is the share of each cell's wedge term that comes from upstream.
+    """
     from ehl.kernels import log_potential
 
     nodes = half_widths / ratio
@@ -52,6 +56,7 @@ def make_grid(half_widths: Array, ratio: float, *, open_inlet: bool) -> Grid:
         centre=potential[-1],
         weights=hat_weights(nodes),
         quick=face_weights(nodes),
+        upstream=upstream,
         tail=tail[:-1],
         tail_centre=float(tail[-1]),
         open=open_inlet,
@@ -144,6 +149,7 @@ def fluxes(grid: Grid, groups: Groups, P: Array, H: Array, faces: Array) -> tupl
         density,
         density_slope * groups.pressure,
         groups.lam,
+        grid.upstream,
     )
     return found
 

@@ -47,6 +47,9 @@ class FilmErrors:
     slope_shift: float = unsolved(
         "1", "error of the separation's derivative by the load, likewise, of the grid"
     )
+    pressure: float = unsolved(
+        "1", "mean change of the pressure between two grids and teeth before the spike, over the pressure"
+    )
 
 
 @record

@@ -72,6 +72,7 @@ def reynolds(
     density: Array,
     density_slope: Array,
     lam: float,
+    upstream: Array,
 ) -> tuple[Array, Array]:
     """Flux through each cell and its derivatives by the pressures and gaps of three nodes.
 
@@ -80,6 +81,22 @@ def reynolds(
     ln eta is linear in P), the right side by Simpson's rule, whose middle value of rho H comes from the
     nodes f-1, f, f+1 with the weights faces[f] on its logarithm. So -q = F_f = mean(1/eta) dP/(lambda int w)
     - int rho H w / int w.
+
+    The share upstream[f] of the second is rho H carried on from the nodes f-1, f to the middle of the cell instead,
+    see :func:`ehl.grid.upstream_share`.
+
+    Parameters
+    ----------
+    nodes, pressure, gap : ndarray (n,)
+        X, P, H.
+    faces : ndarray (n-1, 3)
+        From :func:`ehl.grid.face_weights`.
+    ln_viscosity, ln_viscosity_slope, density, density_slope : ndarray (n,)
+        ln(eta/eta0), rho/rho0 and their derivatives by P.
+    lam : float
+        lambda.
+    upstream : ndarray (n-1,)
+        Share of the wedge term that comes from upstream.
 
     Returns
     -------
@@ -116,9 +133,17 @@ def reynolds(
         mean = (1.0 / gap[f] ** 2 + v_mid + 1.0 / gap[f + 1] ** 2) / w
         mobility = 6.0 * fluidity / (lam * h * w)
         drive = mobility * (pressure[f + 1] - pressure[f])
-        flux[f] = drive - mean
-        # d flux = drive d ln(fluidity) + mobility d(dP) - (drive dw + dv - mean dw)/w, v = rho H w
-        both = (mean - drive) / w
+        back = 0.5 * h / (nodes[f] - nodes[f - 1]) if f > 0 else 0.0
+        ahead = max(f - 1, 0)
+        extrapolation = (-back, 1.0 + back, 0.0)
+        ln_carried = (1.0 + back) * math.log(density[f] * gap[f]) - back * math.log(
+            density[ahead] * gap[ahead]
+        )
+        carried = upstream[f] * math.exp(ln_carried)
+        kept = 1.0 - upstream[f]
+        flux[f] = drive - kept * mean - carried
+        # d flux = drive d ln(fluidity) + mobility d(dP) - (drive dw + kept (dv - mean dw))/w - d(carried), v = rho H w
+        both = (kept * mean - drive) / w
         slopes[f, 1] = -mobility - drive * (0.5 - tilt) * ln_viscosity_slope[f]
         slopes[f, 2] = mobility - drive * (0.5 + tilt) * ln_viscosity_slope[f + 1]
         for k in range(1, 3):
@@ -126,14 +151,15 @@ def reynolds(
             w_end = w_left if k == 1 else w_right
             by_density = density_slope[i] / density[i]
             slopes[f, k] -= both * w_end * by_density
-            slopes[f, k] += 2.0 * density_slope[i] / density_sum * (both * w_mid - v_mid / w)
-            slopes[f, 3 + k] += (-3.0 * both * w_end + 2.0 / (gap[i] ** 2 * w)) / gap[i]
-        by_ln_middle = -3.0 * both * w_mid + 2.0 * v_mid / w
+            slopes[f, k] += 2.0 * density_slope[i] / density_sum * (both * w_mid - kept * v_mid / w)
+            slopes[f, 3 + k] += (-3.0 * both * w_end + 2.0 * kept / (gap[i] ** 2 * w)) / gap[i]
+        by_ln_middle = -3.0 * both * w_mid + 2.0 * kept * v_mid / w
         for k in range(3):
             i = f - 1 + k
             if i >= 0:
-                slopes[f, k] += by_ln_middle * faces[f, k] * density_slope[i] / density[i]
-                slopes[f, 3 + k] += by_ln_middle * faces[f, k] / gap[i]
+                by_ln = by_ln_middle * faces[f, k] - carried * extrapolation[k]
+                slopes[f, k] += by_ln * density_slope[i] / density[i]
+                slopes[f, 3 + k] += by_ln / gap[i]
     return flux, slopes
 
 

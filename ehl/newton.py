@@ -56,7 +56,8 @@ def _flux_error(flux: Array, free: Integers) -> tuple[float, float]:
     """Mean flux through the faces of the film and its largest relative deviation."""
     inside = flux[free[0] - 1 : free[-1] + 1]
     mean = float(np.mean(inside[inside.size // 2 :]))
-    return mean, float(np.max(np.abs(np.diff(flux)[free - 1])) / abs(mean))
+    with np.errstate(invalid="ignore"):  # steps that diverged leave infinite fluxes
+        return mean, float(np.max(np.abs(np.diff(flux)[free - 1])) / abs(mean))
 
 
 def newton(
@@ -106,6 +107,9 @@ def newton(
     iterations = 0
     while iterations < max_iterations and not converged:
         iterations += 1
+        if not H.min() > 0.0:
+            message, factors = "the film falls below rounding", None
+            break
         flux, slopes = fluxes(grid, groups, P, H, faces)
         imbalance = np.diff(flux)
         joins = ~inside[1:-1] & (imbalance > 0.0)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from base import RangeWarning
+from base import Array, RangeWarning
 from ehl.film import Film, FilmErrors, Spike
 from ehl.levels import Level, State, figures, spike_of
 from ehl.plan import Plan
@@ -34,6 +34,25 @@ def film_error(coarse: Level, fine: Level) -> float:
     names = ("central_thickness", "minimum_thickness", "separation")
     changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
     return _GRID_FACTOR * (profile + math.fsum(changes))
+
+
+def pressure_error(coarse: Level, fine: Level) -> float:
+    """Mean change of the pressure between two grids over its mean, and the teeth before the spike on the finer."""
+    at, weights = coarse.grid.nodes, coarse.grid.weights
+    change = np.abs(coarse.found.P - np.interp(at, fine.grid.nodes, fine.found.P))
+    return float(weights @ change / (weights @ coarse.found.P)) + teeth(fine.found.P) / float(
+        fine.found.P.max()
+    )
+
+
+def teeth(P: Array) -> float:
+    """All that a pressure rises between its first maximum and its climb to the last one: 0 if both are clean."""
+    tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
+    if tops.size < 2:
+        return 0.0
+    falls = np.flatnonzero(np.diff(P[: tops[-1] + 1]) <= 0.0)
+    climb = int(falls[-1]) + 1
+    return float(np.maximum(np.diff(P[tops[0] : climb + 1]), 0.0).sum())
 
 
 def spike_error(coarse: Level, fine: Level) -> float:
@@ -63,6 +82,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         inlet=inlet,
         separation_shift=math.copysign(off, change),
         slope_shift=_GRID_FACTOR * steeper,
+        pressure=pressure_error(coarse, fine),
     )
     groups = fine.groups
     message = "converged"

@@ -10,7 +10,7 @@ import numpy as np
 from base import Array
 from ehl.contact import LineContact
 from ehl.discrete import Grid, make_grid
-from ehl.grid import clusters, default_domain, graded_nodes
+from ehl.grid import clusters, default_domain, graded_nodes, upstream_share
 from ehl.regressions import moes_central
 from ehl.supply import Meniscus, OilLayer, Supply, inlet_of_layer, starved_film
 
@@ -73,7 +73,12 @@ class Plan:
 
     def grid(self, n: int) -> Grid:
         """Return the grid of n nodes."""
-        return make_grid(self.nodes(n), math.sqrt(max(1.0, self.H_c)), open_inlet=not self.fixed)
+        return self.over(self.nodes(n), math.sqrt(max(1.0, self.H_c)))
+
+    def over(self, nodes: Array, ratio: float) -> Grid:
+        """Return the grid over given nodes [half-widths], scaled by a/b."""
+        share = upstream_share(nodes, self.H_c)
+        return make_grid(nodes, ratio, share, open_inlet=not self.fixed)
 
     def with_inlet(self, inlet: float) -> Plan:
         """Return the plan with another inlet [half-widths]."""

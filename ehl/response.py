@@ -14,7 +14,7 @@ import numpy as np
 
 from base import Array
 from ehl.contact import LineContact
-from ehl.discrete import Grid, Groups, Residual, make_grid
+from ehl.discrete import Grid, Groups, Residual
 from ehl.levels import Level, dry_approach
 from ehl.plan import Plan, expected_film
 from ehl.supply import OilLayer, Supply
@@ -84,7 +84,7 @@ def _respond(level: Level, before: Residual, contact: LineContact, plan: Plan, *
     """Differentiate towards another contact on the nodes of another plan."""
     grid, ratio = level.grid, level.grid.ratio
     nodes = plan.nodes(grid.nodes.size, grid.nodes * ratio)
-    moved = make_grid(nodes, ratio, open_inlet=grid.open)
+    moved = plan.over(nodes, ratio)
     return _differentiate(level, before, contact, moved, flow=flow)
 
 

@@ -16,6 +16,11 @@ from ehl.supply import OilLayer, Supply
 DRY = 1e-5
 """h R/b^2 below which a contact that is not solved is as good as dry."""
 
+MOST_STEPS = 1200
+"""Newton steps of one call, on 257 nodes each, after which no new start is tried."""
+
+_STEP_NODES = 257
+
 _STARTS = (2.0, 8.0)  # films to start from, over the expected one
 _LAYER_TRIES = 40
 _MOST_COLD_NODES = 1025
@@ -45,10 +50,17 @@ class Run:
 
         self.watch = Stopwatch()
         self.iterations = self.most_nodes = self.restarts = 0
+        self.work = 0.0
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the call has had its Newton steps."""
+        return self.work >= MOST_STEPS
 
     def count(self, level: Level) -> Level:
         """Add a level to the cost."""
         self.iterations += level.found.iterations
+        self.work += level.found.iterations * level.grid.nodes.size / _STEP_NODES
         self.most_nodes = max(self.most_nodes, level.grid.nodes.size)
         return level
 
@@ -63,6 +75,8 @@ class Run:
             if level.found.converged:
                 return level
             self.restarts += 1
+            if self.exhausted:
+                return self.out_of_steps(level)
         return self.descend(level)
 
     def pair(self, half: int, n: int) -> tuple[Level, Level]:
@@ -81,7 +95,7 @@ class Run:
             easier = replace(self.contact, load=load)
             level = self.count(cold(easier, plan, grid, _STARTS[-1] * plan.H_c / factor))
             step = 1.5
-            while level.found.converged and load < self.contact.load and step > 1.01:
+            while level.found.converged and load < self.contact.load and step > 1.01 and not self.exhausted:
                 target = min(self.contact.load, step * load)
                 trial = self.count(warm(level, replace(self.contact, load=target), plan, grid))
                 if trial.found.converged:
@@ -91,7 +105,14 @@ class Run:
             if level.found.converged and load == self.contact.load:
                 return replace(level, contact=self.contact)
             self.restarts += 1
+            if self.exhausted:
+                return self.out_of_steps(failed)
         return failed
+
+    def out_of_steps(self, level: Level) -> Level:
+        """Return a level that says why nothing more was tried."""
+        message = f"no solution within {self.iterations} Newton steps"
+        return replace(level, found=replace(level.found, converged=False, message=message))
 
     def warm(self, old: Level, grid_of: Level | None, n: int) -> Level:
         """Solve from another level, on its grid if one is given; from cold where that fails."""
@@ -108,7 +129,7 @@ class Run:
         ):  # grids laid for a neighbour need not suit this contact
             self.plan = self.own
             return self.warm(old, None, n)
-        return self.cold(n) if n <= self.most_cold else level
+        return self.cold(n) if n <= self.most_cold and not self.exhausted else level
 
     def fed(self, level: Level) -> Level:
         """Move the meniscus until the film carries away what the layer brings; the plan is left at the one found."""
@@ -119,7 +140,7 @@ class Run:
         for _ in range(_LAYER_TRIES):
             if search.done:
                 return level
-            if search.stuck:
+            if search.stuck or self.exhausted:
                 break
             plan = level.plan.with_inlet(-1.0 - search.distance)
             trial = self.count(warm(level, self.contact, plan, plan.grid(level.grid.nodes.size)))

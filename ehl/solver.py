@@ -184,6 +184,7 @@ def _solve(run: Run, options: Options, old: State | None) -> Film:
         options.nodes is None
         and n < _MOST_FIRST_NODES
         and not (coarse.found.converged and fine.found.converged)
+        and not run.exhausted
     ):
         half, n = n, 2 * n - 1
         coarse, fine = run.pair(half, n)
@@ -212,7 +213,7 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
     while True:
         n = 2 * fine.grid.nodes.size - 1
         if not (coarse.found.converged and fine.found.converged):
-            if coarse.found.converged and not given and n <= run.most_cold:
+            if coarse.found.converged and not given and n <= run.most_cold and not run.exhausted:
                 fine = run.warm(coarse, None, n)
                 continue
             failed = fine if coarse.found.converged else coarse

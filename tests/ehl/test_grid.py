@@ -42,9 +42,9 @@ def test_hat_weights_integrate_lines():
 def test_oil_ahead_of_the_grid_acts_as_its_integral():
     from scipy.integrate import quad
 
-    grid = make_grid(graded_nodes(0.1, 33, (-5.0, 2.0)), 1.0, open_inlet=True)
+    grid = make_grid(graded_nodes(0.1, 33, (-5.0, 2.0)), 1.0, np.zeros(32), open_inlet=True)
     for i in (8, 20, 32):
         X = grid.nodes[i]
         exact, _ = quad(lambda t, X=X: np.log(X + t) / t**3, 5.0, np.inf)
         assert grid.tail[i] == pytest.approx(exact, rel=1e-3)  # the tail itself is known to 1e-2
-    assert not make_grid(grid.nodes, 1.0, open_inlet=False).tail.any()
+    assert not make_grid(grid.nodes, 1.0, np.zeros(32), open_inlet=False).tail.any()

@@ -6,7 +6,7 @@ import pytest
 
 from ehl import LineContact
 from ehl.discrete import Groups, Residual, film_gap, fluxes, inlet_pressure, make_grid
-from ehl.grid import face_weights, graded_nodes
+from ehl.grid import face_weights, graded_nodes, upstream_share
 from ehl.kernels import log_potential, newton_matrix
 
 _spec = importlib.util.spec_from_file_location("ehl_twins", Path(__file__).with_name("twins.py"))
@@ -18,7 +18,8 @@ DOMAIN = (-6.0, 1.8)
 
 def problem(open_inlet=True):
     contact = LineContact.from_moes(10.0, 8.0)
-    grid = make_grid(graded_nodes(0.2, 40, DOMAIN), 1.0, open_inlet=open_inlet)
+    nodes = graded_nodes(0.2, 40, DOMAIN)
+    grid = make_grid(nodes, 1.0, upstream_share(nodes, 0.2), open_inlet=open_inlet)
     groups = Groups.on(contact, grid)
     P = np.sqrt(np.maximum(0.0, 1 - grid.nodes**2)) + 0.01 * np.exp(-(grid.nodes**2))
     P[-8:] = 0.0
@@ -63,14 +64,16 @@ def test_flux_and_its_derivatives_agree_with_the_twin_by_complex_steps(upwind):
         return 1 + 0.6e-9 * p / (1 + 1.7e-9 * p)
 
     flux, slopes = fluxes(grid, groups, P, H, faces)
-    np.testing.assert_allclose(flux, twins.flux(grid.nodes, P, H, faces, ln_eta, rho, groups.lam), rtol=1e-12)
+    np.testing.assert_allclose(
+        flux, twins.flux(grid.nodes, P, H, faces, ln_eta, rho, groups.lam, grid.upstream), rtol=1e-12
+    )
     step = 1e-30
     for j in range(P.size):
         for by, (dP, dH) in enumerate([(1j * step, 0), (0, 1j * step)]):
             Pj, Hj = P.astype(complex), H.astype(complex)
             Pj[j] += dP
             Hj[j] += dH
-            exact = twins.flux(grid.nodes, Pj, Hj, faces, ln_eta, rho, groups.lam).imag / step
+            exact = twins.flux(grid.nodes, Pj, Hj, faces, ln_eta, rho, groups.lam, grid.upstream).imag / step
             got = np.zeros(P.size - 1)
             for k in range(3):
                 f = j + 1 - k

@@ -24,8 +24,9 @@ def test_a_far_meniscus_and_a_thick_layer_leave_the_contact_flooded():
     assert thick.central_thickness == FLOODED.central_thickness
     assert thick.stiffness() == FLOODED.stiffness()
     # no step where the layer begins to starve the contact
-    nearly = sound(quiet(PITCH, supply=OilLayer(0.996 * FLOODED.flow)))
-    assert nearly.central_thickness == pytest.approx(0.996 * FLOODED.central_thickness, rel=2e-3)
+    share = 1.0 - 1.1 * FLOODED.error
+    nearly = sound(quiet(PITCH, supply=OilLayer(share * FLOODED.flow)))
+    assert nearly.central_thickness == pytest.approx(share * FLOODED.central_thickness, rel=2e-3)
 
 
 @pytest.mark.parametrize("share", [0.99, 0.8, 0.5, 0.14, 0.02])

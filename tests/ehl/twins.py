@@ -24,7 +24,7 @@ def log_potential(nodes, points):
     return out
 
 
-def flux(nodes, P, H, faces, ln_eta, rho, lam):
+def flux(nodes, P, H, faces, ln_eta, rho, lam, upstream):
     """Flux through each cell; ``ln_eta`` and ``rho`` are functions of P."""
     n = len(nodes)
     ln_eta, rho = ln_eta(P), rho(P)
@@ -45,5 +45,10 @@ def flux(nodes, P, H, faces, ln_eta, rho, lam):
         rho_h = [rho[f] * H[f], middle, rho[f + 1] * H[f + 1]]
         simpson = np.array([1, 4, 1]) / 6
         integral = sum(simpson * w)
-        out.append(fluidity * (P[f + 1] - P[f]) / (h * lam * integral) - sum(simpson * w * rho_h) / integral)
+        mean = sum(simpson * w * rho_h) / integral
+        before = max(f - 1, 0)
+        grown = rho_h[0] / (rho[before] * H[before])
+        carried = rho_h[0] * grown ** (0.5 * h / (nodes[f] - nodes[before]) if f else 0.0)
+        wedge = (1 - upstream[f]) * mean + upstream[f] * carried
+        out.append(fluidity * (P[f + 1] - P[f]) / (h * lam * integral) - wedge)
     return np.array(out)
