@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import random
 import re
@@ -87,7 +88,11 @@ def _number(chance: random.Random, text: str, _: str) -> str:
     new = chance.choice(
         (-value, 0.0, value * 10 ** chance.uniform(-12, 12), value + 1, value - 1, value * 1.01)
     )
-    return text[: one.start()] + (repr(new) if chance.random() < 0.7 else str(int(new))) + text[one.end() :]
+    return (
+        text[: one.start()]
+        + (repr(new) if chance.random() < 0.7 or not math.isfinite(new) else str(int(new)))
+        + text[one.end() :]
+    )
 
 
 def _line(chance: random.Random, text: str, pool: str) -> str:

@@ -268,7 +268,9 @@ class Results(Kind):
                         ]
                     )
                 elif isinstance(file[name], h5py.Dataset) and file[name].dtype.kind == "f":
-                    file[name][...] = chance.choice([0.0, float("nan"), float("inf"), -1.0, 1e308, 5e-324])
+                    value = chance.choice([0.0, float("nan"), float("inf"), -1.0, 1e308, 5e-324])
+                    with np.errstate(over="ignore"):  # in single precision the largest is infinite
+                        file[name][...] = np.asarray(value).astype(file[name].dtype)
         return path.read_bytes()
 
     def read(self, content: bytes, suppressed: tuple[type[Exception], ...] = (FlankfilmError,)) -> None:
