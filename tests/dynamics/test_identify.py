@@ -49,6 +49,13 @@ def problem_of(here, events, unknowns=None, bounds=BOUNDS):
     return Problem(here, "frequency", tuple(events), RANGES if unknowns is None else unknowns, bounds)
 
 
+def test_unknowns_are_parameters_of_the_oscillator(points):
+    with pytest.raises(InputError, match="stiffness_of_the_shaft"):
+        checked(
+            TRUE, "frequency", printed(points), {**RANGES, "stiffness_of_the_shaft": OneOf((1.0,))}, BOUNDS
+        )
+
+
 def test_as_many_trials_as_allowed_are_taken_and_one_more_is_not(points):
     values = OneOf(tuple(np.linspace(0.01, 0.08, MAX_TRIALS).tolist()))
     events = printed(points)

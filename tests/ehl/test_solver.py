@@ -166,6 +166,12 @@ def test_path_through_load_jumps():
     assert sum(f.cost.iterations for f in films) < 0.7 * sum(f.cost.iterations for f in alone)
 
 
+def test_an_ordinary_film_is_reported_without_remarks():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert solve(LineContact.from_moes(5.0, 5.0)).message == "converged"
+
+
 def test_the_film_that_reaches_the_outlet_is_reported():
     with pytest.warns(RangeWarning, match="reaches the outlet"):
         film = solve(LineContact.from_moes(5.0, 5.0), domain=(-4.0, 1.0))

@@ -10,11 +10,13 @@ import pytest
 
 from flankfilm.cache import Cache
 from flankfilm.coupling.film_law import FilmLaw
+from flankfilm.running import run_scene
 from flankfilm.scene import Scene, parse_scene, template
 from flankfilm.stages import catalogue, motion
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine, KeptPart, Stage, StageRun
 from flankfilm.stages.goals import goals
+from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
 
 
 def scene(changes: dict[str, str] | None = None):
@@ -214,3 +216,10 @@ def test_an_entry_of_another_type_is_computed_again(tmp_path, odd):
     assert part("part", {}, lambda: record) == record
     assert part("part", {}, lambda: None) == record  # which is kept now
     assert part.found == [False, True]
+
+
+def test_the_cost_of_a_run_is_told_by_its_stages():
+    found = run_scene(parse_scene(CLOSED_FORMS_WITH_FILM), None, use_cache=False)
+    assert found.cost.parts.keys() == found.runs.keys() > {"pair", "dry cycle", "film"}
+    # what is between the stages is no stage's
+    assert 0.0 < sum(found.cost.parts.values()) <= found.cost.seconds

@@ -282,3 +282,13 @@ def test_bounds_are_those_of_the_ground():
     )
     found = faults(changed("poisson_ratio = 0.3", "poisson_ratio = 0.5"))["material.poisson_ratio"]
     assert "at least 0 and at most 0.4999" in found
+
+
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+def test_a_phase_is_one_turn_at_most(turn: float):
+    text = template()
+    assert "error_phase_deg = 0" in text
+    whole = parse_scene(text.replace("error_phase_deg = 0", f"error_phase_deg = {360.0 * turn}"))
+    assert whole.dynamics is not None
+    found = faults(text.replace("error_phase_deg = 0", f"error_phase_deg = {360.5 * turn}"))
+    assert "at least -360 and at most 360 deg" in found["dynamics.error_phase_deg"]
