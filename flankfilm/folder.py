@@ -104,10 +104,15 @@ def refuse_missing(path: Path, remedy: str) -> None:
 
 
 def write_new(path: Path, text: str, remedy: str) -> None:
-    """Write a file that must not exist yet."""
+    """Write a file that must not exist yet; whole, or not at all."""
     try:
         with path.open("x", encoding="utf-8") as file:
-            file.write(text)
+            try:
+                file.write(text)
+                file.flush()
+            except OSError as fault:
+                path.unlink()
+                raise OSError(fault.errno, fault.strerror, str(path)) from fault
     except FileExistsError as fault:
         raise InputError.at(path, "", "exists already and is kept", remedy) from fault
 

@@ -129,3 +129,10 @@ def test_grids_for_paraview_say_that_they_did_not_fit(tmp_path):
     assert done.stdout.split() == [str(errno.ENOSPC), str(path)]
     assert done.stderr == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_new_scene_is_there_as_a_whole_or_not_at_all(tmp_path):
+    done = limited(1000, "new", tmp_path / "scene.toml")
+    assert done.returncode == 2
+    assert f"{tmp_path / 'scene.toml'}: " in done.stderr
+    assert not list(tmp_path.iterdir())
