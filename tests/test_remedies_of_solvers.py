@@ -13,10 +13,13 @@ import pytest
 import fem
 from base import InputError, SolverError
 from dynamics import FourierStiffness, GearOscillator, basins, continue_branch, find_orbit
-from ehl import LineContact, solve
+from ehl import LineContact, Lubricant, solve
+from flankfilm.coupling import lubricated_cycle
 from flankfilm.coupling.resolution import resolution_of
 from gears import Gear, GearDeviations, GearPair, Material, PitchDeviations
 
+THIN = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+THICK = Lubricant(viscosity=90.0, pressure_viscosity=19.6e-9, density=910.0)
 LONG = LineContact.from_moes(200.0, 10.0)
 BRITTLE = LineContact.from_moes(20.0, 10.0, compressible=False)
 
@@ -175,3 +178,19 @@ def test_a_tolerance_that_no_resolution_meets():
     with pytest.raises(SolverError, match="no resolution meets a tolerance of 1e-07; raise it"):
         resolution_of(1e-7)
     assert resolution_of(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "torque", "oil", "follow"),
+    [
+        ({"model": "ishikawa", "pairs": "independent"}, 1.0, THIN, (600.0, THIN)),
+        ({"model": "ishikawa", "pairs": "independent"}, 600.0, THICK, (600.0, THIN)),
+        ({}, 0.001, THIN, (600.0, THIN)),
+    ],
+    ids=["a light load", "a thick oil", "a light load on coupled teeth"],
+)
+def test_films_softer_than_the_teeth(teeth, torque, oil, follow):
+    pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04).with_backlash(50e-6)
+    with pytest.raises(SolverError, match="raise the torque, or lower speed and viscosity"):
+        lubricated_cycle(pair, torque, 209.44, oil, tolerance=0.02, **teeth)
+    assert lubricated_cycle(pair, follow[0], 209.44, follow[1], tolerance=0.02, **teeth).converged

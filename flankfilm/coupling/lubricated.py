@@ -35,6 +35,12 @@ FILM_POSITIONS = 40
 
 MOST_ROUNDS = 12
 
+SOFTER = (
+    "films softer than the teeth draw the load to the pair that has most of it; raise the torque, or lower speed and "
+    "viscosity"
+)
+"""Why films and load share do not agree, and what to do."""
+
 BETWEEN = 1.0
 """Part of what leaving out every second film changes that the films left out between those solved would.
 
@@ -279,7 +285,7 @@ class _Run:
             if rounds == MOST_ROUNDS:
                 raise SolverError(
                     f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by "
-                    f"{mismatch:.1e} of the whole); raise the tolerance, or take the film by Dowson's formula"
+                    f"{mismatch:.1e} of the whole): {SOFTER}"
                 )
             rounds += 1
             watch = Stopwatch()
@@ -287,7 +293,10 @@ class _Run:
             path = films_of(self.model, *contacts, path, self.resolution.films)
             law = self.law(path)
             seconds += watch.seconds
-            before, cycle = cycle, self.teeth.cycle(positions, law)
+            try:
+                before, cycle = cycle, self.teeth.cycle(positions, law)
+            except gears.LoadSharingError as fault:
+                raise SolverError(f"no load share with these films was found: {SOFTER}") from fault
             mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
         assert path is not None
         return _Agreement(path, law, positions, rounds, mismatch, seconds)
