@@ -9,6 +9,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from flankfilm.coupling.tolerance import CostLaw, split, step_below
+from flankfilm.report.run_parts import decisions
+from flankfilm.running import run_scene
+from flankfilm.scene import parse_scene
+from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
 
 positive = st.floats(1e-6, 1e-1)
 laws = st.lists(
@@ -89,3 +93,24 @@ def test_steps_lie_below_by_less_than_a_factor_of_two_and_a_half(share):
     assert step <= share * (1 + 1e-9)
     assert share < 2.5 * step * (1 + 1e-9)
     assert step_below(step) == step
+
+
+MOTION_ALONE = """
+wants = ["sweep"]
+[stiffness]
+model = "given"
+amplitudes = [0.18]
+[dynamics]
+mean_force = 0.1
+error_amplitude = 0.2
+half_backlash = 0.2
+sweep = { frequency = [0.5, 0.7], points = 3 }
+"""
+
+
+@pytest.mark.parametrize("wanted", [True, False])
+def test_the_report_tells_how_a_tolerance_was_split_where_it_was(wanted):
+    text = CLOSED_FORMS_WITH_FILM if wanted else MOTION_ALONE
+    parts = decisions(run_scene(parse_scene(text), None))
+    heads = [table.heads[0] for part in parts for table in part.tables]
+    assert ("share of the tolerance" in heads) == wanted
