@@ -247,7 +247,7 @@ def test_table_gives_back_its_law():
 
 
 def test_below_and_above_a_table_its_law_goes_on():
-    """F = d^1.5: the secant is linear in the root of the depth, so that below it goes on exactly; above by the tangent."""
+    """F = d^1.5: the secant is linear in the root of the depth, and goes on so below; above goes the tangent."""
     forces = np.geomspace(0.2, 1.0, 9)
     law = TabulatedContact.from_deflections(
         forces, np.tile(forces ** (2 / 3), (3, 1)), half_backlash=0.2, order=1, intervals=400
