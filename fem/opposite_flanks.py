@@ -68,8 +68,8 @@ class OppositeShare:
     forces, pair_stiffness, open : (..., pairs) arrays
         kappa G [N], its slope dG/dD, not above 0 [N/m], and the gap that is left [m].
     rest : (pitches, positions) array
-        Transmission error without torque, from where the loaded flanks touch: not 0 where both sides are pressed
-        together [m].
+        Transmission error without torque, from where the loaded flanks touch: not 0 where teeth overlap that are
+        pressed together [m].
     moving : bool
         Whether contacts were to move.
     reached : (torques,) array
@@ -188,9 +188,11 @@ class _BothSides:
         return np.asarray(bent if self.oil is None else bent - self.oil.approach(np.zeros_like(bent)))
 
     def pressed(self) -> Array:
-        """Where both sides bear without a torque (pitches, positions)."""
-        film = 0.0 if self.oil is None else self.oil.approach(np.zeros_like(self.gaps))
-        clear = self.gaps - film
+        """Where teeth overlap without a torque (pitches, positions).
+
+        Films alone float them within their backlash, of any size: they thicken without bound as they bear less.
+        """
+        clear = self.gaps
         return np.asarray(clear[..., : self.count].min(axis=-1) + clear[..., self.count :].min(axis=-1) < 0.0)
 
     def share(self, force: Array) -> LoadShare:

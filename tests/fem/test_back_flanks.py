@@ -295,6 +295,25 @@ def test_a_film_presses_both_sides(tight):
     np.testing.assert_allclose(cycle.opposite_force, thick.opposite_force, rtol=2e-3)
 
 
+def test_a_film_that_floats_gears_in_their_backlash_is_no_deflection(loose):
+    """Films thicken without bound as pairs let go; the secant was counted from where they float, 50 um away."""
+    pair, bodies = loose
+
+    def film(rho1, force):
+        ratio = np.maximum(force / 20.0, 1e-2)
+        thick = 2e-6 / ratio
+        return np.where(np.isfinite(rho1), thick, 0.0), np.where(
+            force > 0.2, -thick / np.maximum(force, 0.2), 0.0
+        )
+
+    dry, oily = (fem.mesh_cycle(pair, 20.0, 10, bodies, film=one) for one in (None, film))
+    play = pair.backlash
+    assert film(np.zeros(1), np.zeros(1))[0] > play
+    # what the film yields is not in this secant: it is above the dry one, by no more than the film itself
+    np.testing.assert_array_less(dry.secant_stiffness, oily.secant_stiffness)
+    np.testing.assert_allclose(oily.force / oily.secant_stiffness, oily.transmission_error, rtol=1e-12)
+
+
 def test_weak_bearings_let_pressed_gears_part():
     pair = pressed(5e-6)
     rigid, weak = (
