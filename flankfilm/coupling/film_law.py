@@ -19,7 +19,10 @@ it behind and is flooded, with the separation :math:`S_0 (F/F_0)^{-m}`. In betwe
 with the same value and slope at :math:`F_0`; q comes out near one for line contacts.
 
 Between two films along the path, what each gives at the force in question
-is weighted linearly: place changes radius and speed by little from one film to the next.
+is weighted linearly: place changes radius and speed by little from one film to the next. Where a pair comes or goes
+the force changes by a factor between them, and n with it (0.1 at heavy, 1 at light loads): from the force of one film
+to that of the other n is linear in :math:`\ln F`, for either of them, so that each gives nearly the other's separation
+at the other's force.
 """
 
 from __future__ import annotations
@@ -125,15 +128,15 @@ class FilmLaw:
         return np.where(some, separation, 0.0), np.where(some, np.minimum(slope, 0.0), 0.0)
 
     def every_second(self) -> FilmLaw:
-        """Law without every second film: from the first on, since ends of the path count most.
+        """Law without every second film, both ends kept: from there the law goes on to the ends of the path.
 
-        Behind a meniscus, where films beyond the ends have the nearest one, both ends stay.
+        Where these are half a step h from the ends, as midpoints of equal intervals are, and the law is smooth,
+        leaving out the second film moves it at the end by f'' h^2/4, 2/3 of what it is off there; without the first
+        one it would not reach the end. Between films it moves by three times what it is off.
         """
         count, held = self.rho1.size, self.held
-        if held is None:
-            each = np.arange(1 if count > 1 else 0, count, 2)
-        else:
-            each = np.unique(np.append(np.arange(0, count, 2), count - 1))
+        each = np.unique(np.append(np.arange(0, count, 2), count - 1))
+        if held is not None:
             held = HeldMeniscus(held.place[each], held.flooded_separation[each], held.flooded_exponent[each])
         return FilmLaw(self.rho1[each], self.force[each], self.separation[each], self.exponent[each], held)
 
@@ -187,20 +190,43 @@ class FilmLaw:
         # a meniscus lies where the force of its place put it: between two films, where the force between theirs would
         between = (1 - share) * self.force[first] + share * self.force[second]
         solved = [self.force[film] if self.held is None else between for film in (first, second)]
-        found = [self._one(film, forces, at) for film, at in zip((first, second), solved, strict=True)]
+        found = [
+            self._one(film, (first, second), forces, at)
+            for film, at in zip((first, second), solved, strict=True)
+        ]
         return (first, second), share, found
 
-    def _one(self, film: NDArray[np.intp], forces: Array, solved: Array) -> tuple[Array, Array]:
-        """Separation and slope by one film each, taken as solved at the given forces."""
+    def _one(
+        self,
+        film: NDArray[np.intp],
+        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        forces: Array,
+        solved: Array,
+    ) -> tuple[Array, Array]:
+        """Separation and slope by one film each of two, taken as solved at the given forces."""
         exponent = self.exponent[film]
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
         below = np.minimum(forces - ratio * solved, 0.0)
         if self.held is not None:
             separation, local = self.held.bound(film, self.separation[film], exponent, ratio)
         else:
-            separation, local = self.separation[film] * ratio**-exponent, exponent
+            fallen, local = self._fall(both, ratio * solved)
+            separation = self.separation[film] * np.exp(self._fall(both, solved)[0] - fallen)
         slope = -local * separation / (ratio * solved)
         return separation + slope * below, slope
+
+    def _fall(self, both: tuple[NDArray[np.intp], NDArray[np.intp]], forces: Array) -> tuple[Array, Array]:
+        """Logarithm by which separations between two films fall from the lesser of their forces, and n there."""
+        lighter = self.force[both[0]] <= self.force[both[1]]
+        light, heavy = np.where(lighter, both[0], both[1]), np.where(lighter, both[1], both[0])
+        width = np.log(self.force[heavy] / self.force[light])
+        above = np.log(forces / self.force[light])
+        part = np.clip(np.divide(above, width, out=np.zeros_like(above), where=width > 0.0), 0.0, 1.0)
+        change = np.where(width > 0.0, self.exponent[heavy] - self.exponent[light], 0.0)
+        fallen = self.exponent[light] * above + change * (
+            0.5 * width * part**2 + np.maximum(above - width, 0.0)
+        )
+        return fallen, self.exponent[light] + change * part
 
 
 @dataclass(frozen=True, eq=False)

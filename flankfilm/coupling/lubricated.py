@@ -44,7 +44,8 @@ SOFTER = (
 BETWEEN = 1.0
 """Part of what leaving out every second film changes that the films left out between those solved would.
 
-A third where the law is smooth; extremes lie where pairs come and go, where halving the step halves the error.
+A third where the law is smooth, one and a half at ends of the path (`FilmLaw.every_second`); extremes lie where pairs
+come and go, where halving the step halves the error.
 """
 
 DIFFERENCE = "not estimated: the difference of two means that have errors"

@@ -119,3 +119,26 @@ def test_the_law_follows_films_behind_a_meniscus_that_stays():
         true = solve(contact(factor * middle), supply=held).separation
         error = abs(at(bounded, 1000.0 * factor)[0] / true - 1)
         assert error < allowed
+
+
+def test_films_on_either_side_of_a_step_of_the_force_know_each_other():
+    """A pair goes and the other bears twice as much: n falls, and power laws are 10 % off at the other force."""
+
+    def separation(force):
+        return 5e-7 * ((force / 200.0) ** -1.0 + (force / 200.0) ** -0.13)
+
+    def exponent(force):
+        light, heavy = (force / 200.0) ** -1.0, (force / 200.0) ** -0.13
+        return (light + 0.13 * heavy) / (light + heavy)
+
+    force = np.array([352.0, 172.0])
+    law = FilmLaw(np.array([1e-3, 2e-3]), force, separation(force), exponent(force))
+    for place in (1e-3, 1.3e-3, 2e-3):
+        asked = np.array([[120.0, 172.0, 250.0, 352.0, 450.0]])
+        found, slope = law(np.full_like(asked, place), asked)
+        np.testing.assert_allclose(found, separation(asked), rtol=0.02)
+        step = 1e-3
+        more, less = (law(np.full_like(asked, place), asked + d)[0] for d in (step, -step))
+        np.testing.assert_allclose(slope, (more - less) / (2 * step), rtol=1e-5)
+    # each is itself where it was solved
+    assert law(np.array([[1e-3, 2e-3]]), force[None])[0][0] == pytest.approx(law.separation, rel=1e-14)

@@ -65,6 +65,10 @@ def one(pair, torque: float, speed: float, oil: ehl.Lubricant) -> tuple[str, dic
     began = time.process_time()
     asked = resolution_of(TOLERANCE)
     bodies = fem.compliance(pair, asked.compliance, tip_edges=True)
+    dry = figure_errors.solved(pair, torque, {}, bodies, asked.compliance)
+    if dry is None:
+        return "no dry contact", {}
+    torque = dry.torque  # or the part of it that the teeth bear
     teeth = LoadedTeeth(pair, torque, compliance=bodies)
     usual = arcs_of(teeth, speed, oil, lubricated.FILM_POSITIONS, 1.0)
     middle = time.process_time()
