@@ -21,8 +21,8 @@ with the same value and slope at :math:`F_0`; q comes out near one for line cont
 Between two films along the path, what each gives at the force in question
 is weighted linearly: place changes radius and speed by little from one film to the next. Where a pair comes or goes
 the force changes by a factor between them, and n with it (0.1 at heavy, 1 at light loads): from the force of one film
-to that of the other n is linear in :math:`\ln F`, for either of them, so that each gives nearly the other's separation
-at the other's force.
+to that of the other :math:`\ln s` is the cubic in :math:`\ln F` that meets both, for either of them; where the forces
+differ by less than a fourth the separations differ by the place, and n is linear.
 """
 
 from __future__ import annotations
@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 BEYOND = 0.5
 """Steps between films by which a law goes on beyond the first and the last."""
+
+_ALIKE = 0.25
+"""Logarithm of the ratio of two forces below which films differ by their places rather than by their forces."""
 
 _LEAST_RATIO = 0.01
 _LEAST_DISTANCE = 1e-12
@@ -222,11 +225,16 @@ class FilmLaw:
         width = np.log(self.force[heavy] / self.force[light])
         above = np.log(forces / self.force[light])
         part = np.clip(np.divide(above, width, out=np.zeros_like(above), where=width > 0.0), 0.0, 1.0)
-        change = np.where(width > 0.0, self.exponent[heavy] - self.exponent[light], 0.0)
-        fallen = self.exponent[light] * above + change * (
-            0.5 * width * part**2 + np.maximum(above - width, 0.0)
+        first, change = (
+            self.exponent[light],
+            np.where(width > 0.0, self.exponent[heavy] - self.exponent[light], 0.0),
         )
-        return fallen, self.exponent[light] + change * part
+        # what the separations of both lack of the mean n is of the force, or of the place where forces are alike
+        lacking = np.log(self.separation[light] / self.separation[heavy]) - (first + 0.5 * change) * width
+        lacking = lacking * width / (width**2 + _ALIKE**2)
+        fallen = first * above + change * (0.5 * width * part**2 + np.maximum(above - width, 0.0))
+        local = first + change * part + 6.0 * lacking * part * (1.0 - part)
+        return fallen + lacking * width * part**2 * (3.0 - 2.0 * part), local
 
 
 @dataclass(frozen=True, eq=False)

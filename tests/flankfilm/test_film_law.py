@@ -136,6 +136,8 @@ def test_films_on_either_side_of_a_step_of_the_force_know_each_other():
     for place in (1e-3, 1.3e-3, 2e-3):
         asked = np.array([[120.0, 172.0, 250.0, 352.0, 450.0]])
         found, slope = law(np.full_like(asked, place), asked)
+        inner = slice(1, 4)
+        np.testing.assert_allclose(found[:, inner], separation(asked)[:, inner], rtol=1e-3)
         np.testing.assert_allclose(found, separation(asked), rtol=0.02)
         step = 1e-3
         more, less = (law(np.full_like(asked, place), asked + d)[0] for d in (step, -step))
