@@ -11,7 +11,7 @@ can turn negative at small forces.
 Behind a meniscus that stays in place n is up to hundreds, since a heavier contact widens towards it: the dry
 contact's edge, :math:`b \propto \sqrt{F}`, comes nearer, by the distance :math:`d(F) = X (F/F_0)^{-1/2} - 1` in
 half-widths, X the meniscus' place at :math:`F_0`. Where the edge reaches it the film ends; a lighter contact leaves
-it behind and is flooded, with the separation :math:`S_0 (F/F_0)^{-m}`. In between
+it behind and is flooded, with the separation :math:`S_0 (F/F_0)^{-m}`, or what two flooded films follow. In between
 
 .. math:: s(F) = \frac{S_0 \, (F/F_0)^{-m}}{1 + c \, (d_0/d)^q},
    \qquad c = \frac{S_0}{s_0} - 1, \quad q = 2 (n - m) \frac{1 + c}{c} \frac{X - 1}{X},
@@ -67,21 +67,36 @@ class HeldMeniscus:
     flooded_exponent: Array
 
     def bound(
-        self, film: NDArray[np.intp], separation: Array, exponent: Array, ratio: Array
+        self,
+        film: NDArray[np.intp],
+        solved: tuple[Array, Array],
+        ratio: Array,
+        flooded: tuple[Array, Array],
+        plain: tuple[Array, Array],
     ) -> tuple[Array, Array]:
-        """Separation [m] and its local exponent at forces over solved ones."""
-        flooded, slow, place = self.flooded_separation[film], self.flooded_exponent[film], self.place[film]
-        lacking = flooded / separation - 1.0
-        bounds = (lacking > 0.0) & (exponent > slow) & (place > 1.0)
+        """Separation [m] and its local exponent at forces over solved ones.
+
+        Parameters
+        ----------
+        film : array of int
+        solved : (array, array)
+            Separation and exponent where each film was solved.
+        ratio : array
+            Forces over those at which the meniscus is in its place.
+        flooded, plain : (array, array)
+            Separation and exponent at the forces, flooded and as if nothing bounded the film.
+        """
+        place, slow = self.place[film], self.flooded_exponent[film]
+        lacking = self.flooded_separation[film] / solved[0] - 1.0
+        bounds = (lacking > 0.0) & (solved[1] > slow) & (place > 1.0)
         c, first = np.where(bounds, lacking, 1.0), np.where(bounds, place, 2.0)
-        q = np.where(bounds, 2.0 * (exponent - slow) * (1.0 + c) / c * (first - 1.0) / first, 0.0)
+        q = np.where(bounds, 2.0 * (solved[1] - slow) * (1.0 + c) / c * (first - 1.0) / first, 0.0)
         edge = first * ratio**-0.5
         distance = np.maximum(edge - 1.0, _LEAST_DISTANCE)
         choked = c * np.exp(np.minimum(q * np.log((first - 1.0) / distance), _LARGEST_LOGARITHM))
-        held = np.where(edge > 1.0, flooded * ratio**-slow / (1.0 + choked), 0.0)
-        steep = slow + q * choked / (1.0 + choked) * edge / (2.0 * distance)
-        plain = separation * ratio ** np.where(bounds, 0.0, -exponent)
-        return np.where(bounds, held, plain), np.where(bounds, steep, exponent)
+        held = np.where(edge > 1.0, flooded[0] / (1.0 + choked), 0.0)
+        steep = flooded[1] + q * choked / (1.0 + choked) * edge / (2.0 * distance)
+        return np.where(bounds, held, plain[0]), np.where(bounds, steep, plain[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,30 +222,46 @@ class FilmLaw:
         solved: Array,
     ) -> tuple[Array, Array]:
         """Separation and slope by one film each of two, taken as solved at the given forces."""
-        exponent = self.exponent[film]
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
-        below = np.minimum(forces - ratio * solved, 0.0)
+        least, here = ratio * solved, (self.separation, self.exponent)
+        below = np.minimum(forces - least, 0.0)
+        separation, local = self._followed(film, both, least, here)
         if self.held is not None:
-            separation, local = self.held.bound(film, self.separation[film], exponent, ratio)
-        else:
-            fallen, local = self._fall(both, ratio * solved)
-            separation = self.separation[film] * np.exp(self._fall(both, solved)[0] - fallen)
-        slope = -local * separation / (ratio * solved)
+            flooded = self.held.flooded_separation, self.held.flooded_exponent
+            at_rest = self.separation[film], self.exponent[film]
+            free = self._followed(film, both, least, flooded)
+            separation, local = self.held.bound(film, at_rest, ratio, free, (separation, local))
+        slope = -local * separation / least
         return separation + slope * below, slope
 
-    def _fall(self, both: tuple[NDArray[np.intp], NDArray[np.intp]], forces: Array) -> tuple[Array, Array]:
+    def _followed(
+        self,
+        film: NDArray[np.intp],
+        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        forces: Array,
+        solved: tuple[Array, Array],
+    ) -> tuple[Array, Array]:
+        """Separation by one of two films, solved with separations and exponents of its own, and its exponent."""
+        fallen, local = self._fall(both, forces, *solved)
+        before, _ = self._fall(both, self.force[film], *solved)
+        return solved[0][film] * np.exp(np.minimum(before - fallen, _LARGEST_LOGARITHM)), local
+
+    def _fall(
+        self,
+        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        forces: Array,
+        separation: Array,
+        exponent: Array,
+    ) -> tuple[Array, Array]:
         """Logarithm by which separations between two films fall from the lesser of their forces, and n there."""
         lighter = self.force[both[0]] <= self.force[both[1]]
         light, heavy = np.where(lighter, both[0], both[1]), np.where(lighter, both[1], both[0])
         width = np.log(self.force[heavy] / self.force[light])
         above = np.log(forces / self.force[light])
         part = np.clip(np.divide(above, width, out=np.zeros_like(above), where=width > 0.0), 0.0, 1.0)
-        first, change = (
-            self.exponent[light],
-            np.where(width > 0.0, self.exponent[heavy] - self.exponent[light], 0.0),
-        )
+        first, change = exponent[light], np.where(width > 0.0, exponent[heavy] - exponent[light], 0.0)
         # what the separations of both lack of the mean n is of the force, or of the place where forces are alike
-        lacking = np.log(self.separation[light] / self.separation[heavy]) - (first + 0.5 * change) * width
+        lacking = np.log(separation[light] / separation[heavy]) - (first + 0.5 * change) * width
         lacking = lacking * width / (width**2 + _ALIKE**2)
         fallen = first * above + change * (0.5 * width * part**2 + np.maximum(above - width, 0.0))
         local = first + change * part + 6.0 * lacking * part * (1.0 - part)
