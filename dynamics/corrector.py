@@ -106,7 +106,7 @@ class OrbitProblem(BranchProblem):
                 np.empty((room, 5 + m)),
             )
             flag, turned, iterations, residual = correct(
-                self.origin, self.ways, self.oscillator.stiffness.order, cells, DEGREE, u, across, self.scale,
+                self.origin, self.ways, cells, DEGREE, u, across, self.scale,
                 self.periods, limit, image, lin, bend, counts, turns,
             )  # fmt: skip
             if flag != 0:

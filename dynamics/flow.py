@@ -26,7 +26,7 @@ class Tables(Flow):
 
     Parameters
     ----------
-    packed : ndarray, shape (8 + 2 J,)
+    packed : ndarray, shape (any,)
         Parameters as of `GearOscillator.packed`.
     coef, edge : ndarray
         See `dynamics.kernels`.
@@ -42,7 +42,7 @@ class Tables(Flow):
     @property
     def arrays(self) -> tuple[Array, Array, Array]:
         """What the kernels take."""
-        return self.packed[:8], self.coef, self.edge
+        return self.packed, self.coef, self.edge
 
     @property
     def cells(self) -> int:
@@ -173,8 +173,7 @@ def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> Tables:
     """Tables of a packed oscillator, with so many cells per period."""
     from dynamics.kernels.tables import tabulate
 
-    order = (len(packed) - 8) // 2
-    return Tables(packed, *tabulate(packed[:8], packed[8 : 8 + order], packed[8 + order :], cells, degree))
+    return Tables(packed, *tabulate(packed, cells, degree))
 
 
 @exact_only

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from base import Array
+from dynamics.excitation import largest
 from dynamics.flow import Tables, tables
 from dynamics.manifolds import carried
 from dynamics.motions import period_map
@@ -47,7 +48,7 @@ def index_at_infinity(oscillator: GearOscillator, n: int) -> int | None:
         return int(np.sign(product.real)) if abs(product) > 1e-6 else None
     if oscillator.mean_force == 0.0:
         return None
-    shift = (abs(oscillator.mean_force) + abs(oscillator.error_amplitude)) / min(
+    shift = (abs(oscillator.mean_force) + largest(oscillator.error_series)) / min(
         oscillator.stiffness.mean, 1.0
     )
     turns = {winding(oscillator, n, size * max(oscillator.half_backlash, shift)) for size in LARGE}

@@ -63,10 +63,10 @@ def reversed_tables(oscillator: GearOscillator) -> Tables:
     With time and speed reversed about tau = 0 the equation keeps its form; the damping and all phases change their
     signs. So the inverse of the period map is as exact as the map: carry (X, -V) and reverse V again.
     """
-    packed, order = oscillator.packed(), oscillator.stiffness.order
-    packed[1] = -packed[1]
-    packed[5] = -packed[5]
-    packed[8 + order :] *= -1.0
+    packed = oscillator.packed()
+    for name in oscillator.parameters:
+        if name == "damping_ratio" or "phase" in name:
+            packed[oscillator.place(name)] *= -1.0
     cells = math.ceil(oscillator.cells)
     return tabulated(packed, cells)
 

@@ -10,22 +10,33 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, InputError
+from dynamics.excitation import (
+    AMPLITUDE,
+    PHASE,
+    Harmonics,
+    checked_error,
+    error_names,
+    highest_harmonic,
+    push,
+)
 from dynamics.limits import OSCILLATOR
 from dynamics.naming import series, series_names
 from dynamics.protocol import Oscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
-PARAMETERS = ("frequency", "error_amplitude", "error_phase", "mean_force", "damping_ratio", "half_backlash")
-# of these and the mean stiffness, in the vector of `GearOscillator.packed`
+# in the vector of `GearOscillator.packed`, as in `dynamics.kernels`; amplitude and phase are the first harmonic's
 _PLACES = {
     "stiffness.mean": 0,
     "damping_ratio": 1,
     "mean_force": 2,
-    "error_amplitude": 3,
+    AMPLITUDE: 3,
     "frequency": 4,
-    "error_phase": 5,
+    PHASE: 5,
     "half_backlash": 6,
 }
+_SERIES = (
+    9  # where amplitudes and phases of the stiffness begin; those of the error's further harmonics follow
+)
 MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
 
 
@@ -35,7 +46,8 @@ class GearOscillator(Oscillator):
 
     .. math::
 
-        \ddot X + 2 \zeta \dot X + K(\tau) f(X) = F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e),
+        \ddot X + 2 \zeta \dot X + K(\tau) f(X)
+        = F_m + \omega^2 \sum_j j^2 \varepsilon_j \cos(j \omega \tau + \varphi_{e,j}),
         \qquad f(X) = X - D, \; 0, \; X + D \quad \text{for } X > D, \; |X| \le D, \; X < -D.
 
     Parameters
@@ -46,14 +58,16 @@ class GearOscillator(Oscillator):
         :math:`\zeta \ge 0`; the damping acts in the dead zone too.
     mean_force : float
         :math:`F_m`; positive presses the driving flanks together.
-    error_amplitude : float
-        :math:`\varepsilon`, amplitude of the unloaded transmission error.
+    error_amplitude : float or sequence of float
+        :math:`\varepsilon_j`, amplitudes of the harmonics j = 1, 2, ... of the unloaded transmission error; a number
+        is the first harmonic alone.
     frequency : float
         :math:`\omega > 0`, mesh frequency over natural frequency.
     half_backlash : float
         :math:`D \ge 0`.
-    error_phase : float
-        :math:`\varphi_e` [rad], relative to :math:`\tau = 0`, like the phases of the stiffness.
+    error_phase : float or sequence of float
+        :math:`\varphi_{e,j}` [rad], relative to :math:`\tau = 0`, like the phases of the stiffness; one for each
+        amplitude, or 0 for all of them.
     one_sided : bool
         No second flank: f(X) = 0 for all X <= D, as for a gear with much backlash or a follower on a cam.
 
@@ -69,19 +83,22 @@ class GearOscillator(Oscillator):
     stiffness: FourierStiffness
     damping_ratio: float
     mean_force: float
-    error_amplitude: float
+    error_amplitude: Harmonics
     frequency: float
     half_backlash: float
-    error_phase: float = 0.0
+    error_phase: Harmonics = 0.0
     one_sided: bool = False
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
         with Faults() as faults:
             check_stiffness(faults, self.stiffness)
-            values = {
-                name: faults.number(name, getattr(self, name), limit) for name, limit in OSCILLATOR.items()
+            values: dict[str, Harmonics] = {
+                name: faults.number(name, getattr(self, name), limit)
+                for name, limit in OSCILLATOR.items()
+                if name not in (AMPLITUDE, PHASE)
             }
+            values[AMPLITUDE], values[PHASE] = checked_error(faults, self.error_amplitude, self.error_phase)
             faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -101,19 +118,22 @@ class GearOscillator(Oscillator):
         return max(self.half_backlash, 1e-300)
 
     def packed(self) -> Array:
-        """All parameters in one vector, as the kernels take them: `par` (8), amplitudes, phases."""
+        """All parameters in one vector, `par` of the kernels."""
         mean, *harmonics = series(self.stiffness)
         sides = 1.0 if self.one_sided else 2.0
+        errors = self.error_series
         own = (
-            mean, self.damping_ratio, self.mean_force, self.error_amplitude, self.frequency, self.error_phase,
-            self.half_backlash, sides,
+            mean, self.damping_ratio, self.mean_force, errors[0, 0], self.frequency, errors[1, 0],
+            self.half_backlash, sides, self.stiffness.order,
         )  # fmt: skip
-        return np.array([*own, *harmonics])
+        return np.array([*own, *harmonics, *errors[:, 1:].ravel()])
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of all parameters: ``frequency``, ..., ``stiffness.mean``, ``stiffness.amplitudes[0]``, ..."""
-        return PARAMETERS + series_names(self.stiffness.order)
+        amplitudes, phases = error_names(self.error_series.shape[1])
+        own = ("frequency", *amplitudes, *phases, "mean_force", "damping_ratio", "half_backlash")
+        return own + series_names(self.stiffness.order)
 
     def place(self, parameter: str) -> int:
         """Index of a parameter in the vector of `packed`.
@@ -124,9 +144,12 @@ class GearOscillator(Oscillator):
             If there is no such parameter.
         """
         self._known(parameter)
-        if parameter in _PLACES:
-            return _PLACES[parameter]
-        return 7 + self.parameters.index(parameter) - len(PARAMETERS)
+        known = parameter.removesuffix("[0]")
+        if known in _PLACES:
+            return _PLACES[known]
+        amplitudes, phases = error_names(self.error_series.shape[1])
+        further = (*series_names(self.stiffness.order)[1:], *amplitudes[1:], *phases[1:])
+        return _SERIES + further.index(parameter)
 
     def rest_state(self) -> Array:
         """State at rest with the flanks pressed together by the mean force, at the centre without one."""
@@ -136,9 +159,9 @@ class GearOscillator(Oscillator):
         return np.array([math.copysign(self.half_backlash, force) + force / k, 0.0])
 
     def force(self, tau: npt.ArrayLike) -> Array:
-        r"""Return :math:`F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)`, shape of `tau`."""
-        angle = self.frequency * np.asarray(tau, dtype=np.float64) + self.error_phase
-        return np.asarray(self.mean_force + self.error_amplitude * self.frequency**2 * np.cos(angle))
+        """Right-hand side of the equation, shape of `tau`."""
+        angle = self.frequency * np.asarray(tau, dtype=np.float64)
+        return np.asarray(self.mean_force + self.frequency**2 * push(self.error_series, angle))
 
     def deflection(self, x: npt.ArrayLike) -> Array:
         """Deflection f(X) past the backlash, shape of `x`."""
@@ -149,8 +172,10 @@ class GearOscillator(Oscillator):
 
 def cells_per_period(packed: Array) -> float:
     """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
-    order = (len(packed) - 8) // 2
-    stiffest = abs(packed[0]) + float(np.sum(np.abs(packed[8 : 8 + order])))
+    order = int(packed[_SERIES - 1])
+    further = packed[_SERIES + 2 * order :]
+    highest = highest_harmonic(order, further[: len(further) // 2])
+    stiffest = abs(packed[0]) + float(np.sum(np.abs(packed[_SERIES : _SERIES + order])))
     period = 2.0 * math.pi / float(packed[4])
     drag = 2.0 * float(packed[1]) * period
-    return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * max(order, 1), drag)
+    return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * highest, drag)

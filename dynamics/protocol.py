@@ -16,6 +16,7 @@ from typing import Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
 import numpy as np
 
 from base import Array, Cost, InputError, Integers, quantity, record
+from dynamics.excitation import Harmonics, as_series, largest
 from dynamics.naming import natural_size, unknown, value_at, with_value
 
 EPS = float(np.finfo(np.float64).eps)
@@ -171,7 +172,8 @@ class Oscillator(ABC):
 
     damping_ratio: float
     mean_force: float
-    error_amplitude: float
+    error_amplitude: Harmonics
+    error_phase: Harmonics
     frequency: float
 
     @property
@@ -196,7 +198,12 @@ class Oscillator(ABC):
     @property
     def natural_size(self) -> float:
         """Size of the displacements that go in."""
-        return natural_size(self.floor, self.mean_force, self.error_amplitude)
+        return natural_size(self.floor, self.mean_force, largest(self.error_series))
+
+    @property
+    def error_series(self) -> Array:
+        """Amplitudes and phases [rad] of the harmonics of the unloaded transmission error, shape (2, harmonics)."""
+        return as_series(self.error_amplitude, self.error_phase)
 
     def get(self, parameter: str) -> float:
         """Value of a parameter.

@@ -3,7 +3,8 @@
 Everything is measured in cells: the period is cut into equal cells, time runs from -1/2 to 1/2 in each, and the
 speed is W = h V with h the length of a cell in tau. Arrays that travel together:
 
-- `par`, (8,): mean stiffness, zeta, F_m, eps, omega, error phase, D, number of sides with play (2 or 1).
+- `par`, (9 + 2 J + 2 M,): mean stiffness, zeta, F_m, eps, omega, error phase, D, number of sides with play (2 or 1), J;
+  amplitudes and phases of J harmonics of the stiffness; amplitudes and phases of the error's harmonics 2 to M + 1.
 - `coef`, (2 cells, 4, degree + 1): Taylor coefficients about the middle of a cell of the solutions that pass it
   with (1, 0) and (0, 1), of the forced one that passes it with (0, 0), and of the stiffness times h^2. The first
   `cells` rows hold in contact (y = X -+ D), the others in the dead zone (y = X).

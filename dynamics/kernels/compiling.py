@@ -20,7 +20,7 @@ IntArray = npt.NDArray[np.int64]
 Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 F = TypeVar("F", bound=Callable[..., Any])
 
-MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES = range(8)
+MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES, ORDER, SERIES = range(10)  # places in `par`
 # all well, not finite, too many events in a cell, Newton's method failed
 FINE, DIVERGED, CROWDED, LOST = range(4)
 # a literal would have numba compile callees twice

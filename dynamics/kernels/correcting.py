@@ -52,7 +52,7 @@ def solve_three(matrix: FloatArray, right: FloatArray) -> bool:
 
 @maker
 def look(
-    origin: FloatArray, ways: FloatArray, order: int, cells: int, degree: int, u: FloatArray, scale: float,
+    origin: FloatArray, ways: FloatArray, cells: int, degree: int, u: FloatArray, scale: float,
     periods: int, state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Probe the orbit of the unknowns u: X and V over the scale, then amounts of the directions `ways`.
@@ -66,11 +66,10 @@ def look(
             q[i] += u[2 + k] * ways[k, i]
     if not (q[FREQUENCY] > 0.0 and q[HALF_BACKLASH] >= 0.0 and q[ZETA] >= 0.0):
         return LOST, 0, math.inf
-    par, amplitudes, phases = q[:8], q[8 : 8 + order], q[8 + order :]
-    coef, edge = tabulate(par, amplitudes, phases, cells, degree)
-    slopes = differentiate(par, amplitudes, phases, ways, coef, edge)
+    coef, edge = tabulate(q, cells, degree)
+    slopes = differentiate(q, ways, coef, edge)
     state[0], state[1] = u[0] * scale, u[1] * scale
-    flag, turned = probe((par, coef, edge), slopes, ways, state, periods, lin, bend, counts, turns)
+    flag, turned = probe((q, coef, edge), slopes, ways, state, periods, lin, bend, counts, turns)
     off = max(abs(state[0] / scale - u[0]), abs(state[1] / scale - u[1]))
     return flag, turned, off if flag == FINE and off < math.inf else math.inf
 
@@ -125,7 +124,7 @@ def newton_step(
 
 @kernel
 def correct(
-    origin: FloatArray, ways: FloatArray, order: int, cells: int, degree: int, u: FloatArray, across: FloatArray,
+    origin: FloatArray, ways: FloatArray, cells: int, degree: int, u: FloatArray, across: FloatArray,
     scale: float, periods: int, limit: int,
     state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
 ) -> tuple[int, int, int, float]:  # fmt: skip
@@ -144,7 +143,7 @@ def correct(
         # the error falls with the square of the step: this is likely to be the last time
         whole = limit == 0 or step < NEARLY
         flag, turned, size = look(
-            origin, ways, order, cells, degree, u, scale, periods, state, lin,
+            origin, ways, cells, degree, u, scale, periods, state, lin,
             bend if whole else bend[:0], counts, turns if whole else turns[:0],
         )  # fmt: skip
         if flag != FINE:
@@ -172,7 +171,7 @@ def correct(
             u[k] += right[k]
     if not whole:
         flag, turned, best = look(
-            origin, ways, order, cells, degree, u, scale, periods, state, lin, bend, counts, turns
+            origin, ways, cells, degree, u, scale, periods, state, lin, bend, counts, turns
         )
     rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.corrector
     if limit > 0 and not best <= rounding * max(1.0, largest(lin, 2)):

@@ -7,7 +7,9 @@ from dynamics.kernels.compiling import (
     FORCE,
     FREQUENCY,
     HALF_BACKLASH,
+    ORDER,
     PHASE,
+    SERIES,
     SIDES,
     FloatArray,
     helper,
@@ -18,7 +20,12 @@ from dynamics.kernels.roots import first_exit
 @helper
 def push_at_start(par: FloatArray) -> float:
     """External force at tau = 0."""
-    return float(par[FORCE] + par[ERROR] * par[FREQUENCY] ** 2 * math.cos(par[PHASE]))
+    push = par[ERROR] * math.cos(par[PHASE])
+    first = SERIES + 2 * int(par[ORDER])
+    more = (len(par) - first) // 2
+    for j in range(more):
+        push += (j + 2) ** 2 * par[first + j] * math.cos(par[first + more + j])
+    return float(par[FORCE] + push * par[FREQUENCY] ** 2)
 
 
 @helper

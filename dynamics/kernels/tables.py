@@ -10,7 +10,9 @@ from dynamics.kernels.compiling import (
     FREQUENCY,
     MEAN,
     ONE,
+    ORDER,
     PHASE,
+    SERIES,
     TWO,
     ZERO,
     ZETA,
@@ -21,12 +23,50 @@ from dynamics.kernels.compiling import (
 
 
 @helper
-def add_cosine(series: FloatArray, even: float, odd: float, rate: float) -> None:
-    """Add the Taylor coefficients of even cos(rate t) - odd sin(rate t)."""
-    factor = 1.0
-    for k in range(len(series)):
-        series[k] += factor * (even if k % 2 == 0 else -odd) * (1.0 if k % 4 < 2 else -1.0)
+def fill_roots(roots: FloatArray) -> None:
+    """Cosines and sines of all multiples of half a cell's turn, (2, 2 cells): harmonics have no other angles."""
+    count = roots.shape[1]
+    for m in range(count):
+        roots[0, m], roots[1, m] = math.cos(2.0 * math.pi * m / count), math.sin(2.0 * math.pi * m / count)
+
+
+@helper
+def add_harmonic(
+    series: FloatArray, place: int, n: int, p: float, q: float, roots: FloatArray, weights: FloatArray
+) -> None:
+    """Add to series[cell, place] the Taylor coefficients of p cos(n theta) - q sin(n theta) about each cell's middle.
+
+    `weights`, one for each coefficient, is room.
+    """
+    count = roots.shape[1]
+    rate, factor = 4.0 * math.pi * n / count, 1.0
+    for k in range(len(weights)):
+        weights[k] = factor if k % 4 == 0 or k % 4 == 3 else -factor
         factor *= rate / (k + 1)
+    m = n % count
+    for cell in range(count // 2):
+        even, odd = p * roots[0, m] - q * roots[1, m], p * roots[1, m] + q * roots[0, m]
+        for k in range(0, len(weights) - 1, 2):
+            series[cell, place, k] += weights[k] * even
+            series[cell, place, k + 1] += weights[k + 1] * odd
+        if len(weights) % 2 == 1:
+            series[cell, place, len(weights) - 1] += weights[-1] * even
+        m = (m + 2 * n) % count
+
+
+@helper
+def harmonics(par: FloatArray) -> tuple[int, int]:
+    """Numbers of harmonics of the stiffness, and of the error after its first."""
+    order = int(par[ORDER])
+    return order, (len(par) - SERIES) // 2 - order
+
+
+@helper
+def error_places(par: FloatArray, n: int) -> tuple[int, int]:
+    """Where amplitude and phase of the error's harmonic n stand in `par`."""
+    order, more = harmonics(par)
+    at = SERIES + 2 * order + n - 2
+    return (ERROR, PHASE) if n == 1 else (at, at + more)
 
 
 @helper
@@ -87,38 +127,46 @@ def fill_edge(coef: FloatArray, edge: FloatArray, row: int) -> None:
     edge[row, 8], edge[row, 17] = abs(c0) * b0 + abs(c1) * b1 + b2, abs(c0) * j0 + abs(c1) * j1 + j2
 
 
-@kernel
-def tabulate(
-    par: FloatArray, amplitudes: FloatArray, phases: FloatArray, cells: int, degree: int
-) -> tuple[FloatArray, FloatArray]:
-    """Taylor tables `coef` and cell maps `edge` of one period."""
-    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, 30))
+@helper
+def fill_excitation(
+    par: FloatArray, coef: FloatArray, push: FloatArray, roots: FloatArray, weights: FloatArray
+) -> None:
+    """Stiffness and force, both times h^2, about the middles of all cells: coef[:, 3] and push[:, 0]."""
+    cells = len(push)
     turn = 2.0 * math.pi / cells
     h = turn / par[FREQUENCY]
-    drag = 2.0 * par[ZETA] * h
-    push = np.zeros(degree + 1)
+    order, more = harmonics(par)
     for cell in range(cells):
-        angle = turn * (cell + 0.5)
-        spring = coef[cell, 3]
-        spring[0] = par[MEAN] * h * h
-        for j in range(len(amplitudes)):
-            a, at = amplitudes[j] * h * h, (j + 1) * angle + phases[j]
-            add_cosine(spring, a * math.cos(at), a * math.sin(at), (j + 1) * turn)
-        push[:] = 0.0
-        push[0] = par[FORCE] * h * h
-        a, at = par[ERROR] * turn * turn, angle + par[PHASE]
-        add_cosine(push, a * math.cos(at), a * math.sin(at), turn)
+        coef[cell, 3, 0], push[cell, 0, 0] = par[MEAN] * h * h, par[FORCE] * h * h
+    for j in range(order):
+        a, at = par[SERIES + j] * h * h, par[SERIES + order + j]
+        add_harmonic(coef, 3, j + 1, a * math.cos(at), a * math.sin(at), roots, weights)
+    for n in range(1, more + 2):
+        size, phase = error_places(par, n)
+        a, at = par[size] * (n * turn) ** 2, par[phase]
+        add_harmonic(push, 0, n, a * math.cos(at), a * math.sin(at), roots, weights)
+
+
+@kernel
+def tabulate(par: FloatArray, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
+    """Taylor tables `coef` and cell maps `edge` of one period."""
+    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, 30))
+    push, roots, weights = np.zeros((cells, 1, degree + 1)), np.empty((2, 2 * cells)), np.empty(degree + 1)
+    fill_roots(roots)
+    fill_excitation(par, coef, push, roots, weights)
+    drag = 4.0 * math.pi / cells * par[ZETA] / par[FREQUENCY]
+    for cell in range(cells):
         for kind in range(2):
             row = cell + kind * cells
             coef[row, 0, 0] = coef[row, 1, 1] = 1.0
             for k in range(degree - 1):
                 t0, t1 = -drag * (k + 1) * coef[row, 0, k + 1], -drag * (k + 1) * coef[row, 1, k + 1]
-                t2 = push[k] - drag * (k + 1) * coef[row, 2, k + 1]
+                t2 = push[cell, 0, k] - drag * (k + 1) * coef[row, 2, k + 1]
                 if kind == 0:
                     for i in range(k + 1):
-                        t0 -= spring[i] * coef[row, 0, k - i]
-                        t1 -= spring[i] * coef[row, 1, k - i]
-                        t2 -= spring[i] * coef[row, 2, k - i]
+                        t0 -= coef[cell, 3, i] * coef[row, 0, k - i]
+                        t1 -= coef[cell, 3, i] * coef[row, 1, k - i]
+                        t2 -= coef[cell, 3, i] * coef[row, 2, k - i]
                 share = 1.0 / ((k + 2) * (k + 1))
                 coef[row, 0, k + 2], coef[row, 1, k + 2], coef[row, 2, k + 2] = (
                     t0 * share,
@@ -152,55 +200,68 @@ def edge_derivative(
         dedge[p, row, 2 + j if j < 2 else 5] = lower
 
 
+@helper
+def fill_excitation_derivative(
+    par: FloatArray,
+    way: FloatArray,
+    part: FloatArray,
+    push: FloatArray,
+    roots: FloatArray,
+    weights: FloatArray,
+) -> None:
+    """Derivatives of stiffness and force, both times h^2, when `par` changes by `way`: part[:, 3] and push[:, 0]."""
+    cells = len(push)
+    turn = 2.0 * math.pi / cells
+    h, stretch = turn / par[FREQUENCY], -way[FREQUENCY] / par[FREQUENCY]
+    order, more = harmonics(par)
+    for cell in range(cells):
+        part[cell, 3, 0] = (way[MEAN] + 2.0 * stretch * par[MEAN]) * h * h
+        push[cell, 0, :] = 0.0
+        push[cell, 0, 0] = (way[FORCE] + 2.0 * stretch * par[FORCE]) * h * h
+    for j in range(order):
+        size, phase = SERIES + j, SERIES + order + j
+        a = (way[size] + 2.0 * stretch * par[size]) * h * h
+        b = par[size] * way[phase] * h * h
+        c, s = math.cos(par[phase]), math.sin(par[phase])
+        add_harmonic(part, 3, j + 1, a * c - b * s, a * s + b * c, roots, weights)
+    for n in range(1, more + 2):
+        size, phase = error_places(par, n)
+        a, b = way[size] * (n * turn) ** 2, par[size] * way[phase] * (n * turn) ** 2
+        c, s = math.cos(par[phase]), math.sin(par[phase])
+        add_harmonic(push, 0, n, a * c - b * s, a * s + b * c, roots, weights)
+
+
 @kernel
 def differentiate(
-    par: FloatArray,
-    amplitudes: FloatArray,
-    phases: FloatArray,
-    ways: FloatArray,
-    coef: FloatArray,
-    edge: FloatArray,
+    par: FloatArray, ways: FloatArray, coef: FloatArray, edge: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the tables in given directions of the parameters.
 
-    `ways`, (m, 8 + 2 J): changes of `par` (the number of sides is not one), amplitudes and phases. Returns `dcoef`,
+    `ways`, (m, length of `par`): changes of `par`, of all but the number of sides and J. Returns `dcoef`,
     (m, 2 cells, 4, degree + 1), and `dedge`, (m, 2 cells, 6), derivatives of the map over each cell.
     """
-    cells, degree, order = len(edge) // 2, coef.shape[2] - 1, len(amplitudes)
+    cells, degree = len(edge) // 2, coef.shape[2] - 1
     m = len(ways)
     dcoef, dedge = np.zeros((m, 2 * cells, 4, degree + 1)), np.zeros((m, 2 * cells, 6))
-    turn = 2.0 * math.pi / cells
-    h = turn / par[FREQUENCY]
+    push, roots, weights = np.zeros((cells, 1, degree + 1)), np.empty((2, 2 * cells)), np.empty(degree + 1)
+    fill_roots(roots)
+    h = 2.0 * math.pi / cells / par[FREQUENCY]
     drag = 2.0 * par[ZETA] * h
-    push = np.zeros(degree + 1)
     for p in range(m):
+        fill_excitation_derivative(par, ways[p], dcoef[p], push, roots, weights)
         stretch = -ways[p, FREQUENCY] / par[FREQUENCY]  # dh/h
         ddrag = 2.0 * ways[p, ZETA] * h + drag * stretch
         for cell in range(cells):
-            angle = turn * (cell + 0.5)
-            spring = dcoef[p, cell, 3]
-            spring[0] = (ways[p, MEAN] + 2.0 * stretch * par[MEAN]) * h * h
-            for j in range(order):
-                a = (ways[p, 8 + j] + 2.0 * stretch * amplitudes[j]) * h * h
-                b = amplitudes[j] * ways[p, 8 + order + j] * h * h
-                at = (j + 1) * angle + phases[j]
-                c, s = math.cos(at), math.sin(at)
-                add_cosine(spring, a * c - b * s, a * s + b * c, (j + 1) * turn)
-            push[:] = 0.0
-            push[0] = (ways[p, FORCE] + 2.0 * stretch * par[FORCE]) * h * h
-            a, b = ways[p, ERROR] * turn * turn, par[ERROR] * ways[p, PHASE] * turn * turn
-            c, s = math.cos(angle + par[PHASE]), math.sin(angle + par[PHASE])
-            add_cosine(push, a * c - b * s, a * s + b * c, turn)
             for kind in range(2):
                 row = cell + kind * cells
                 for k in range(degree - 1):
                     t0 = drag * dcoef[p, row, 0, k + 1] + ddrag * coef[row, 0, k + 1]
                     t1 = drag * dcoef[p, row, 1, k + 1] + ddrag * coef[row, 1, k + 1]
                     t2 = drag * dcoef[p, row, 2, k + 1] + ddrag * coef[row, 2, k + 1]
-                    t0, t1, t2 = (k + 1) * t0, (k + 1) * t1, (k + 1) * t2 - push[k]
+                    t0, t1, t2 = (k + 1) * t0, (k + 1) * t1, (k + 1) * t2 - push[cell, 0, k]
                     if kind == 0:
                         for i in range(k + 1):
-                            old, new = coef[cell, 3, i], spring[i]
+                            old, new = coef[cell, 3, i], dcoef[p, cell, 3, i]
                             t0 += old * dcoef[p, row, 0, k - i] + new * coef[row, 0, k - i]
                             t1 += old * dcoef[p, row, 1, k - i] + new * coef[row, 1, k - i]
                             t2 += old * dcoef[p, row, 2, k - i] + new * coef[row, 2, k - i]

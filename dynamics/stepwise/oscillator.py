@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, Integers
+from dynamics.excitation import Harmonics, checked_error, error_names, largest
 from dynamics.laws.contacts import Law
 from dynamics.limits import NUMBER, OSCILLATOR
-from dynamics.naming import natural_size
+from dynamics.naming import natural_size, value_at, with_value
 from dynamics.protocol import Oscillator
-
-OWN = ("damping_ratio", "mean_force", "error_amplitude", "frequency", "error_phase")
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class SmoothOscillator(Oscillator):
     .. math::
 
         \ddot X + 2 \zeta \dot X + f(\omega\tau, X, \dot X)
-        = F_m + \varepsilon \omega^2 \cos(\omega \tau + \varphi_e)
+        = F_m + \omega^2 \sum_j j^2 \varepsilon_j \cos(j \omega \tau + \varphi_{e,j})
 
     Parameters
     ----------
@@ -34,12 +33,14 @@ class SmoothOscillator(Oscillator):
         :math:`f`, periodic in its first argument.
     damping_ratio : float
         :math:`\zeta`; negative values are allowed, a law may hold damping of its own.
-    mean_force, error_amplitude : float
-        :math:`F_m, \varepsilon`.
+    mean_force : float
+        :math:`F_m`.
+    error_amplitude : float or sequence of float
+        :math:`\varepsilon_j` of the harmonics j = 1, 2, ...; a number is the first harmonic alone.
     frequency : float
         :math:`\omega > 0`.
-    error_phase : float
-        :math:`\varphi_e` [rad].
+    error_phase : float or sequence of float
+        :math:`\varphi_{e,j}` [rad], one for each amplitude, or 0 for all of them.
 
     Raises
     ------
@@ -50,9 +51,9 @@ class SmoothOscillator(Oscillator):
     law: Law
     damping_ratio: float
     mean_force: float
-    error_amplitude: float
+    error_amplitude: Harmonics
     frequency: float
-    error_phase: float = 0.0
+    error_phase: Harmonics = 0.0
 
     def __post_init__(self) -> None:
         """Check; every fault is listed."""
@@ -60,9 +61,12 @@ class SmoothOscillator(Oscillator):
         if not all(hasattr(self.law, name) for name in ("names", "values", "data", "surfaces")):
             laws = "PowerContact, SmoothedBacklash, TabulatedContact, CompiledLaw"
             faults.add("law", self.law, "must be a law", laws)
-        for name in OWN:
+        for name in ("damping_ratio", "mean_force", "frequency"):
             faults.number(name, getattr(self, name), NUMBER if name == "damping_ratio" else OSCILLATOR[name])
+        amplitude, phase = checked_error(faults, self.error_amplitude, self.error_phase)
         faults.raise_if_any()
+        object.__setattr__(self, "error_amplitude", amplitude)
+        object.__setattr__(self, "error_phase", phase)
         if not np.all(np.isfinite(self.law.values)):
             faults.add("law", self.law.values.tolist(), "must have finite parameters", "correct the law")
         faults.raise_if_any()
@@ -70,17 +74,24 @@ class SmoothOscillator(Oscillator):
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of all parameters: its own and those of the law."""
-        return (*OWN, *self.law.names)
+        return (*self._own_names, *self.law.names)
+
+    @property
+    def _own_names(self) -> tuple[str, ...]:
+        """Parameters that are not the law's, as the kernels have them."""
+        amplitudes, phases = error_names(self.error_series.shape[1])
+        first = ("damping_ratio", "mean_force", amplitudes[0], "frequency", phases[0])
+        return (*first, *amplitudes[1:], *phases[1:])
 
     @property
     def floor(self) -> float:
         """Natural size of a displacement."""
-        return natural_size(self.law.size, self.mean_force, self.error_amplitude)
+        return natural_size(self.law.size, self.mean_force, largest(self.error_series))
 
     @property
     def own(self) -> Array:
         """Values of the parameters that are not the law's."""
-        return np.array([getattr(self, name) for name in OWN], dtype=np.float64)
+        return np.array([value_at(self, name) for name in self._own_names], dtype=np.float64)
 
     @property
     def surfaces(self) -> Array:
@@ -131,10 +142,10 @@ class SmoothOscillator(Oscillator):
             If there is no such parameter, or the value is not allowed.
         """
         self._known(parameter)
-        change: dict[str, Any] = {parameter: float(value)}
-        if parameter not in OWN:
-            change = {"law": self.law.with_value(parameter, value)}
-        return dataclasses.replace(self, **change)
+        if parameter in self.law.names:
+            return dataclasses.replace(self, law=self.law.with_value(parameter, value))
+        changed: SmoothOscillator = with_value(self, parameter, float(value))
+        return changed
 
     def rest_state(self) -> Array:
         """State at rest where the mean of the force over the angle balances the mean force; zeros if there is none."""

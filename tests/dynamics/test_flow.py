@@ -27,7 +27,7 @@ unit = st.floats(-1.0, 1.0)
 
 @st.composite
 def oscillators(draw):
-    order = draw(st.integers(0, 3))
+    order, errors = draw(st.integers(0, 3)), draw(st.integers(1, 3))
     return GearOscillator(
         stiffness=FourierStiffness(
             1.0,
@@ -36,10 +36,10 @@ def oscillators(draw):
         ),
         damping_ratio=draw(st.floats(0.0, 0.3)),
         mean_force=0.2 * draw(unit),
-        error_amplitude=0.4 * draw(unit),
+        error_amplitude=tuple(0.4 * draw(unit) / (j + 1) ** 2 for j in range(errors)),
         frequency=draw(st.floats(0.2, 3.0)),
         half_backlash=draw(st.one_of(st.just(0.0), st.floats(0.0, 1.0))),
-        error_phase=np.pi * draw(unit),
+        error_phase=tuple(np.pi * draw(unit) for _ in range(errors)),
         one_sided=draw(st.integers(0, 4)) == 0,
     )
 
@@ -281,7 +281,7 @@ def test_halving_the_cell_gains_the_order(article):
 def test_mirror_image(osc, state):
     osc = dataclasses.replace(osc, one_sided=False)
     image = period_map(osc, state, periods=2)
-    reverse = dataclasses.replace(osc, mean_force=-osc.mean_force, error_amplitude=-osc.error_amplitude)
+    reverse = dataclasses.replace(osc, mean_force=-osc.mean_force, error_amplitude=-osc.error_series[0])
     mirror = period_map(reverse, (-state[0], -state[1]), periods=2)
     assert np.array_equal(mirror.states, -image.states)
     assert np.array_equal(mirror.jacobian, image.jacobian)
@@ -293,7 +293,7 @@ def test_scaling(osc, state, s):
     scaled = dataclasses.replace(
         osc,
         mean_force=s * osc.mean_force,
-        error_amplitude=s * osc.error_amplitude,
+        error_amplitude=s * osc.error_series[0],
         half_backlash=s * osc.half_backlash,
     )
     image = period_map(osc, state)
@@ -310,7 +310,7 @@ def test_shift_of_time(osc, state):
     """All phases moved by one turn leave the motion as it was."""
     turned = dataclasses.replace(
         osc,
-        error_phase=osc.error_phase + 2 * np.pi,
+        error_phase=osc.error_series[1] + 2 * np.pi,
         stiffness=dataclasses.replace(
             osc.stiffness, phases=tuple(p + 2 * np.pi for p in osc.stiffness.phases)
         ),

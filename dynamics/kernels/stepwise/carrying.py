@@ -13,7 +13,6 @@ from dynamics.kernels.stepwise.compiling import (
     FREQUENCY,
     MAX_EVENTS,
     MAX_STEPS,
-    OWN,
     STUCK,
     TINY,
     Model,
@@ -105,7 +104,7 @@ def cross(
     out: FloatArray, k: FloatArray,
 ) -> tuple[int, bool]:  # fmt: skip
     """Change sides, of all surfaces that are crossed here; the derivatives jump by the saltation matrix."""
-    q, ways = model[2], model[4]
+    q, ways, own = model[2], model[4], len(model[0])
     before_x, before_v = k[12, 0], k[12, 1]
     rate = surfaces[i, 0] * before_x + surfaces[i, 1] * before_v
     new = region
@@ -127,7 +126,7 @@ def cross(
             for j in range((len(y) - COLUMNS) // 2):
                 at = COLUMNS + 2 * j
                 off = surfaces[i, 0] * y[at] + surfaces[i, 1] * y[at + 1]
-                if j >= 2 and ways[j - 2] >= OWN and ways[j - 2] - OWN == int(surfaces[i, 3]):
+                if j >= 2 and ways[j - 2] >= own and ways[j - 2] - own == int(surfaces[i, 3]):
                     off -= surfaces[i, 2]
                 y[at + 1] += jump * off / rate
             slope(model, theta, y, new, out, k, 0)

@@ -14,7 +14,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 # began with a function would not be typed as one
 Model = tuple[FloatArray, Any, FloatArray, FloatArray, IntArray]
 
-ZETA, FORCE, ERROR, FREQUENCY, PHASE, OWN = range(6)  # places in `par`; from OWN on a parameter of the law
+# places in `par`; amplitudes and phases of the error's harmonics from the second on begin at MORE
+ZETA, FORCE, ERROR, FREQUENCY, PHASE, MORE = range(6)
 FINE, DIVERGED, CROWDED, TINY, STUCK = range(5)
 MAX_EVENTS = 100_000  # in one call, which is a period at most
 MAX_STEPS = 1_000_000  # likewise: seconds of work

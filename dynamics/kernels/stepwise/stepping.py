@@ -7,11 +7,36 @@ holds X and V alone, or X, V, the logarithm of the determinant of the flow, and 
 import math
 
 from dynamics.kernels.compiling import FloatArray, IntArray
-from dynamics.kernels.stepwise.compiling import ERROR, FORCE, FREQUENCY, OWN, PHASE, ZETA, Model, helper
+from dynamics.kernels.stepwise.compiling import ERROR, FORCE, FREQUENCY, MORE, PHASE, ZETA, Model, helper
 from dynamics.kernels.stepwise.tableau import DENSE, E3, E5, STAGES, A, B, C
 
 COLUMNS = 3  # where the pairs of derivatives begin
 FLOOR = 1e-3  # a derivative smaller than this is computed to an absolute tolerance
+
+
+@helper
+def pushed(par: FloatArray, theta: float) -> float:
+    """Force of the error over w^2."""
+    total = par[ERROR] * math.cos(theta + par[PHASE])
+    more = (len(par) - MORE) // 2
+    for j in range(more):
+        n = j + 2
+        total += n * n * par[MORE + j] * math.cos(n * theta + par[MORE + more + j])
+    return float(total)
+
+
+@helper
+def pushed_by(par: FloatArray, theta: float, way: int) -> float:
+    """Derivative of `pushed` by an amplitude or a phase."""
+    more = (len(par) - MORE) // 2
+    if way == ERROR:
+        return math.cos(theta + par[PHASE])
+    if way == PHASE:
+        return -float(par[ERROR]) * math.sin(theta + par[PHASE])
+    j = (way - MORE) % more
+    n = j + 2
+    angle = n * theta + par[MORE + more + j]
+    return n * n * math.cos(angle) if way - MORE < more else -n * n * float(par[MORE + j]) * math.sin(angle)
 
 
 @helper
@@ -22,9 +47,9 @@ def slope(
     par, law, q, data, ways = model
     w, x, v = par[FREQUENCY], y[0], y[1]
     law(theta, x, v, region, q, data, out)
-    c = math.cos(theta + par[PHASE])
+    push = pushed(par, theta)
     damping = 2.0 * par[ZETA]
-    a = par[FORCE] + par[ERROR] * w * w * c - damping * v - out[0]
+    a = par[FORCE] + w * w * push - damping * v - out[0]
     k[s, 0] = v / w
     k[s, 1] = a / w
     if len(y) == 2:
@@ -41,15 +66,13 @@ def slope(
                 b -= 2.0 * v
             elif way == FORCE:
                 b += 1.0
-            elif way == ERROR:
-                b += w * w * c
             elif way == FREQUENCY:
                 g -= v / w
-                b += 2.0 * par[ERROR] * w * c - a / w
-            elif way == PHASE:
-                b -= par[ERROR] * w * w * math.sin(theta + par[PHASE])
+                b += 2.0 * w * push - a / w
+            elif way < len(par):
+                b += w * w * pushed_by(par, theta, way)
             else:
-                b -= out[3 + way - OWN]
+                b -= out[3 + way - len(par)]
         k[s, at] = g / w
         k[s, at + 1] = b / w
 
@@ -61,8 +84,8 @@ def attempt_state(
 ) -> None:  # fmt: skip
     """The same as `attempt` for X and V alone, three times as fast."""
     par, law, q, data, _ = model
-    per, damping, phase = 1.0 / par[FREQUENCY], 2.0 * par[ZETA], par[PHASE]
-    force, swing = par[FORCE], par[ERROR] * par[FREQUENCY] * par[FREQUENCY]
+    per, damping = 1.0 / par[FREQUENCY], 2.0 * par[ZETA]
+    force, square = par[FORCE], par[FREQUENCY] * par[FREQUENCY]
     x, v = y[0], y[1]
     for s in range(1, STAGES + 1):
         dx = dv = 0.0
@@ -74,7 +97,7 @@ def attempt_state(
         path[s, 0], path[s, 1] = x, v
         law(angle, x, v, region, q, data, few)
         k[s, 0] = v * per
-        k[s, 1] = (force + swing * math.cos(angle + phase) - damping * v - few[0]) * per
+        k[s, 1] = (force + square * pushed(par, angle) - damping * v - few[0]) * per
     new[0], new[1] = x, v
 
 
@@ -143,7 +166,7 @@ def polynomials(
             dv += A[s, j] * k[j, 1]
         x, v, angle = y[0] + h * dx, y[1] + h * dv, theta + C[s] * h
         law(angle, x, v, region, q, data, few)
-        drive = par[FORCE] + par[ERROR] * w * w * math.cos(angle + par[PHASE])
+        drive = par[FORCE] + w * w * pushed(par, angle)
         k[s, 0] = v / w
         k[s, 1] = (drive - 2.0 * par[ZETA] * v - few[0]) / w
     for i in range(2):
