@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import logging
 import os
 import sys
@@ -352,7 +353,10 @@ def _commands() -> int:
 
 
 def _open_streams() -> None:
-    """Give streams that were closed a place that takes everything, lest the first file that is opened becomes one."""
+    """Give streams that were closed a place that takes everything, lest the first file that is opened becomes one.
+
+    Where a stream has not every character, such as with ASCII alone, the missing ones are written by their numbers.
+    """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         try:
             os.fstat(number)
@@ -360,6 +364,9 @@ def _open_streams() -> None:
             os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
             stream = os.fdopen(number, "r" if number == 0 else "w", closefd=False, encoding="utf-8")
             setattr(sys, name, stream)
+    for one in (sys.stdout, sys.stderr):
+        if isinstance(one, io.TextIOWrapper):
+            one.reconfigure(errors="backslashreplace")
 
 
 def _say(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:

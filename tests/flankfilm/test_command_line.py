@@ -206,3 +206,9 @@ def test_every_argument_of_every_command_says_what_it_is(name):
     for argument in app[name].assemble_argument_collection(parse_docstring=True):
         if argument.name != "*":  # the options that follow, each with its own
             assert len(argument.parameter.help or "") > 10, argument.name
+
+
+def test_a_terminal_without_greek_or_micro_is_told_all_the_same(tmp_path):
+    path = scene_file(tmp_path)
+    said = flankfilm("check", path, PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout
+    assert "normal backlash 50.0 \\xb5m" in said
