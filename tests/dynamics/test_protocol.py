@@ -8,6 +8,7 @@ import pytest
 import dynamics
 from base import InputError, quantities
 from dynamics import FourierStiffness, GearOscillator, PowerContact, SmoothOscillator
+from dynamics.flows import flow_of
 
 SERIES = FourierStiffness(1.0, (0.18,), (0.0,))
 EXACT = GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
@@ -34,6 +35,21 @@ def test_scan_of_exponents_is_that_of_the_exact_flow():
     )
     assert ours.exponents == pytest.approx(theirs.exponents, abs=1e-5)
     assert ours.defect < 1e-6
+
+
+@pytest.mark.parametrize("osc", [STEPWISE, EXACT], ids=["stepwise", "exact"])
+def test_stretches_go_through_the_images_of_the_map(osc):
+    """State after every period; the two growths together are those of areas, exp(-2 zeta T) a period."""
+    sizes = [2, 3]
+    found = flow_of(osc).stretches(np.array([0.5, 0.2]), sizes, keep=True)
+    state, images = np.array([0.5, 0.2]), []
+    for _ in range(sum(sizes)):
+        state = dynamics.period_map(osc, state).state
+        images.append(state)
+    assert found.states == pytest.approx(np.array(images), abs=1e-7)
+    assert found.logs.sum(axis=1) == pytest.approx(-2.0 * 0.05 * osc.period * np.array(sizes), abs=1e-7)
+    last = flow_of(osc).stretches(np.array([0.5, 0.2]), sizes)
+    assert last.states == pytest.approx(np.array(images[-1:]), abs=1e-7)
 
 
 def test_states_at_rest_agree():

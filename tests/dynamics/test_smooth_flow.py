@@ -237,6 +237,17 @@ def test_derivatives_against_differences(name):
         assert done.log_determinant == pytest.approx(-0.06 * osc.period, abs=1e-13)
 
 
+@pytest.mark.parametrize("name", ["power", "friction", "table"])
+def test_events_are_the_same_with_derivatives(name):
+    """They are looked for along the same path."""
+    osc = SmoothOscillator(laws()[name], 0.03, 0.1, 0.25, 0.7, 0.3)
+    alone = period_map(osc, (0.5, 0.2), periods=3, extrema=True, tolerance=1e-12)
+    beside = period_map(osc, (0.5, 0.2), periods=3, extrema=True, tolerance=1e-12, parameters=osc.parameters)
+    assert len(alone.events) == len(beside.events) > 3
+    assert beside.events[:, :4] == pytest.approx(alone.events[:, :4], abs=1e-8)
+    assert beside.state == pytest.approx(alone.state, abs=1e-9)
+
+
 def test_friction_in_closed_form():
     """Dry friction on a free oscillator takes 2 mu from the amplitude every half turn."""
     law = CompiledLaw(friction, (("mu", 0.01),), (Surface((0.0, 1.0)),))

@@ -217,11 +217,13 @@ def test_a_peer_gets_the_work_and_its_values_are_compared(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_script_for_scipy_agrees_with_the_exact_flow():
+def test_the_scripts_for_scipy_and_compiled_code_agree_with_the_exact_flow():
     flow = next(case for case in SOLVERS["motion"](True) if case.key == "motion_flow")
     rows = ask(Path(sys.executable), flow, 1)
     scipy = [r for r in rows if r.peer.startswith("scipy")]
     assert scipy[-1].error < 1e-11 < 1e-6 < scipy[0].error < 1e-3
+    compiled = [r for r in rows if r.peer.startswith("compiled DOP853")]
+    assert compiled[-1].error < 1e-11 < 1e-6 < compiled[0].error < 1e-3
     assert all(r.failure == "" or r.failure.startswith("not in that environment") for r in rows)
 
 
