@@ -198,8 +198,9 @@ def _result(gathered: BranchTree, unsure: tuple[float, ...], watch: Stopwatch) -
     """Assemble the record."""
     branches = tuple(gathered.branches)
     bad = [i for i, b in enumerate(branches) if not b.converged]
-    tally = ", ".join(f"{sum(len(b.special(kind)) for b in branches)} {kind}s" for kind in KINDS)
-    message = f"{len(branches)} branches; {tally}"
+    counts = {kind: sum(len(b.special(kind)) for b in branches) for kind in KINDS}
+    tally = ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in counts.items())
+    message = f"{len(branches)} branch{'' if len(branches) == 1 else 'es'}; {tally}"
     if bad:
         message += f"; branch {bad[0]} did not end well: {branches[bad[0]].message}"
     if unsure:

@@ -26,8 +26,8 @@ class TorqueCurves:
     """Mesh stiffness and transmission error over torque, dry; ``message`` says why torques are missing."""
 
     torque: Array = quantity("N m", "torque of the pinion", "torque")
-    secant_stiffness: Array = quantity("N/m", "mean force over deflection", "torque", error="error")
-    stiffness: Array = quantity("N/m", "mean slope of force over deflection", "torque", error="error")
+    secant_stiffness: Array = quantity("N/m", "mean mesh stiffness (secant)", "torque", error="error")
+    stiffness: Array = quantity("N/m", "mean mesh stiffness (tangent)", "torque", error="error")
     transmission_error: Array = quantity(
         "m", "transmission error, peak to peak", "torque", shown="um", error="range_error"
     )

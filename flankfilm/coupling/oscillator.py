@@ -115,15 +115,14 @@ class PairOscillator:
         ]
         if scales is None:
             return tuple((name, "", value) for name, _, value in own)
-        measured = self.reference and MEANINGS[self.reference]
         return (
             *own,
             ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
             ("mean stiffness k_m", f"{scales.mean_stiffness:.5g} N/m", "1"),
             ("equivalent mass m_e", f"{scales.equivalent_mass:.5g} kg", "1"),
             ("natural frequency", f"{scales.natural_frequency:.5g} Hz", "1"),
+            ("resonance speed n_E1", f"{scales.rpm(1.0):.5g} rpm of the pinion", "1"),
             ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
-            *([("stiffness measured against", measured, "")] if measured else []),
         )
 
 

@@ -60,7 +60,7 @@ class Curves:
 
     label: str = quantity("", "model")
     single_stiffness: Array = quantity(
-        "N/m", "stiffness of one pair, secant, under the whole force", "path", error="error", no_error=UNKNOWN
+        "N/m", "secant stiffness of one pair: under the whole force", "path", error="error", no_error=UNKNOWN
     )
     secant_stiffness: Array = quantity(
         "N/m", "secant stiffness of the mesh: force over deflection", "position"

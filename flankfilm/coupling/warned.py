@@ -4,16 +4,31 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+
+NUMBER = re.compile(r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)")
 
 
 def distinct(caught: Iterable[warnings.WarningMessage]) -> list[warnings.WarningMessage]:
-    """Drop warnings that differ from an earlier one in their numbers alone."""
-    seen: dict[str, warnings.WarningMessage] = {}
+    """Warnings that differ in their numbers alone as one, which says over what the numbers range."""
+    alike: dict[tuple[str, ...], list[warnings.WarningMessage]] = {}
     for warning in caught:
-        seen.setdefault(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", str(warning.message)), warning)
-    return list(seen.values())
+        alike.setdefault(tuple(NUMBER.split(str(warning.message))[::2]), []).append(warning)
+    return [_joined(group) for group in alike.values()]
+
+
+def _joined(group: Sequence[warnings.WarningMessage]) -> warnings.WarningMessage:
+    """The first of warnings that are alike, with every number that differs as a range."""
+    first = group[0]
+    parts = [
+        said[0] if len(set(said)) == 1 else f"{min(said, key=float)} to {max(said, key=float)}"
+        for said in zip(*(NUMBER.split(str(one.message)) for one in group), strict=True)
+    ]
+    text = "".join(parts)
+    if text == str(first.message):
+        return first
+    return warnings.WarningMessage(first.category(text), first.category, first.filename, first.lineno)
 
 
 @contextmanager

@@ -24,7 +24,9 @@ def gained(found: Optimum) -> list[str]:
 
 
 def _gain(one: Gain, found: Optimum) -> str:
-    ends = f"{one.objective}: {number(one.best, 5)} against {number(one.start, 5)} of the scene as it stands"
+    name, unit = key_words(one.objective)
+    best, start = (f"{number(value, 5)} {unit}".removesuffix(" -") for value in (one.best, one.start))
+    ends = f"{name}: {best} against {start} of the scene as it stands"
     if not one.told_apart:
         return f"{ends}, no gain: they differ by no more than {error_said(one.objective, found)}"
     more = "less" if one.best < one.start else "more"

@@ -116,7 +116,7 @@ def _facts(results: Results) -> list[Fact]:
     facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
     if count := len(run_parts.misses(results)):
         facts.append(Fact(f"{counted(count, 'figure')} beyond the tolerance, or in doubt", "decisions"))
-    if count := sum(len(run.warnings) for run in results.runs.values()):
+    if count := len({text for run in results.runs.values() for text in run.warnings}):
         facts.append(Fact(counted(count, "warning"), "decisions"))
     return facts
 

@@ -137,7 +137,8 @@ def _supply(stage: FilmAlongPath) -> Iterator[str]:
 def _mixed(stage: FilmAlongPath) -> Iterator[str]:
     if stage.film_ratio is not None and stage.asperity_share is not None:
         least, largest = (percent(share) for share in _ends(stage.asperity_share))
-        yield said("mixed", ratio=_ends(stage.film_ratio), least=least, largest=largest)
+        ratio = min(stage.least_film_ratio, float(stage.film_ratio.min())), float(stage.film_ratio.max())
+        yield said("mixed", ratio=ratio, least=least, largest=largest)
 
 
 def _ends(curve: Array) -> tuple[float, float]:

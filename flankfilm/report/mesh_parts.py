@@ -10,7 +10,7 @@ import numpy as np
 from flankfilm.coupling.references import MEANINGS, PARTS
 from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent, plus_minus
+from flankfilm.report.text import number, percent, plain, plus_minus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -110,18 +110,18 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
         for name in ("mean_stiffness", "mean_secant_stiffness", "iso_mesh_stiffness")
     )
     means = [
-        (f"{name}: {MEANINGS[name]}", number(k, 5), number(s, 5), percent(error))
+        (f"{name}: {MEANINGS[name]}", number(s, 5), number(k, 5), percent(error))
         for name, k, s, error in zip(
             found.reference, tangent.values, secant.values, found.mean_error, strict=True
         )
     ]
-    means.append(("c_gamma of ISO 6336-1", number(float(iso.values), 5), "", ""))
+    means.append(("c_gamma of ISO 6336-1", "", number(float(iso.values), 5), "unknown"))
     whole = sum(found.deflection.values())
     parts = [
         (PARTS[name], number(1e6 * part, 4), percent(part / whole)) for name, part in found.deflection.items()
     ]
     parts.append(("all, against the bores", number(1e6 * whole, 4), ""))
-    heads = ("deflection measured against", f"tangent [{tangent.unit}]", f"secant [{secant.unit}]", "error")
+    heads = ("deflection measured against", f"secant [{secant.unit}]", f"tangent [{tangent.unit}]", "error")
     tables = Table(heads, tuple(means)), Table(("mean deflection, dry", "µm", "of all"), tuple(parts))
     title = "What the deflection is measured against"
     return Part("references", title, tables=tables, notes=(said("references"),))
@@ -137,7 +137,7 @@ def _harmonics(cycle: MeshCycle) -> Table:
         columns.append([number(one, 4) for one in values.values[:LISTED].tolist()])
         scale = values.values[0] / getattr(cycle, name)[0]
         columns.append(
-            ["unknown"] * LISTED if errors is None else [number(scale * one, 2) for one in errors[:LISTED]]
+            ["unknown"] * LISTED if errors is None else [plain(scale * one) for one in errors[:LISTED]]
         )
     return Table(tuple(heads), tuple(zip(*columns, strict=True)), f"Harmonics of the mesh: {cycle.label}.")
 

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 LONGEST = 40
 """Stable ranges listed; the data files hold all."""
 
+NEGLIGIBLE = 0.01
+"""Part of an error below which what it is made of is not named."""
+
 
 def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     """Fourier stiffness with its remainder."""
@@ -76,7 +79,8 @@ def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
         table = Table(("quantity", "dimensionless"), tuple((name, value) for name, _, value in stage.rows()))
         return Part("scaling", "Oscillator", tables=(table,))
     table = Table(("quantity", "physical", "dimensionless"), stage.rows())
-    return Part("scaling", "Physical and dimensionless", tables=(table,))
+    notes = [said("measured_against", what=MEANINGS[stage.reference])] if stage.reference else []
+    return Part("scaling", "Physical and dimensionless", tables=(table,), notes=tuple(notes))
 
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
@@ -161,7 +165,7 @@ def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
     budget = stage.grazing_budget
     exact = "exact to rounding for the stiffness as given"
     note = exact if set(budget) == {"flow"} else plus_minus(stage.least_grazing_error)
-    if "truncation" in budget:
+    if budget.get("truncation", 0.0) > NEGLIGIBLE * (stage.least_grazing_error or 0.0):
         note += f", {percent(budget['truncation'])} by harmonics that the series leaves out"
     value = number((rpm or 1.0) * stage.least_grazing, 5 if rpm else 6)
     return [Headline(name if rpm else f"{name} ω", value, note, unit), *_greatest(stage)]
@@ -195,7 +199,7 @@ def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
     more = f"{stage.longer_order} harmonics have {len(stage.missed)} more" if stage.missed else ""
     if not stage.jumps:
         return [Headline("jump speeds", "none in range", more or "of the branches that were found")]
-    at = ", ".join(f"{_shown(stage, j.frequency)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
+    at = ", ".join(f"{_shown(stage, j.frequency, 5)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
     rest = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
     worst = max((j for j in stage.jumps if j.budget), key=lambda j: j.error, default=None)
     note = f"error up to {percent(worst.error)}" if worst else ""
@@ -286,8 +290,8 @@ def _truncated(stage: SpeedDiagram) -> list[str]:
     return notes
 
 
-def _shown(stage: SpeedDiagram, frequency: float) -> str:
-    return number(frequency * (stage.speed_of_one / factor("rpm") if stage.speed_of_one else 1.0), 6)
+def _shown(stage: SpeedDiagram, frequency: float, digits: int = 6) -> str:
+    return number(frequency * (stage.speed_of_one / factor("rpm") if stage.speed_of_one else 1.0), digits)
 
 
 def _ranges(stage: SpeedDiagram, ranges: tuple[tuple[float, float], ...]) -> str:

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from flankfilm.studies.run import StudyResults
     from flankfilm.studies.study_file import Value
 
+ERRORS = frozenset(ERROR_OF.values())
+"""Outputs that are relative errors of others."""
+
 MOST_ROWS = 100
 """Rows that a page shows; the files hold all."""
 
@@ -232,7 +235,11 @@ def _tolerance(data: xr.Dataset) -> Fact:
 def _range(data: xr.Dataset, name: str) -> Headline:
     """Least and greatest value of an output."""
     values = data[name].values
-    ends = dict.fromkeys(number(float(end(values))) for end in (np.nanmin, np.nanmax))
+    least, most = (float(end(values)) for end in (np.nanmin, np.nanmax))
+    if name in ERRORS:
+        ends = dict.fromkeys((percent(least), percent(most)))
+        return Headline(words(data, name), " to ".join(ends), data[name].attrs["long_name"])
+    ends = dict.fromkeys((number(least), number(most)))
     return Headline(
         words(data, name), " to ".join(ends), data[name].attrs["long_name"], unit_of(data, name, "")
     )
@@ -245,12 +252,22 @@ def _rows(
     caption: str = "",
 ) -> Table:
     """Numbers of rows, values of their keys, and their outputs."""
-    heads = ("row", *map(key_title, asked.keys), *(titled(data, name) for name in asked.outputs))
+    named = (words(data, name) if name in ERRORS else titled(data, name) for name in asked.outputs)
+    heads = ("row", *map(key_title, asked.keys), *named)
+    texts = [percent if name in ERRORS else _output for name in asked.outputs]
     cells = tuple(
-        (str(result.index), *map(_cell, values), *(number(value, 5) for value in result.values))
+        (
+            str(result.index),
+            *map(_cell, values),
+            *(text(value) for text, value in zip(texts, result.values, strict=True)),
+        )
         for values, result in points
     )
     return Table(heads, cells, caption)
+
+
+def _output(value: float) -> str:
+    return number(value, 5)
 
 
 def _cell(value: Value) -> str:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+BOUND = re.compile(r"\[[^\]]*\]|± (?:< )?[\d.e+-]+(?: %)?|\d %")
+"""What a line does not break within: a unit in brackets, an error behind its sign, a per cent."""
+
 
 @dataclass(frozen=True)
 class Drawing:
@@ -28,6 +31,10 @@ class Drawing:
     svg: str
     caption: str
     function: str = ""
+
+
+FEW, MANY = 3, 7
+"""Columns of a table that is no wider than it needs to be, and more than those of one in the page's own type."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +61,24 @@ class Table:
     @property
     def titles(self) -> tuple[str, ...]:
         """Heads of the columns whose units do not break over lines."""
-        return tuple(
-            re.sub(r"\[[^\]]*\]", lambda unit: unit.group().replace(" ", "\u00a0"), h) for h in self.heads
-        )
+        return tuple(map(_unbroken, self.heads))
 
     @property
     def sides(self) -> tuple[str, ...]:
-        """Class of each column: "f" for the first, "t" for words, "n" for numbers."""
-        columns = zip(*self.rows, strict=True) if self.rows else [()] * len(self.heads)
-        return tuple("f" if i == 0 else _side(column) for i, column in enumerate(columns))
+        """Class of each column: "f" for a first one of words, "k" of numbers; "t" for words, "n" for numbers."""
+        columns = list(zip(*self.rows, strict=True)) if self.rows else [()] * len(self.heads)
+        first, *others = (_side(column) for column in columns)
+        return "k" if first == "n" else "f", *others
+
+    @property
+    def width(self) -> str:
+        """Class of the table by its columns: "few", "many", or neither."""
+        return "few" if len(self.heads) <= FEW else "many" if len(self.heads) > MANY else ""
+
+
+def _unbroken(text: str) -> str:
+    """Text whose units, errors and per cents stay on the line of what they belong to."""
+    return BOUND.sub(lambda found: found.group().replace(" ", "\u00a0"), text)
 
 
 def _side(column: Sequence[str]) -> str:
@@ -148,13 +164,14 @@ def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], par
     """Return the page's HTML."""
     import jinja2
 
-    page = jinja2.Template(
-        _text("report.html.j2"),
+    house = jinja2.Environment(
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    house.filters["unbroken"] = _unbroken
+    page = house.from_string(_text("report.html.j2"))
     return str(page.render(title=title, facts=facts, headlines=headlines, sections=parts))
 
 

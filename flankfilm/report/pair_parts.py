@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from base.results import quantities
 from flankfilm.figures.reading import read, read_figure, travel
@@ -15,8 +19,11 @@ if TYPE_CHECKING:
 
     from gears import GearPair, WarmPair
 
-DIGITS = 7
-"""Of lengths: a tenth of a micrometre on a gear of a metre."""
+DECIMALS = {"mm": 4, "µm": 2, "um": 2}
+"""Of lengths: a tenth of a micrometre, and of what is a deviation a hundredth; other figures have five."""
+
+OF_BLANKS = ("pair_rim_thicknesses", "pair_web_thicknesses")
+"""Figures that say nothing of gears that are discs."""
 
 HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle", "backlash")
 """Figures of the pair for the head of a page without any others."""
@@ -34,10 +41,10 @@ def headlines(pair: GearPair) -> list[Headline]:
 
 def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     """Geometry with drawing and tables."""
-    rows = list(geometry_rows(results))
+    rows = _rows(results)
     undercut = ("yes" if tooth.undercut else "no" for tooth in pair.teeth_profiles)
     cells = [(read(results, row.name).label, *_cells(row)) for row in rows]
-    path = ("path of contact A to E [mm]", number(float(travel(results, "path_point_rho1")[-1]), DIGITS))
+    path = ("path of contact A to E [mm]", *_aligned("mm", [float(travel(results, "path_point_rho1")[-1])]))
     common = (*(row for row in cells if len(row) == 2), path)
     both = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
     drawn = pictures(results, "gears_in_mesh", "kinematics")
@@ -51,13 +58,27 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
 
 def printed(results: xr.Dataset) -> list[str]:
     """Lines for the terminal: figures of the pair, then those of pinion and wheel beside each other."""
-    rows = [(" ".join(read(results, row.name).label.split()), _cells(row)) for row in geometry_rows(results)]
+    rows = [(" ".join(read(results, row.name).label.split()), _cells(row)) for row in _rows(results)]
     wide = max((len(name) for name, _ in rows), default=0)
     return [f"{name:<{wide}}" + "".join(f"{cell:>12}" for cell in cells) for name, cells in rows]
 
 
+def _rows(results: xr.Dataset) -> list[Row]:
+    """Figures of the pair; those of rims and webs where a gear has one."""
+    webs = results.get(OF_BLANKS[1])
+    discs = webs is not None and np.allclose(webs, results["pair_face_width"], rtol=1e-12)
+    return [row for row in geometry_rows(results) if not (discs and row.name in OF_BLANKS)]
+
+
 def _cells(row: Row) -> tuple[str, ...]:
-    return tuple(number(value, DIGITS) for value in row.values)
+    return _aligned(row.unit, row.values)
+
+
+def _aligned(unit: str, values: Sequence[float]) -> tuple[str, ...]:
+    """Numbers of one row with the same decimals, as few as show all of them."""
+    texts = [f"{value:.{DECIMALS.get(unit, 5)}f}" if math.isfinite(value) else "-" for value in values]
+    spare = min((len(text) - len(text.rstrip("0")) for text in texts if text != "-"), default=0)
+    return tuple((text[: len(text) - spare] if text != "-" else text).rstrip(".") for text in texts)
 
 
 def heat(warm: WarmPair) -> Part:

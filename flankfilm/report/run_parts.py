@@ -127,7 +127,11 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
 def decisions(results: Results) -> list[Part]:
     """What was decided, how the tolerance was split, and what was warned of; no section without any of it."""
     plan, decided = results.plan, results.decisions
-    warned = [f"{run.title}: {text}" for run in results.runs.values() for text in run.warnings]
+    heard: dict[str, list[str]] = {}
+    for run in results.runs.values():
+        for text in run.warnings:
+            heard.setdefault(text, []).append(run.title)
+    warned = [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
     planned = [] if plan is None else [plan.line]
     lines = (*misses(results), *(d.line for d in decided), *planned, *warned)
     if not lines:

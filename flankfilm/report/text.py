@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+SMALLEST = 1e-6
+"""Relative value below which nobody wants to know how small it is."""
+
 
 def number(value: float, digits: int = 4) -> str:
     """Value with significant digits, without exponent where it is readable."""
@@ -15,12 +20,24 @@ def number(value: float, digits: int = 4) -> str:
     return f"{float(text):.0f}" if "e+" in text else text
 
 
+def plain(value: float, digits: int = 2) -> str:
+    """Value with significant digits and without an exponent, such as an error beside its figure.
+
+    Examples
+    --------
+    >>> plain(1.43e-5), plain(0.0), plain(12.3)
+    ('0.000014', '0', '12')
+    """
+    return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")
+
+
 def percent(value: float | None, digits: int = 2) -> str:
     """Relative value in per cent; "unknown" for None."""
     if value is None or not math.isfinite(value):
         return "unknown"
-    text = f"{100 * value:.{digits}g}"
-    return f"{float(text):g} %" if abs(value) >= 1e-6 or value == 0 else f"{100 * value:.0e} %"
+    if 0 < abs(value) < SMALLEST:
+        return f"< {100 * SMALLEST:.4f} %"
+    return f"{float(f'{100 * value:.{digits}g}'):.12f}".rstrip("0").rstrip(".") + " %"
 
 
 def plus_minus(value: float | None) -> str:

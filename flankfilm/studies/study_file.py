@@ -54,7 +54,9 @@ class Range(Section):
             value = math.exp(low + unit * (high - low))
         else:
             value = self.from_ + unit * (self.to - self.from_)
-        # twelve digits: 0.1 is written as 0.1, whatever the way that led there
+        # twelve digits: 0.1 is written as 0.1, and 0 as 0, whatever the way that led there
+        if abs(value) < 1e-12 * max(abs(self.from_), abs(self.to)):
+            value = 0.0
         value = min(max(float(f"{value:.12g}"), self.from_), self.to) + 0.0
         return round(value) if self.whole else value
 

@@ -22,9 +22,9 @@ LARGEST_RATIO = 4.0
 class Iso6336ContactStress:
     """Nominal contact stress of both gears after ISO 6336-2."""
 
-    Z_H: float = quantity("1", "zone factor")
-    Z_E: float = quantity("Pa^0.5", "elasticity factor", shown="MPa^0.5")
-    Z_eps: float = quantity("1", "contact ratio factor")
+    Z_H: float = quantity("1", "zone factor Z_H")
+    Z_E: float = quantity("Pa^0.5", "elasticity factor Z_E", shown="MPa^0.5")
+    Z_eps: float = quantity("1", "contact ratio factor Z_eps")
     Z_B: float = quantity("1", "single pair tooth contact factor of the pinion, at B")
     Z_D: float = quantity("1", "single pair tooth contact factor of the wheel, at D")
     stresses: tuple[float, float] = quantity(
