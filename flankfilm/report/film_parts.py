@@ -137,7 +137,8 @@ def _supply(stage: FilmAlongPath) -> Iterator[str]:
 def _mixed(stage: FilmAlongPath) -> Iterator[str]:
     if stage.film_ratio is not None and stage.asperity_share is not None:
         least, largest = (percent(share) for share in _ends(stage.asperity_share))
-        ratio = min(stage.least_film_ratio, float(stage.film_ratio.min())), float(stage.film_ratio.max())
+        low, high = _ends(stage.film_ratio)
+        ratio = low if stage.least_film_ratio is None else min(low, stage.least_film_ratio), high
         yield said("mixed", ratio=ratio, least=least, largest=largest)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from flankfilm.coupling.references import MEANINGS, PARTS
 from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent, plain, plus_minus
+from flankfilm.report.text import alike, number, percent, plus_minus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -136,9 +136,7 @@ def _harmonics(cycle: MeshCycle) -> Table:
         heads += [values.label, "±"]
         columns.append([number(one, 4) for one in values.values[:LISTED].tolist()])
         scale = values.values[0] / getattr(cycle, name)[0]
-        columns.append(
-            ["unknown"] * LISTED if errors is None else [plain(scale * one) for one in errors[:LISTED]]
-        )
+        columns.append(["unknown"] * LISTED if errors is None else alike(scale * errors[:LISTED]))
     return Table(tuple(heads), tuple(zip(*columns, strict=True)), f"Harmonics of the mesh: {cycle.label}.")
 
 

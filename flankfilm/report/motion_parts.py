@@ -14,7 +14,7 @@ from flankfilm.coupling.references import MEANINGS
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import counted, number, percent, plus_minus
+from flankfilm.report.text import counted, number, percent, plain, plus_minus
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     if stage.remainder is None:
         return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", "as given")]
     errors = stage.harmonic_error
-    left = "error unknown" if errors is None or not len(errors) else f"± {float(errors[0]):.1g}"
+    left = "error unknown" if errors is None or not len(errors) else f"± {plain(float(errors[0]), 1)}"
     left += f"; beyond {counted(stage.order, 'harmonic')} {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
         left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -29,6 +30,19 @@ def plain(value: float, digits: int = 2) -> str:
     ('0.000014', '0', '12')
     """
     return np.format_float_positional(value, digits, unique=False, fractional=False, trim="-")
+
+
+def alike(values: Sequence[float], digits: int = 2) -> list[str]:
+    """Numbers below each other with the same decimals, those that the largest needs.
+
+    Examples
+    --------
+    >>> alike((3.31e-6, 9.9e-7))
+    ['0.0000033', '0.0000010']
+    """
+    largest = max(map(abs, values), default=0.0)
+    decimals = max(0, digits - 1 - math.floor(math.log10(largest))) if largest > 0 else 0
+    return [f"{value:.{decimals}f}" for value in values]
 
 
 def percent(value: float | None, digits: int = 2) -> str:
