@@ -29,6 +29,8 @@ from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
 from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
 from gears import GearPair, WarmPair
 
+UNRESOLVED = "nan where it is narrower than grids resolve"
+
 
 def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
     """Stiffness of the mesh per face width, with the film where the scene has one."""
@@ -223,19 +225,19 @@ OUTPUTS: Mapping[str, Output] = dict(
             "spike",
             Figure(
                 "Pa",
-                "pressure spike of the contact at C; nan where it is narrower than grids resolve",
+                f"pressure spike of the contact at C; {UNRESOLVED}",
                 shown="GPa",
             ),
             _of_spike(lambda spike, contact: spike.pressure),
         ),
         _through(
             "spike_over_hertz",
-            Figure("1", "pressure spike of the contact at C over its Hertz pressure"),
+            Figure("1", f"pressure spike of the contact at C over its Hertz pressure; {UNRESOLVED}"),
             _of_spike(lambda spike, contact: spike.pressure / contact.peak_pressure),
         ),
         _through(
             "spike_position",
-            Figure("1", "place of the pressure spike at C, in half-widths after the middle"),
+            Figure("1", f"place of the pressure spike at C, in half-widths after the middle; {UNRESOLVED}"),
             _of_spike(lambda spike, contact: spike.position / contact.half_width),
         ),
         _through(

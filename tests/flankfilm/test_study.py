@@ -345,7 +345,7 @@ def test_every_example_is_in_order_and_its_first_row_computes(path):
     result = compute_row(Row(0, plan.raw_scene(0), plan.outputs))
     assert result.fault == ""
     for name, value in zip(plan.outputs, result.values, strict=True):
-        assert math.isfinite(value), name
+        assert math.isfinite(value) or "nan where" in OUTPUTS[name].meaning, name
 
 
 def test_outputs_carry_their_unit_in_the_name():
