@@ -8,8 +8,6 @@ import numpy as np
 
 from base import Array
 
-CC = 0.3
-DD = 0.1
 _NECK_SHARE = 1.5  # nodes at the outlet for one at the inlet: the neck converges last
 _SPIKE_SHARE = 0.6  # nodes at a spike for one at the inlet: more of them starve the inlet on coarse grids
 _UPSTREAM = 0.7  # more costs accuracy at the neck, less leaves teeth
