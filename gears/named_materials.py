@@ -16,6 +16,14 @@ _NYLON = (
     "E: ISO 527, manufacturer's data of Zytel 103HSL at 23 degC; density, nu and expansion: manufacturer's data of "
     "the unfilled resin"
 )
+_ACETAL = (
+    "E, density and expansion: data sheet of Hostaform C 9021 (copolymer; ISO 527, ISO 1183, ISO 11359 at 23 degC); "
+    "nu: as commonly quoted"
+)
+_PEEK = (
+    "E, density and expansion below the glass transition: manufacturer's data of Victrex PEEK 450G (ISO 527, ISO 1183, "
+    "ISO 11359 at 23 degC); nu: as commonly quoted"
+)
 
 
 @dataclass(frozen=True)
@@ -66,7 +74,22 @@ MATERIALS: Mapping[str, NamedMaterial] = MappingProxyType(
             Material(3.1e9, 0.41, 1140.0, 100e-6), _NYLON, 0.1, "falls to a half at 60 degC; creeps"
         ),
         "PA66 conditioned": NamedMaterial(
-            Material(1.4e9, 0.41, 1140.0, 100e-6), _NYLON, 0.3, "at 50 % relative humidity; creeps"
+            Material(1.4e9, 0.41, 1140.0, 100e-6),
+            _NYLON,
+            0.3,
+            "at 50 % relative humidity; softens with temperature; creeps",
+        ),
+        "POM": NamedMaterial(
+            Material(2.85e9, 0.37, 1410.0, 110e-6),
+            _ACETAL,
+            0.1,
+            "softens with temperature; creep modulus 2.5 GPa after an hour, 1.3 GPa after 1000 hours at 23 degC",
+        ),
+        "PEEK": NamedMaterial(
+            Material(4.0e9, 0.4, 1300.0, 55e-6),
+            _PEEK,
+            0.1,
+            "softens little up to the glass transition at 143 degC, much above it; creeps",
         ),
     }
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -39,6 +40,29 @@ def test_each_is_a_sound_material_with_its_source():
         assert 0.0 < known.scatter < 0.5
     with pytest.raises(GeometryError, match="must be a name of the list"):
         named_material("unobtainium")
+
+
+def test_plastics_say_what_temperature_and_time_do():
+    for name, known in MATERIALS.items():
+        plastic = known.material.youngs_modulus < 30e9
+        assert plastic == bool(known.material.thermal_expansion > 50e-6), name
+        if plastic:
+            assert "creep" in known.note
+            assert "temperature" in known.note or "degC" in known.note or "humidity" in known.note
+
+
+def test_the_page_has_every_material_with_its_constants():
+    page = Path("docs/howto/materials.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1:-1] for line in page.splitlines() if line.startswith("| `")]
+    printed = {name.strip(" `"): cells for name, *cells in rows}
+    for name in ("cast steel", "EN-GJL-250", "PA66 dry", "PA66 conditioned", "POM", "PEEK"):
+        known = MATERIALS[name].material
+        E, nu, density, expansion = (float(cell) for cell in printed[name][:4])
+        assert (E * 1e9, nu, density) == pytest.approx(
+            (known.youngs_modulus, known.poisson_ratio, known.density)
+        )
+        assert expansion * 1e-6 == pytest.approx(known.thermal_expansion)
+        assert float(printed[name][4].strip(" %")) == pytest.approx(100 * MATERIALS[name].scatter)
 
 
 def test_names_in_scenes():
