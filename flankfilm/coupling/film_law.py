@@ -145,15 +145,27 @@ class FilmLaw:
         some = np.isfinite(rho1)
         return np.where(some, separation, 0.0), np.where(some, np.minimum(slope, 0.0), 0.0)
 
-    def every_second(self) -> FilmLaw:
-        """Law without every second film, both ends kept: from there the law goes on to the ends of the path.
+    def halves(self) -> tuple[FilmLaw, FilmLaw]:
+        """Laws by every second film: from the first on with the last one too, and those left out.
 
-        Where these are half a step h from the ends, as midpoints of equal intervals are, and the law is smooth,
-        leaving out the second film moves it at the end by f'' h^2/4, 2/3 of what it is off there; without the first
-        one it would not reach the end. Between films it moves by three times what it is off.
+        With films in the middle of intervals h of a smooth law, the first of these is off at the end of the path by
+        f'' h^2/4 more, 2/3 of what the law itself is off there, and the second by f' h/2, as it does not reach the end.
+        Between films both are off by four times as much. Behind a meniscus, where places beyond the films have the
+        nearest one, both ends stay in both.
         """
         count, held = self.rho1.size, self.held
-        each = np.unique(np.append(np.arange(0, count, 2), count - 1))
+        ends = [0, count - 1]
+        even = np.unique(np.append(np.arange(0, count, 2), ends))
+        odd = (
+            np.arange(1, count, 2)
+            if held is None and count > 1
+            else np.unique(np.append(np.arange(1, count, 2), ends))
+        )
+        return self._of(even), self._of(odd)
+
+    def _of(self, each: NDArray[np.intp]) -> FilmLaw:
+        """Law by some of the films."""
+        held = self.held
         if held is not None:
             held = HeldMeniscus(held.place[each], held.flooded_separation[each], held.flooded_exponent[each])
         return FilmLaw(self.rho1[each], self.force[each], self.separation[each], self.exponent[each], held)

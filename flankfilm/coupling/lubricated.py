@@ -41,11 +41,11 @@ SOFTER = (
 )
 """Why films and load share do not agree, and what to do."""
 
-BETWEEN = 1.0
-"""Part of what leaving out every second film changes that the films left out between those solved would.
+BETWEEN = 0.5**0.5
+"""Part of what either half of the films alone changes that the films left out between those solved would.
 
-A third where the law is smooth, one and a half at ends of the path (`FilmLaw.every_second`); extremes lie where pairs
-come and go, where halving the step halves the error.
+Changes are added as squares, so this is their mean. A smooth law is off by a third of it, at ends of the path by one
+and a half (`FilmLaw.halves`); extremes lie where pairs come and go, where halving the step halves the error.
 """
 
 DIFFERENCE = "not estimated: the difference of two means that have errors"
@@ -307,7 +307,7 @@ class _Run:
         law = self.law(path)
         tolerance = min(self.resolution.sampling, self.resolution.transmission_error)
         own = ((other, 1.0) for other in off_by_errors(law, path))
-        varied = (*own, (law.every_second(), BETWEEN))
+        varied = (*own, *((half, BETWEEN) for half in law.halves()))
         cycle = self.teeth.cycle(self.dry.position.size, law, tolerance, varied)
         if self.teeth.pairs == "coupled":
             yields = film_yielding(law, cycle.rho1, cycle.forces, cycle.load_share)

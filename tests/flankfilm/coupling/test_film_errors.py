@@ -82,12 +82,11 @@ def test_estimates_hold_what_more_and_tighter_films_change(name: str):
 def test_films_by_formula_err_by_their_interpolation_alone():
     cycle = cycle_of(Case(film=FilmModel("dowson")), 40)
     assert cycle.arcs is not None
-    (other, share), own = cycle.arcs.varied[-1], cycle.arcs.arcs
-    assert len(cycle.arcs.varied) == 1
-    assert share == BETWEEN
-    changed = abs(other.mean("stiffness")[0] - own.mean("stiffness")[0])
+    halves, own = cycle.arcs.varied, cycle.arcs.arcs
+    assert [share for _, share in halves] == [BETWEEN, BETWEEN]
+    changed = [other.mean("stiffness")[0] - own.mean("stiffness")[0] for other, _ in halves]
     error = replace(cycle.arcs, other=0.0).mean("stiffness").error
-    assert error == pytest.approx(np.hypot(share * changed, own.mean("stiffness")[1]), rel=1e-12)
+    assert error == pytest.approx(np.hypot(BETWEEN * np.hypot(*changed), own.mean("stiffness")[1]), rel=1e-12)
     assert error > 0.0
 
 
@@ -105,12 +104,15 @@ def test_a_law_goes_on_half_a_step_beyond_its_films():
     assert np.all(slope <= 0.0)
 
 
-def test_every_second_film_is_left_out_and_both_ends_stay():
+def test_halves_of_the_films():
     one = np.ones(5)
     held = replace(law(), held=HeldMeniscus(2 * one, 1e-6 * one, 0.1 * one))
-    for found in (law().every_second(), held.every_second()):
+    for found in (law().halves()[0], held.halves()[0]):
         assert found.rho1 == pytest.approx([1e-3, 3e-3, 5e-3])
         assert found.separation == pytest.approx([2e-7, 10e-7, 26e-7])
+    assert law().halves()[1].rho1 == pytest.approx([2e-3, 4e-3])
+    # behind a meniscus the nearest film stands beyond the ends
+    assert held.halves()[1].rho1 == pytest.approx([1e-3, 2e-3, 4e-3, 5e-3])
 
 
 def test_films_left_out_tell_what_the_end_of_the_path_errs_by():
@@ -118,5 +120,5 @@ def test_films_left_out_tell_what_the_end_of_the_path_errs_by():
     rho1 = 1e-3 * (np.arange(12) + 0.5)
     given = FilmLaw(rho1, np.full(12, 1000.0), 1e-7 * (1 + (1e3 * rho1 - 3.0) ** 2), np.full(12, 0.1))
     start, force = np.zeros((1, 1)), np.full((1, 1), 1000.0)
-    here, fewer = (float(one(start, force)[0][0, 0]) for one in (given, given.every_second()))
+    here, fewer = (float(one(start, force)[0][0, 0]) for one in (given, given.halves()[0]))
     assert (fewer - here) / (here - 1e-6) == pytest.approx(2 / 3, rel=1e-6)
