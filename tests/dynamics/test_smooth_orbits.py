@@ -268,6 +268,20 @@ def test_below_and_above_a_table_its_law_goes_on(power):
     assert force(above)[:, 1] == pytest.approx(power, rel=5e-3)
 
 
+def test_stiffer_angles_go_on_by_the_tangent_to_where_softer_ones_end():
+    """F = c d^1.3 with c = 1.5 at the first of three angles, whose table ends before those of the others."""
+    forces, c, n = np.geomspace(0.2, 1.0, 5), np.array([1.5, 1.0, 1.0]), 1.3
+    law = TabulatedContact.from_deflections(
+        forces, (forces / c[:, None]) ** (1 / n), half_backlash=0.2, order=1, intervals=400
+    )
+    end = 1.5 ** (-1 / n)
+    depth = np.linspace(end, 1.0, 6)[1:-1]
+    found = dynamics.restoring_force(SmoothOscillator(law, 0.05, 0.1, 0.2, 0.6), 0.0, 0.2 + depth)
+    slope = n * 1.5 * end ** (n - 1.0)
+    assert found[:, 0] == pytest.approx(1.0 + slope * (depth - end), rel=1e-3)
+    assert found[:, 1] == pytest.approx(slope, rel=2e-3)
+
+
 def replace_law(osc: SmoothOscillator, law) -> SmoothOscillator:
     return replace(osc, law=law)
 
