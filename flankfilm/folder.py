@@ -20,21 +20,35 @@ DAMAGE = (OSError, RuntimeError, ValueError, LookupError, TypeError, SyntaxError
 
 ELSEWHERE = "Name another with --out"
 
+REPORTS = {
+    "results.nc": "a run",
+    "study.nc": "a study",
+    "optimum.nc": "an optimisation",
+    "verify.nc": "a verification",
+}
+"""Files of data that have a ``report.html`` beside them, and of what they are: a folder holds one of them."""
+
 AWAY = "Move it away, or name another folder with --out"
 
 
-def claim(folder: Path, files: Iterable[str] = (), folders: Iterable[str] = ()) -> None:
+def claim(folder: Path, data: str = "", files: Iterable[str] = (), folders: Iterable[str] = ()) -> None:
     """Make the folder and see that it can be written before anything is computed.
 
     Parameters
     ----------
     folder : Path
+    data : str
+        Which of `REPORTS` will be written: no other one may be there with its report, which would be replaced.
     files, folders : iterable of str
         Names in it that will be files and folders: none of them may be there as the other.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError.at(folder, "", "is a file, not a folder", ELSEWHERE)
     with Faults() as faults:
+        others = [name for name in REPORTS if name != data and (folder / name).exists()]
+        if data and others and (folder / "report.html").exists():
+            found = f"holds {REPORTS[others[0]]} ({others[0]}), whose report.html would be replaced"
+            faults.add(str(folder), "", found, ELSEWHERE)
         for path in (folder / name for name in files):
             if path.is_dir():
                 faults.add(str(path), "", "is a folder, and a file of that name will be written", AWAY)

@@ -56,7 +56,7 @@ def run_scene(
     start = time.perf_counter()
     if folder is None:
         return _computed(scene, use_cache, progress)[0]
-    claim(folder, files=("results.nc", "report.html", MANIFEST), folders=("csv", "vtk"))
+    claim(folder, "results.nc", files=("results.nc", "report.html", MANIFEST), folders=("csv", "vtk"))
     with locked(folder):
         found, engine = _computed(scene, use_cache, progress)
         progress("netCDF and CSV files", 1, 1)

@@ -38,6 +38,11 @@ class Work:
     identity: Mapping[str, Any]
     columns: Columns
 
+    @property
+    def data(self) -> str:
+        """File of data that becomes of the rows."""
+        return {"study": "study.nc", "optimisation": "optimum.nc"}[self.kind]
+
 
 @dataclass(frozen=True)
 class KeptRows:
@@ -81,7 +86,7 @@ def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
         Where the folder cannot be written or another process works there, where it holds rows of something else or of
         other code, or of this work without `resume`.
     """
-    claim(folder)
+    claim(folder, work.data)
     for path in (folder / ROWS, _note(folder, work)):
         refuse_irregular(path)
     with locked(folder):

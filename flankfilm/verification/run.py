@@ -47,6 +47,6 @@ def verify_scene(
             Fault(name, "", "is required to verify", f"Add the section {name}") for name in lacking
         )
     if folder is not None:
-        claim(folder)
+        claim(folder, "verify.nc")
     announce = in_steps(progress, 3)
     return Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))[VERIFICATION]

@@ -24,7 +24,7 @@ from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
 from flankfilm.bench.run import Bench, bench
 from flankfilm.bench.stepwise_cases import stepwise
-from flankfilm.bench.tables import clock, read_bench, remarks, summaries, write_tables
+from flankfilm.bench.tables import clock, number, read_bench, remarks, summaries, write_tables
 from flankfilm.bench.work_cases import work_contact, work_film, work_geometry
 from flankfilm.coupling import mesh_cycle
 from flankfilm.figures.bench import error_against_cost
@@ -313,3 +313,7 @@ def test_pairs_added_are_those_of_the_mesh_cycle(form):
 )
 def test_times_are_told_in_the_unit_that_suits_them(seconds, text):
     assert clock(seconds) == text
+
+
+def test_errors_are_told_in_two_digits_and_missing_ones_by_a_dash():
+    assert [number(one) for one in (0.0123, 1.06e-9, math.nan, math.inf)] == ["1.2e-02", "1.1e-09", "-", "-"]

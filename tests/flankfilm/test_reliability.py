@@ -17,7 +17,7 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.folder import locked
+from flankfilm.folder import claim, locked
 from flankfilm.manifest import conclude
 from flankfilm.report.contents import summary
 from flankfilm.reproduce import scene_in
@@ -220,6 +220,23 @@ class TestAFolderThatSomebodyPrepared:
         os.mkfifo(begun / "scene.toml")
         with pytest.raises(InputError, match="a pipe or a device, not a file"):
             read_scene(begun / "scene.toml")
+
+
+@pytest.mark.parametrize("data", ["results.nc", "study.nc", "optimum.nc", "verify.nc"])
+def test_a_report_is_not_replaced_by_that_of_something_else(tmp_path, data):
+    """A folder holds a run, a study, an optimisation or a verification; each may be done again there."""
+    for name in (data, "report.html"):
+        (tmp_path / name).write_text("of an earlier one")
+    for other in ("results.nc", "study.nc", "optimum.nc", "verify.nc"):
+        if other == data:
+            claim(tmp_path, other)
+        else:
+            with pytest.raises(
+                InputError, match=f"holds an? .* \\({data}\\), whose report.html would be replaced"
+            ):
+                claim(tmp_path, other)
+    (tmp_path / "report.html").unlink()
+    claim(tmp_path, "study.nc")
 
 
 def test_two_runs_do_not_share_a_folder(tmp_path):
