@@ -149,7 +149,7 @@ def diagram(
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     >>> found = diagram(osc, "frequency", (0.6, 0.68), periods=(1,), searches=1, swept=0)
     >>> found.message
-    '2 branches; 1 saddle-nodes, 0 period-doublings, 1 grazings'
+    '2 branches; 1 saddle-node, 0 period-doublings, 1 grazing'
     >>> [round(point.parameter, 6) for point in found.special("saddle-node")]
     [0.655576]
     """

@@ -168,7 +168,7 @@ def solve_mixed(
     >>> ground = Roughness(deviation=0.1e-6, density=4e10, tip_radius=1e-5)
     >>> mixed = solve_mixed(LineContact.from_moes(M=20.0, L=10.0), ground)
     >>> f"film ratio {mixed.film_ratio:.2f}, asperities carry {100 * mixed.asperity_share:.1f} %"
-    'film ratio 2.42, asperities carry 0.2 %'
+    'film ratio 2.43, asperities carry 0.2 %'
     """
     if not isinstance(roughness, Roughness):
         raise InputError.at(

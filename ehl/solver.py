@@ -92,7 +92,7 @@ def solve(
     >>> film.converged, film.error < 0.005
     (True, True)
     >>> f"{film.central_moes:.2f} {film.minimum_moes:.2f}"
-    '4.35 3.78'
+    '4.35 3.79'
     """
     options = Options(tolerance, nodes, domain, grid, supply, spike).checked(contact)
     warn_of_range(contact)

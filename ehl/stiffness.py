@@ -59,7 +59,7 @@ def stiffness_table(
     >>> film = solve(LineContact.from_moes(M=20.0, L=10.0))
     >>> for row in stiffness_table(film, face_width=0.04):
     ...     print(f"{row.definition:15}{row.stiffness:.2e} N/m")
-    approach       2.32e+11 N/m
+    approach       2.31e+11 N/m
     tangent        2.72e+11 N/m
     nodal-sum      3.95e+10 N/m
     dowson-central 3.45e+11 N/m

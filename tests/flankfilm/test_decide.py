@@ -254,7 +254,7 @@ def test_a_run_says_what_it_decided(tmp_path):
         assert json.loads(held.attrs["decisions_json"]) == [
             d.plain() | {"candidates": [c.__dict__ for c in d.candidates]} for d in results.decisions
         ]
-    page = unescape((tmp_path / "report.html").read_text(encoding="utf-8"))
+    page = unescape((tmp_path / "report.html").read_text(encoding="utf-8")).replace("\u00a0", " ")
     assert [d.reason for d in results.decisions if d.reason not in page] == []
 
 

@@ -51,8 +51,8 @@ def test_geometry_alone_needs_no_material_is_printed_and_written(tmp_path):
     printed = {
         line[: line.index("]") + 1]: line.split("]")[1].split() for line in summary(found) if "]" in line
     }
-    assert printed["span W_k over k teeth [mm]"] == ["7.660439", "10.75263"]
-    assert printed["transverse contact ratio [-]"] == [f"{found.values['pair'].contact_ratio:.7g}"]
+    assert printed["span W_k over k teeth [mm]"] == ["7.6604", "10.7526"]
+    assert printed["transverse contact ratio [-]"] == [f"{found.values['pair'].contact_ratio:.5f}"]
     with (tmp_path / "csv" / "geometry.csv").open(encoding="utf-8", newline="") as file:
         rows = {row["figure"]: row for row in csv.DictReader(file)}
     assert float(rows["span W_k over k teeth"]["wheel"]) == pytest.approx(10.75263, abs=1e-5)
