@@ -6,7 +6,9 @@ from runs import EXAMPLES, example, results, save
 
 from base import SolverError
 from flankfilm import figures
+from flankfilm.figures.reading import key_words
 from flankfilm.scene.reader import validated
+from flankfilm.stages.catalogue import FILM, PAIR
 from flankfilm.studies.plan import read_plan
 
 
@@ -14,10 +16,10 @@ def main() -> None:
     """Write docs/images/film_*.png."""
     for path in sorted((EXAMPLES / "studies").glob("film_*.toml")):
         plan = read_plan(path)
-        key = plan.keys[0].rpartition(".")[2]
+        name, unit = key_words(plan.keys[0])
         try:
             family = {
-                f"{key} = {row[0]:g}": results(validated(plan.raw_scene(i)), ("pair", "film"))
+                f"{name} {row[0]:g} {unit}": results(validated(plan.raw_scene(i)), (PAIR, FILM))
                 for i, row in enumerate(plan.rows)
             }
         except SolverError as fault:

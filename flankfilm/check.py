@@ -61,7 +61,7 @@ def check_scene(scene: Scene) -> list[str]:
         lines += [decision.line for decision in plan.decisions]
         lines.append(plan.line)
     lines.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")
-    return lines
+    return list(dict.fromkeys(lines))  # what several builders warn of is said once
 
 
 def needed(stage: Stage[Any]) -> set[Stage[Any]]:

@@ -203,7 +203,7 @@ def words(results: xr.Dataset, name: str) -> str:
     """Name of a study's output without its unit, as a person writes it."""
     if name.endswith("_error"):  # of another output, relative
         return f"error of the {name.removesuffix('_error').replace('_', ' ')}"
-    return name.removesuffix(f"_{suffix(read_in(results, name))}").replace("_", " ")
+    return name.removesuffix(f"_{suffix(read_in(results, name))}").replace("_", " ").replace("K v", "K_v")
 
 
 def unit_of(results: xr.Dataset, name: str, pure: str = "-") -> str:

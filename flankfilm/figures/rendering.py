@@ -147,8 +147,8 @@ def draw(plotter: Any, view: View, at: float) -> None:
         gear["shown"] = factor * (values if values.ndim == 1 else np.linalg.norm(values, axis=1))
         surface = gear.extract_surface(nonlinear_subdivision=1, algorithm="dataset_surface")
         bar = {
-            "title": f"{title(view.field)}{unit}", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
-            "fmt": "%.0f", "position_x": 0.3, "position_y": 0.03, "width": 0.4, "height": 0.09,
+            "title": f"{title(view.field)}{unit}\n ", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
+            "fmt": "%.0f", "position_x": 0.3, "position_y": 0.03, "width": 0.4, "height": 0.13,
             "title_font_size": view.size[1] // 32, "label_font_size": view.size[1] // 36,
         }  # fmt: skip
         plotter.add_mesh(

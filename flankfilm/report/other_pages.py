@@ -236,13 +236,15 @@ def _range(data: xr.Dataset, name: str) -> Headline:
     """Least and greatest value of an output."""
     values = data[name].values
     least, most = (float(end(values)) for end in (np.nanmin, np.nanmax))
+    meaning = str(data[name].attrs["long_name"]).partition(";")[0]
     if name in ERRORS:
         ends = dict.fromkeys((percent(least), percent(most)))
-        return Headline(words(data, name), " to ".join(ends), data[name].attrs["long_name"])
-    ends = dict.fromkeys((number(least), number(most)))
-    return Headline(
-        words(data, name), " to ".join(ends), data[name].attrs["long_name"], unit_of(data, name, "")
-    )
+        return Headline(words(data, name), " to ".join(ends), meaning)
+    if (error := ERROR_OF.get(name)) in data:
+        worst = float(data[error].values[np.isfinite(values)].max())
+        meaning += f"; {plus_minus(worst)}{' at most' if np.isfinite(worst) else ''}"
+    ends = dict.fromkeys((_output(least), _output(most)))
+    return Headline(words(data, name), " to ".join(ends), meaning, unit_of(data, name, ""))
 
 
 def _rows(

@@ -10,6 +10,7 @@ import pytest
 import flankfilm as ff
 from base import RangeWarning
 from dynamics import diagram
+from flankfilm.check import check_scene
 from flankfilm.coupling.warned import distinct
 from flankfilm.figures.reading import words
 from flankfilm.report.page import Part, Table, render
@@ -105,3 +106,13 @@ def test_a_range_meets_zero(low, high, steps):
 def test_errors_among_outputs_are_named_by_what_they_are_of():
     results = ff.run(parse_scene(SCENE.format(wheel=""))).dataset
     assert words(results, "transmission_error_error") == "error of the transmission error"
+
+
+def test_a_check_says_a_warning_once():
+    shifted = SCENE.format(wheel=", profile_shift = 0.1").replace(
+        "teeth = 20", "teeth = 20, profile_shift = 0.1"
+    )
+    distance = 1e3 * ff.run(parse_scene(shifted)).values["pair"].working_centre_distance
+    rounded = parse_scene(f"{shifted}centre_distance_mm = {distance - 5e-4}\n")
+    (line,) = [line for line in check_scene(rounded) if line.startswith("Warning")]
+    assert "taken as rounded" in line
