@@ -155,6 +155,7 @@ def film_families(
             for axes, what in ((hertz, "film_hertz_pressure"), (along, "film_minimum_thickness")):
                 curves(axes, travel(results, "film_rho1"), {label: read(results, what)}, **look)
         from_zero(pressure, hertz, along)
+        hertz.set(ylabel=read(results, "film_hertz_pressure").named("Hertz pressure"))
         pressure.set(xlim=(-1.5, 1.2))
         thickness.set(xlabel=THROUGH, xlim=(-1.5, 1.2), ylim=(0, 2 * _thickest(thickness)))
         along.set(xlabel=PATH_LABEL)
