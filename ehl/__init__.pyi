@@ -1,4 +1,6 @@
 from .asperities import Roughness as Roughness
+from .bodies import STEEL as STEEL
+from .bodies import Solid as Solid
 from .contact import LineContact as LineContact
 from .film import DEFINITIONS as DEFINITIONS
 from .film import Film as Film
@@ -29,3 +31,6 @@ from .stiffness import StiffnessRow as StiffnessRow
 from .stiffness import stiffness_table as stiffness_table
 from .supply import Meniscus as Meniscus
 from .supply import OilLayer as OilLayer
+from .thermal import Losses as Losses
+from .thermal import ThermalFilm as ThermalFilm
+from .thermal import solve_thermal as solve_thermal

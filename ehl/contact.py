@@ -24,6 +24,7 @@ LIMITS = {
         "if both surfaces move backwards, give the magnitude and mirror x",
     ),
     "radius": Limit.above(0.0, 1e6, "m", "give R in m"),
+    "sliding": Limit(-1e9, 1e9, "m/s", "give u1 - u2 in m/s"),
     "reduced_modulus": Limit.above(0.0, 1e14, "Pa", "give E' in Pa, 2.26e11 for steel"),
 }
 """What the numbers of a line contact may be."""
@@ -57,6 +58,8 @@ class LineContact:
         E' = 2/[(1 - nu1^2)/E1 + (1 - nu2^2)/E2] [Pa]; twice the E* of contact mechanics.
     lubricant : Lubricant
         The oil.
+    sliding : float
+        u1 - u2, velocity of one surface over the other [m/s], positive where the first is the faster.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class LineContact:
     radius: float
     reduced_modulus: float
     lubricant: Lubricant
+    sliding: float = 0.0
 
     def __post_init__(self) -> None:
         """Check every field."""
@@ -144,6 +148,11 @@ class LineContact:
     def peak_pressure(self) -> float:
         """Hertz pressure p_H = 2w/(pi b) [Pa]."""
         return 2.0 * self.load / (math.pi * self.half_width)
+
+    @property
+    def surface_speeds(self) -> tuple[float, float]:
+        """Velocities of both surfaces towards the outlet [m/s]."""
+        return self.entrainment + 0.5 * self.sliding, self.entrainment - 0.5 * self.sliding
 
     def film_parameter(self, film: float) -> float:
         """Film over the sagitta of the dry contact, h R/b^2 [-]."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -132,25 +132,39 @@ def load_inside(grid: Grid, groups: Groups) -> float:
     return LOAD - 0.5 * groups.tail(grid) / float(grid.nodes[0]) ** 2
 
 
-def fluxes(grid: Grid, groups: Groups, P: Array, H: Array, faces: Array) -> tuple[Array, Array]:
+class Fluid(NamedTuple):
+    """What the flux needs to know of the oil at every node, all (n,) and by the dimensionless pressure."""
+
+    ln_viscosity: Array  # ln(eta/eta0) of the viscosity that the pressure flow feels
+    viscosity_slope: Array
+    density: Array  # rho/rho0
+    density_slope: Array
+
+
+class Oil(Protocol):
+    """Oil whose state depends on more than the pressure."""
+
+    flux: float  # through the cells, of the last step
+
+    def at(self, P: Array, H: Array) -> Fluid:
+        """State under pressures and gaps."""
+
+
+def plain_oil(groups: Groups, P: Array) -> Fluid:
+    """Isothermal, Newtonian oil under pressures."""
+    ln_viscosity, viscosity_slope = groups.lubricant.log_viscosity(groups.pressure * P)
+    density, density_slope = groups.lubricant.density_ratio(groups.pressure * P)
+    return Fluid(ln_viscosity, viscosity_slope * groups.pressure, density, density_slope * groups.pressure)
+
+
+def fluxes(
+    grid: Grid, groups: Groups, P: Array, H: Array, faces: Array, fluid: Fluid | None = None
+) -> tuple[Array, Array]:
     """Flux through each cell and its derivatives, see :func:`ehl.kernels.reynolds`."""
     from ehl.kernels import reynolds
 
-    p = groups.pressure * P
-    ln_viscosity, viscosity_slope = groups.lubricant.log_viscosity(p)
-    density, density_slope = groups.lubricant.density_ratio(p)
-    found: tuple[Array, Array] = reynolds(
-        grid.nodes,
-        P,
-        H,
-        faces,
-        ln_viscosity,
-        viscosity_slope * groups.pressure,
-        density,
-        density_slope * groups.pressure,
-        groups.lam,
-        grid.upstream,
-    )
+    state = plain_oil(groups, P) if fluid is None else fluid
+    found: tuple[Array, Array] = reynolds(grid.nodes, P, H, faces, *state, groups.lam, grid.upstream)
     return found
 
 

@@ -149,7 +149,7 @@ def _open(grid: Grid, groups: Groups, P: Array, centre: float) -> float:
     return H0 - 1.2 * min(lowest, 0.0)
 
 
-def _transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[Array, float]:
+def transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[Array, float]:
     """Carry a solution to another grid or contact: pressure over x/b as it is, gap scaled by the expected film.
 
     A spike that moves with the inlet zone is carried along, so that it meets the nodes laid for it.
@@ -184,4 +184,4 @@ def cold(contact: LineContact, plan: Plan, grid: Grid, H_c: float) -> Level:
 def warm(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> Level:
     """Solve from a solution of another grid or of a neighbouring contact."""
     groups = Groups.on(contact, grid)
-    return Level(contact, plan, grid, newton(grid, groups, *_transfer(old, contact, plan, grid)))
+    return Level(contact, plan, grid, newton(grid, groups, *transfer(old, contact, plan, grid)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -23,18 +23,29 @@ from ehl.rheology import (
     roelands_index,
 )
 
+_POLE = 138.0  # temperature at which Roelands' viscosity is infinite [K]
+
 LIMITS = {
     "viscosity": Limit.above(0.0, 1e100, "Pa s", "give eta0 in Pa s"),
     "pressure_viscosity": Limit(0.0, 1e-6, "1/Pa", "give alpha in 1/Pa, near 2e-8 for mineral oil"),
     "density": Limit.above(0.0, 1e5, "kg/m3", "give rho0 in kg/m3"),
     "roelands_z": Limit.above(0.0, 2.0, remedy="leave it out to derive it from alpha"),
+    "temperature": Limit(150.0, 1000.0, "K", "give it in K: 353.15 is 80 degC"),
+    "viscosity_slope": Limit(0.0, 0.5, "1/K", "give -d ln(eta)/dT in 1/K, near 0.04"),
+    "conductivity": Limit.above(0.0, 10.0, "W/(m K)", "near 0.14 for oils"),
+    "heat_capacity": Limit.above(0.0, 1e5, "J/(kg K)", "near 2000 for oils"),
+    "expansion": Limit(0.0, 0.01, "1/K", "near 6.5e-4 for oils"),
+}
+_STRESS_LIMITS = {
+    "eyring_stress": Limit.above(0.0, 1e12, "Pa", "5e6 to 1e7 is usual; leave it out for a Newtonian oil"),
+    "limiting_shear_ratio": Limit.above(0.0, 1.0, remedy="0.03 to 0.06 is usual; leave it out for no limit"),
 }
 """What the numbers of a lubricant may be."""
 
 
 @dataclass(frozen=True)
 class Lubricant:
-    """A Newtonian, isothermal lubricant.
+    """A lubricant: viscosity and density under pressure, and what shear and heat make of them.
 
     Viscosity follows Roelands (1966), Barus (1893) or nothing, density Dowson and Higginson (1966) or
     nothing, unless another law is given:
@@ -62,6 +73,21 @@ class Lubricant:
         Another law; its slope at ambient pressure has to be ``pressure_viscosity``.
     density_law : DensityLaw, optional
         Another law than Dowson and Higginson's.
+    temperature : float
+        T0 at which viscosity and density are given [K].
+    viscosity_slope : float
+        beta = -d ln(eta)/dT at T0 and ambient pressure [1/K]; 0 for none.
+    conductivity : float
+        k [W/(m K)].
+    heat_capacity : float
+        c at constant pressure [J/(kg K)].
+    expansion : float
+        Thermal expansion by volume [1/K].
+    eyring_stress : float, optional
+        tau0 of sinh shear thinning [Pa]; Newtonian when not given. Like all of these but the laws it is
+        read by :func:`ehl.solve_thermal` alone: :func:`ehl.solve` is isothermal and Newtonian.
+    limiting_shear_ratio : float, optional
+        Greatest mean shear stress over the pressure [-]; no limit when not given.
 
     Raises
     ------
@@ -87,12 +113,22 @@ class Lubricant:
     compressible: bool = True
     viscosity_law: ViscosityLaw | None = None
     density_law: DensityLaw | None = None
+    temperature: float = field(default=313.15, repr=False)
+    viscosity_slope: float = field(default=0.04, repr=False)
+    conductivity: float = field(default=0.14, repr=False)
+    heat_capacity: float = field(default=2000.0, repr=False)
+    expansion: float = field(default=6.5e-4, repr=False)
+    eyring_stress: float | None = field(default=None, repr=False)
+    limiting_shear_ratio: float | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         """Check every field."""
         with Faults.of(self, LIMITS) as found:
             if not isinstance(self.compressible, bool | np.bool_):
                 found.add("compressible", self.compressible, "must be True or False")
+            for name, limit in _STRESS_LIMITS.items():
+                if getattr(self, name) is not None:
+                    found.number(name, getattr(self, name), limit)
             self._check_laws(found)
             derived = not found.found and self.viscosity_law is None and self.roelands_z is None
             if derived and self.pressure_viscosity > 0 and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
@@ -151,6 +187,22 @@ class Lubricant:
     def log_viscosity(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return ln(eta/eta0) and its derivative by p [1/Pa] at the pressures p [Pa], any shape."""
         return self.law.log_ratio(p)
+
+    def hot_log_viscosity(self, p: ArrayLike, T: ArrayLike) -> tuple[Array, Array]:
+        """Return ln(eta/eta0) and its derivative by p [1/Pa] at pressures [Pa] and temperatures [K].
+
+        ``ln eta = -9.67 + (ln eta(p, T0) + 9.67) [(T - 138)/(T0 - 138)]^-S0``, S0 = beta (T0 - 138)/(ln eta0 + 9.67):
+        Roelands' law where eta(p, T0) is, and the same fan of lines for other laws of pressure.
+
+        References
+        ----------
+        C. J. A. Roelands, thesis, Delft (1966).
+        """
+        ratio, slope = self.law.log_ratio(p)
+        above = math.log(self.viscosity) - ROELANDS_LN_VISCOSITY
+        exponent = self.viscosity_slope * (self.temperature - _POLE) / above
+        cooling = ((np.asarray(T, dtype=float) - _POLE) / (self.temperature - _POLE)) ** -exponent
+        return (above + ratio) * cooling - above, slope * cooling
 
     def density_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return rho/rho0 and its derivative by p [1/Pa] at the pressures p [Pa], any shape."""

@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv, dgetrs
 
 from base import Array, Integers
-from ehl.discrete import Grid, Groups, film_gap, fluxes, inlet_pressure, load_inside
+from ehl.discrete import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.grid import face_weights
 
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
 _STEP_DONE = 1e-6  # Newton converges quadratically: after such a step the error is near rounding
+_CALM_AFTER = 20  # steps after which an oil that keeps going round is followed more slowly,
+_CALM = 0.5  # by this share
 _GAP_SHARE = 0.1  # a relative change of the gap counts as this much change of pressure
 
 
@@ -70,6 +72,8 @@ def newton(
     loose: bool = False,
     spent: int = 0,
     max_iterations: int = 60,
+    oil: Oil | None = None,
+    done: float = _STEP_DONE,
 ) -> Iteration:
     """Solve Reynolds' equation, the gap and the load balance together.
 
@@ -91,11 +95,16 @@ def newton(
         Steps already taken by an earlier stage, counted into ``iterations``.
     max_iterations : int
         Limit on the Newton steps of this stage.
+    oil : Oil, optional
+        Oil whose state depends on more than the pressure; it follows every step, and its own changes are not
+        part of the matrix, so that the last steps shrink by a factor each.
+    done : float
+        Step after which the stage ends.
     """
     from ehl.kernels import newton_matrix
 
     faces = face_weights(grid.nodes, upwind=True) if upwind else grid.quick
-    step_done = 1e-2 if loose else _STEP_DONE
+    step_done = 1e-2 if loose else done
     influence = -groups.compliance * grid.potential
     load = load_inside(grid, groups)
     P = P.copy()
@@ -110,7 +119,10 @@ def newton(
         if not H.min() > 0.0:
             message, factors = "the film falls below rounding", None
             break
-        flux, slopes = fluxes(grid, groups, P, H, faces)
+        fluid = None if oil is None else oil.at(P, H)
+        flux, slopes = fluxes(grid, groups, P, H, faces, fluid)
+        if oil is not None:
+            oil.flux = _flux_error(flux, np.flatnonzero(inside))[0]
         imbalance = np.diff(flux)
         joins = ~inside[1:-1] & (imbalance > 0.0)
         inside[1:-1] |= joins
@@ -130,12 +142,14 @@ def newton(
         largest = float(np.max(np.abs(dP)))
         shrink = float(np.max(-dH / H))
         t = min(1.0, _PRESSURE_STEP / max(largest, 1e-300), (1.0 - _GAP_LEFT) / max(shrink, 1e-300))
+        if oil is not None and iterations > _CALM_AFTER:
+            t *= _CALM
         P = P + t * dP
         leaves = inside & (P < 0.0)
         P[leaves] = 0.0
         inside &= ~leaves
         H0 += t * dH0
-        settled = t == 1.0 and not joins.any() and not leaves.any()
+        settled = t >= _CALM and not joins.any() and not leaves.any()
         converged = settled and max(largest, _GAP_SHARE * float(np.max(np.abs(dH) / H))) < step_done
         # clipping negative pressures presses on the bodies, which may close a gap that the step left open
         before, H = H, film_gap(grid, groups, P, H0)
@@ -143,7 +157,7 @@ def newton(
         if closed > 0.0 and leaves.any():
             H0 += closed
             H = H + closed
-    flux, _ = fluxes(grid, groups, P, H, faces)
+    flux, _ = fluxes(grid, groups, P, H, faces, None if oil is None else oil.at(P, H))
     mean, flux_error = _flux_error(flux, np.flatnonzero(inside))
     return Iteration(
         P=P,

@@ -16,7 +16,7 @@ from ehl.response import slopes
 from ehl.run import DRY, Run
 from ehl.supply import OilLayer
 
-_GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
+GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 
 
@@ -33,7 +33,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     names = ("central_thickness", "minimum_thickness", "separation")
     changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
-    return _GRID_FACTOR * (profile + math.fsum(changes))
+    return GRID_FACTOR * (profile + math.fsum(changes))
 
 
 def pressure_error(coarse: Level, fine: Level) -> float:
@@ -72,7 +72,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     lost = _SEPARATION_LOSS * inlet
     change = before.separation / shown.separation - 1.0
-    off = _GRID_FACTOR * abs(change) + lost
+    off = GRID_FACTOR * abs(change) + lost
     steeper = slope_before.separation / slope.separation - 1.0
     errors = FilmErrors(
         film=error,
@@ -81,7 +81,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + lost,
         inlet=inlet,
         separation_shift=math.copysign(off, change),
-        slope_shift=_GRID_FACTOR * steeper,
+        slope_shift=GRID_FACTOR * steeper,
         pressure=pressure_error(coarse, fine),
     )
     groups = fine.groups
