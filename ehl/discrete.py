@@ -144,7 +144,7 @@ class Fluid(NamedTuple):
 class Oil(Protocol):
     """Oil whose state depends on more than the pressure."""
 
-    flux: float  # through the cells, of the last step
+    unsettled: float  # by how much of itself its own state has still to change
 
     def at(self, P: Array, H: Array) -> Fluid:
         """State under pressures and gaps."""

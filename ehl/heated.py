@@ -15,6 +15,7 @@ from ehl.discrete import Fluid, Grid, Groups, plain_oil
 _FOLLOWED = (
     0.4  # share of a step that temperatures take: all of it goes round, by expansion and compression heat
 )
+_COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
 _INLET = 150.0  # gap over the central film ahead of which the oil has its undisturbed temperature
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
@@ -34,13 +35,13 @@ class Heated:
     groups: Groups
     solids: tuple[Solid, Solid] | None  # None: temperatures stay those of the bulk
     bulk: Array  # (2,) [K]
-    flux: float
     temperature: Array = field(init=False)  # (n, m) [K]
     into: Array = field(init=False)  # (2, n) [W/m2]
     sigma: Array = field(init=False)  # (n,)
     bodies: Array = field(init=False)  # (2, n, n) [K m2/W]
     across: Across = field(default_factory=lobatto)
     last: int = 0
+    unsettled: float = 0.0
     before: Fluid | None = None
     moved: Array | None = None
     gap: Array = field(init=False)
@@ -175,7 +176,9 @@ class Heated:
                 backward,
             )
         self.temperature[self.last + 1 :] = self.temperature[self.last]
-        self.temperature = before + _FOLLOWED * (self.temperature - before)
+        change, warm = self.temperature - before, self.temperature - self.undisturbed
+        self.unsettled = float(np.abs(change).sum() / max(np.abs(warm).sum(), warm.size * _COLD))
+        self.temperature = before + _FOLLOWED * change
         self.into = taken + _FOLLOWED * (self.into - taken)
 
     @property
@@ -229,4 +232,4 @@ class Heated:
     def softer(self, share: float) -> Heated:
         """Return the same oil on the same grid with a share of the sliding."""
         contact = replace(self.contact, sliding=share * self.contact.sliding)
-        return Heated(contact, self.grid, self.groups, self.solids, self.bulk, self.flux)
+        return Heated(contact, self.grid, self.groups, self.solids, self.bulk)

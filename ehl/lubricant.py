@@ -36,11 +36,12 @@ LIMITS = {
     "heat_capacity": Limit.above(0.0, 1e5, "J/(kg K)", "near 2000 for oils"),
     "expansion": Limit(0.0, 0.01, "1/K", "near 6.5e-4 for oils"),
 }
+"""What the numbers of a lubricant may be."""
+
 _STRESS_LIMITS = {
     "eyring_stress": Limit.above(0.0, 1e12, "Pa", "5e6 to 1e7 is usual; leave it out for a Newtonian oil"),
     "limiting_shear_ratio": Limit.above(0.0, 1.0, remedy="0.03 to 0.06 is usual; leave it out for no limit"),
 }
-"""What the numbers of a lubricant may be."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from ehl.grid import face_weights
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
 _STEP_DONE = 1e-6  # Newton converges quadratically: after such a step the error is near rounding
+_OIL_DONE = 2e-3  # what an oil's own state may still change by, of itself
 _CALM_AFTER = 20  # steps after which an oil that keeps going round is followed more slowly,
 _CALM = 0.5  # by this share
 _GAP_SHARE = 0.1  # a relative change of the gap counts as this much change of pressure
@@ -121,8 +122,6 @@ def newton(
             break
         fluid = None if oil is None else oil.at(P, H)
         flux, slopes = fluxes(grid, groups, P, H, faces, fluid)
-        if oil is not None:
-            oil.flux = _flux_error(flux, np.flatnonzero(inside))[0]
         imbalance = np.diff(flux)
         joins = ~inside[1:-1] & (imbalance > 0.0)
         inside[1:-1] |= joins
@@ -151,6 +150,7 @@ def newton(
         H0 += t * dH0
         settled = t >= _CALM and not joins.any() and not leaves.any()
         converged = settled and max(largest, _GAP_SHARE * float(np.max(np.abs(dH) / H))) < step_done
+        converged = converged and (oil is None or oil.unsettled < _OIL_DONE)
         # clipping negative pressures presses on the bodies, which may close a gap that the step left open
         before, H = H, film_gap(grid, groups, P, H0)
         closed = float(np.max(_GAP_LEFT * before - H))

@@ -1,4 +1,4 @@
-"""Compiled kernels across the film: Eyring's flow in closed form, heat, and the bodies' moving sources.
+"""Compiled kernels across the film: Eyring's flow in closed form, and heat.
 
 Places across the film are zeta = z/h from -1/2 (first surface) to 1/2; phi = 1/eta there. Shear stress is
 tau_m + h p' zeta and the shear rate tau0 phi sinh(tau/tau0); with Sig = h p'/(2 tau0) and t = tau_m/tau0 that is
@@ -305,76 +305,3 @@ def heat_across(
             high += derive[m - 1, k] * solved[k]
         into[0, i] = conductivity / h * low
         into[1, i] = -conductivity / h * high
-
-
-@njit(cache=True, error_model="numpy")
-def bessel_k(y: float) -> tuple[float, float]:
-    """exp(y) K0(y) and exp(y) K1(y) for y > 0, by the polynomials of Abramowitz and Stegun 9.8, to 2e-7."""
-    if y <= 2.0:
-        q = (y / 3.75) ** 2
-        i0 = 1 + q * (
-            3.5156229 + q * (3.0899424 + q * (1.2067492 + q * (0.2659732 + q * (0.0360768 + q * 0.0045813))))
-        )
-        i1 = 0.5 + q * (
-            0.87890594
-            + q * (0.51498869 + q * (0.15084934 + q * (0.02658733 + q * (0.00301532 + q * 0.00032411))))
-        )
-        r = 0.25 * y * y
-        k0 = -math.log(0.5 * y) * i0 - 0.57721566
-        k0 += r * (
-            0.42278420
-            + r * (0.23069756 + r * (0.03488590 + r * (0.00262698 + r * (0.00010750 + r * 0.00000740))))
-        )
-        k1 = 1 + r * (
-            0.15443144
-            + r * (-0.67278579 + r * (-0.18156897 + r * (-0.01919402 + r * (-0.00110404 - r * 0.00004686))))
-        )
-        k1 = k1 / y + math.log(0.5 * y) * y * i1
-        grow = math.exp(y)
-        return grow * k0, grow * k1
-    r = 2.0 / y
-    k0 = 1.25331414 + r * (
-        -0.07832358
-        + r * (0.02189568 + r * (-0.01062446 + r * (0.00587872 + r * (-0.00251540 + r * 0.00053208))))
-    )
-    k1 = 1.25331414 + r * (
-        0.23498619
-        + r * (-0.03655620 + r * (0.01504268 + r * (-0.00780353 + r * (0.00325614 - r * 0.00068245))))
-    )
-    root = math.sqrt(y)
-    return k0 / root, k1 / root
-
-
-@njit(cache=True, error_model="numpy")
-def source_integral(s: float) -> float:
-    """Integral of exp(y) K0(|y|) from 0 to s, of either sign."""
-    y = abs(s)
-    if y < 1e-12:
-        return 0.0
-    k0, k1 = bessel_k(y)
-    if s > 0.0:
-        behind: float = y * (k0 + k1) - 1.0
-        return behind
-    if y > 300.0:
-        return -1.0
-    ahead: float = -(y * math.exp(-2.0 * y) * (k0 - k1) + 1.0)
-    return ahead
-
-
-@njit(cache=True, error_model="numpy")
-def moving_source(x: Array, drift: float, conductivity: float) -> Array:
-    """Surface temperature of a half-space at every node per heat flux in every node's cell [K m2/W].
-
-    Jaeger's steady line source, exp(a s) K0(|a s|)/(pi k) at the distance s behind it, a = u/(2 kappa) [1/m],
-    integrated over the cells.
-    """
-    n = x.size
-    out = np.empty((n, n))
-    for i in range(n):
-        before = source_integral(drift * (x[i] - x[0]))
-        for k in range(n):
-            edge = x[k] if k == n - 1 else 0.5 * (x[k] + x[k + 1])
-            after = source_integral(drift * (x[i] - edge))
-            out[i, k] = (before - after) / (drift * math.pi * conductivity)
-            before = after
-    return out

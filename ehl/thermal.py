@@ -176,7 +176,7 @@ def solve_thermal(
         if last is None:
             isothermal = newton(grid, groups, P, H0)
             P, H0 = isothermal.P, isothermal.H0
-        empty = replace(base.found, P=P, H0=H0, flux=base.found.flux * base.groups.gap / groups.gap)
+        empty = replace(base.found, P=P, H0=H0)
         before, last = last, search.on(Level(contact, base.plan, grid, empty), last or before)
 
 
@@ -229,7 +229,7 @@ class _Search:
     def on(self, level: Level, other: tuple[Level, Heated] | None) -> tuple[Level, Heated] | None:
         """Solve on a level's grid from its pressures and from another solution's temperatures."""
         groups = Groups.on(self.contact, level.grid)
-        oil = Heated(self.contact, level.grid, groups, self.solids, self.bulk, level.found.flux)
+        oil = Heated(self.contact, level.grid, groups, self.solids, self.bulk)
         if other is not None:
             oil.start_from(other[1])
         elif self.start is not None and self.start.oils is not None:
@@ -241,9 +241,7 @@ class _Search:
         self.restarts += 1
         partly: tuple[Level, Heated] | None = None
         for share in _SHARES:
-            oil = Heated(self.contact, level.grid, groups, self.solids, self.bulk, level.found.flux).softer(
-                share
-            )
+            oil = Heated(self.contact, level.grid, groups, self.solids, self.bulk).softer(share)
             if partly is not None:
                 oil.start_from(partly[1])
             partly = self._newton(level if partly is None else partly[0], oil)

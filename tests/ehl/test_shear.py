@@ -6,7 +6,7 @@ from scipy import special
 
 from ehl.across import lobatto
 from ehl.bodies import Solid, surface_heating
-from ehl.shear_kernels import bessel_k, eyring, flow_across, gradient, heat_across
+from ehl.shear_kernels import eyring, flow_across, gradient, heat_across
 
 ZETA, WEIGHTS, DERIVE, DERIVE_2, SUM_UP = lobatto()
 FLAT = np.full(ZETA.size, 3.0)
@@ -126,11 +126,6 @@ def test_couette_flow_with_heat_is_nahmes(number):
     assert found[0] == pytest.approx(stress, rel=1e-8)
     # all that is sheared leaves through the walls
     assert into[:, 1].sum() == pytest.approx(stress * slide, rel=1e-6)
-
-
-def test_bessel_functions():
-    for y in (1e-4, 0.3, 1.9, 2.1, 40.0, 1e4):
-        assert bessel_k(y) == pytest.approx((special.k0e(y), special.k1e(y)), rel=5e-7)
 
 
 def test_a_fast_surface_warms_as_blok_has_it_and_a_slow_one_as_jaeger():

@@ -141,6 +141,14 @@ def test_a_neighbour_is_a_start():
     assert again.cost.iterations <= alone.cost.iterations
 
 
+def test_temperatures_settle_where_they_do_not_feed_back_on_the_film():
+    """Viscosity that no heat changes: pressures stand at once, and the heat has still to go round."""
+    oil = replace(OIL, viscosity_slope=0.0, expansion=0.0, eyring_stress=None)
+    film = sound_enough(solve_thermal(replace(SLIDING, lubricant=oil), nodes=129))
+    assert abs(film.losses.closure) < 0.01
+    assert film.temperature_error < 0.05
+
+
 def test_bad_arguments_are_listed_at_once():
     with pytest.raises(InputError) as caught:
         solve_thermal(SLIDING, solids=(1, 2), bulk_temperatures=(20.0, 353.0), tolerance=0.0)
