@@ -11,7 +11,7 @@ import numpy as np
 
 from base import Array, Faults
 from dynamics.limits import OSCILLATOR
-from dynamics.stiffness import MAX_ORDER
+from dynamics.stiffness import MAX_ORDER, numbers
 
 Harmonics: TypeAlias = float | tuple[float, ...]
 """A number for the first harmonic alone, or one number for each of several."""
@@ -52,7 +52,7 @@ def _several(given: object) -> bool:
 def _numbers(faults: Faults, name: str, given: object) -> tuple[float, ...]:
     if not isinstance(given, Sequence | np.ndarray) or not _several(given):
         return (faults.number(name, given, OSCILLATOR[name]),)
-    return tuple(faults.number(f"{name}[{j}]", one, OSCILLATOR[name]) for j, one in enumerate(given))
+    return numbers(faults, name, given)
 
 
 def as_series(amplitude: Harmonics, phase: Harmonics) -> Array:

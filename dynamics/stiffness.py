@@ -48,8 +48,8 @@ class FourierStiffness:
         """Check and convert; every fault is listed."""
         with Faults() as faults:
             mean = faults.number("stiffness.mean", self.mean, NUMBER)
-            amplitudes = _numbers(faults, "stiffness.amplitudes", self.amplitudes)
-            phases = _numbers(faults, "stiffness.phases", self.phases)
+            amplitudes = numbers(faults, "stiffness.amplitudes", self.amplitudes)
+            phases = numbers(faults, "stiffness.phases", self.phases)
             order = len(amplitudes)
             if len(phases) != order:
                 allowed = f"must be {order} phases, one per amplitude"
@@ -100,7 +100,7 @@ class FourierStiffness:
         return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)
 
 
-def _numbers(faults: Faults, where: str, given: object) -> tuple[float, ...]:
+def numbers(faults: Faults, where: str, given: object) -> tuple[float, ...]:
     """Sequence of numbers as a tuple; what is none is noted."""
     if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
         faults.add(where, given, "must be a sequence of numbers", "give one number per harmonic")

@@ -3,28 +3,24 @@
 import math
 
 from dynamics.kernels.compiling import (
-    ERROR,
     FORCE,
     FREQUENCY,
     HALF_BACKLASH,
-    ORDER,
-    PHASE,
-    SERIES,
     SIDES,
     FloatArray,
     helper,
 )
 from dynamics.kernels.roots import first_exit
+from dynamics.kernels.tables import error_places, harmonics
 
 
 @helper
 def push_at_start(par: FloatArray) -> float:
     """External force at tau = 0."""
-    push = par[ERROR] * math.cos(par[PHASE])
-    first = SERIES + 2 * int(par[ORDER])
-    more = (len(par) - first) // 2
-    for j in range(more):
-        push += (j + 2) ** 2 * par[first + j] * math.cos(par[first + more + j])
+    push = 0.0
+    for n in range(1, harmonics(par)[1] + 2):
+        size, phase = error_places(par, n)
+        push += n * n * par[size] * math.cos(par[phase])
     return float(par[FORCE] + push * par[FREQUENCY] ** 2)
 
 
