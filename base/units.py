@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|W|Hz|rad|rad/s"
+_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|W/(m K)|J/(kg K)"
 
 FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "%": 1e-2,
@@ -64,8 +64,8 @@ def unit_of(name: str) -> str:
 
     Examples
     --------
-    >>> [unit_of(name) for name in ("module_mm", "density_per_mm2", "mean_N_per_m", "teeth")]
-    ['mm', '1/mm2', 'N/m', '1']
+    >>> [unit_of(name) for name in ("module_mm", "density_per_mm2", "conductivity_W_per_m_K", "teeth")]
+    ['mm', '1/mm2', 'W/(m K)', '1']
     """
     fitting = [unit for unit in FACTORS if (end := suffix(unit)) and name.endswith(f"_{end}")]
     return max(fitting, key=lambda unit: len(suffix(unit)), default="1")

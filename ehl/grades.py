@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,11 +25,38 @@ LIMITS = {
 """What the numbers of a graded oil may be."""
 
 _T40, _T100, _T15 = 313.15, 373.15, 288.15  # K
-_BASES = {  # s [1/GPa at 1 mm^2/s] and t of Gold's formula, density at 15 degC [kg/m^3], expansion [kg/m^3 K]
-    "mineral": (9.904, 0.1390, 885.0, 0.64),
-    "pao": (7.382, 0.1335, 850.0, 0.60),
-    "ester": (6.605, 0.1360, 950.0, 0.70),
-    "pag": (5.489, 0.1485, 1050.0, 0.75),
+
+
+@dataclass(frozen=True)
+class BaseOil:
+    """What oils of a base have in common.
+
+    Parameters
+    ----------
+    s, t : float
+        Of Gold's formula [1/GPa at 1 mm^2/s], [-].
+    density_15, falling : float
+        Density at 15 degC [kg/m^3], and by what it falls [kg/m^3 K].
+    conductivity, heat_capacity : float
+        [W/(m K)], [J/(kg K)].
+    limiting_shear_ratio : float, optional
+        Greatest mean shear stress over the pressure [-]; unknown for esters.
+    """
+
+    s: float
+    t: float
+    density_15: float
+    falling: float
+    conductivity: float
+    heat_capacity: float
+    limiting_shear_ratio: float | None
+
+
+_BASES = {
+    "mineral": BaseOil(9.904, 0.1390, 885.0, 0.64, 0.14, 2000.0, 0.047),
+    "pao": BaseOil(7.382, 0.1335, 850.0, 0.60, 0.16, 2050.0, 0.035),
+    "ester": BaseOil(6.605, 0.1360, 950.0, 0.70, 0.15, 1950.0, None),
+    "pag": BaseOil(5.489, 0.1485, 1050.0, 0.75, 0.15, 2000.0, 0.044),
 }
 BASES = tuple(_BASES)
 """Base oils by name."""
@@ -62,6 +90,13 @@ class GradedOil:
     density: float = quantity("kg/m3", "density rho0 at ambient pressure")
     kinematic_viscosity: float = quantity("mm2/s", "kinematic viscosity")
     kinematic_viscosity_100: float = quantity("mm2/s", "kinematic viscosity at 100 degC")
+    viscosity_slope: float = quantity("1/K", "fall of the viscosity's logarithm with the temperature")
+    conductivity: float = quantity("W/(m K)", "thermal conductivity, typical of the base")
+    heat_capacity: float = quantity("J/(kg K)", "heat capacity, typical of the base")
+    expansion: float = quantity("1/K", "thermal expansion by volume")
+    limiting_shear_ratio: float | None = quantity(
+        "1", "limiting shear stress over the pressure, typical of the base; None for esters"
+    )
 
 
 def walther(temperature: float, nu_40: float, nu_100: float) -> float:
@@ -77,10 +112,29 @@ def walther(temperature: float, nu_40: float, nu_100: float) -> float:
     nu_40, nu_100 : float
         At 40 and 100 degC [mm^2/s].
     """
-    at_40, at_100 = (math.log10(math.log10(nu + 0.7)) for nu in (nu_40, nu_100))
-    slope = (at_40 - at_100) / (math.log10(_T100) - math.log10(_T40))
+    at_40, slope = _line(nu_40, nu_100)
     found: float = 10.0 ** (10.0 ** (at_40 - slope * (math.log10(temperature) - math.log10(_T40)))) - 0.7
     return found
+
+
+def walther_slope(temperature: float, nu_40: float, nu_100: float) -> float:
+    """Fall of the kinematic viscosity's logarithm with the temperature, ``-d ln(nu)/dT`` [1/K], by :func:`walther`.
+
+    ``(B/T) [(nu + 0.7)/nu] ln(nu + 0.7)``.
+
+    Parameters
+    ----------
+    temperature, nu_40, nu_100 : float
+        As of :func:`walther`.
+    """
+    nu = walther(temperature, nu_40, nu_100)
+    return _line(nu_40, nu_100)[1] / temperature * (nu + 0.7) / nu * math.log(nu + 0.7)
+
+
+def _line(nu_40: float, nu_100: float) -> tuple[float, float]:
+    """Walther's double logarithm at 40 degC, and its fall B with the logarithm of the temperature."""
+    at_40, at_100 = (math.log10(math.log10(nu + 0.7)) for nu in (nu_40, nu_100))
+    return at_40, (at_40 - at_100) / (math.log10(_T100) - math.log10(_T40))
 
 
 def _reference_oils(nu_100: float) -> tuple[float, float]:
@@ -140,8 +194,8 @@ def gold_coefficient(kinematic_viscosity: float, base: str = "mineral") -> float
     and synthetic oils, Journal of Synthetic Lubrication 18 (2001) 51-79. The constants were taken from gear
     software that cites it.
     """
-    s, t, _, _ = _BASES[base]
-    found: float = 1e-9 * s * kinematic_viscosity**t
+    oil = _BASES[base]
+    found: float = 1e-9 * oil.s * kinematic_viscosity**oil.t
     return found
 
 
@@ -156,7 +210,10 @@ def graded_oil(
 
     The viscosity at 100 degC follows from the grade and the viscosity index (ISO 2909), that at the
     temperature from both (:func:`walther`); the density falls by 0.6 to 0.75 kg/m^3 per K (typical values of
-    each base); alpha follows from the kinematic viscosity (:func:`gold_coefficient`).
+    each base); alpha follows from the kinematic viscosity (:func:`gold_coefficient`). The slope of the viscosity is
+    that of its line over the temperature (:func:`walther_slope`) with the density's; expansion is the density's fall
+    over the density. Conductivity and heat capacity are typical of the base as commonly quoted, off by some 10 % for
+    single oils, limiting stresses over the pressure .047 (mineral), .035 (polyalphaolefin) and .044 (polyglycol).
 
     Parameters
     ----------
@@ -193,7 +250,18 @@ def graded_oil(
         raise InputError.at("viscosity_index", index, allowed, remedy)
     if vg not in GRADES:
         warnings.warn(f"VG {vg:g} is no grade of ISO 3448", RangeWarning, stacklevel=3)
-    nu = walther(temperature, vg, nu_100)
-    _, _, typical, expansion = _BASES[base]
-    density = (typical if density_15 is None else density_15) - expansion * (temperature - _T15)
-    return GradedOil(1e-6 * nu * density, gold_coefficient(nu, base), density, nu, nu_100)
+    nu, oil = walther(temperature, vg, nu_100), _BASES[base]
+    density = (oil.density_15 if density_15 is None else density_15) - oil.falling * (temperature - _T15)
+    expansion = oil.falling / density
+    return GradedOil(
+        viscosity=1e-6 * nu * density,
+        pressure_viscosity=gold_coefficient(nu, base),
+        density=density,
+        kinematic_viscosity=nu,
+        kinematic_viscosity_100=nu_100,
+        viscosity_slope=walther_slope(temperature, vg, nu_100) + expansion,
+        conductivity=oil.conductivity,
+        heat_capacity=oil.heat_capacity,
+        expansion=expansion,
+        limiting_shear_ratio=oil.limiting_shear_ratio,
+    )

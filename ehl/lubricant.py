@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -38,10 +38,11 @@ LIMITS = {
 }
 """What the numbers of a lubricant may be."""
 
-_STRESS_LIMITS = {
+STRESS_LIMITS = {
     "eyring_stress": Limit.above(0.0, 1e12, "Pa", "5e6 to 1e7 is usual; leave it out for a Newtonian oil"),
     "limiting_shear_ratio": Limit.above(0.0, 1.0, remedy="0.03 to 0.06 is usual; leave it out for no limit"),
 }
+"""What its numbers of shear may be, where they are given."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,7 @@ class Lubricant:
         with Faults.of(self, LIMITS) as found:
             if not isinstance(self.compressible, bool | np.bool_):
                 found.add("compressible", self.compressible, "must be True or False")
-            for name, limit in _STRESS_LIMITS.items():
+            for name, limit in STRESS_LIMITS.items():
                 if getattr(self, name) is not None:
                     found.number(name, getattr(self, name), limit)
             self._check_laws(found)
@@ -205,6 +206,32 @@ class Lubricant:
         cooling = ((np.asarray(T, dtype=float) - _POLE) / (self.temperature - _POLE)) ** -exponent
         return (above + ratio) * cooling - above, slope * cooling
 
+    def at_temperature(self, T: float) -> Lubricant:
+        """Return the same oil by its numbers at another temperature [K].
+
+        Viscosity, its slopes by pressure and temperature and the density follow the laws that `hot_log_viscosity` and
+        the expansion state; heat capacity, conductivity and stresses stay.
+
+        Examples
+        --------
+        >>> oil = Lubricant(0.075, 19.6e-9, 910.0, temperature=353.15)
+        >>> round(oil.at_temperature(363.15).viscosity, 4)
+        0.0513
+        """
+        if self.temperature == T:
+            return self
+        ratio, pressure_viscosity = (float(value) for value in self.hot_log_viscosity(0.0, T))
+        above = math.log(self.viscosity) - ROELANDS_LN_VISCOSITY
+        steeper = (1.0 + ratio / above) * (self.temperature - _POLE) / (T - _POLE)
+        return replace(
+            self,
+            viscosity=self.viscosity * math.exp(ratio),
+            pressure_viscosity=pressure_viscosity,
+            density=self.density * (1.0 - self.expansion * (T - self.temperature)),
+            temperature=T,
+            viscosity_slope=self.viscosity_slope * steeper,
+        )
+
     def density_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return rho/rho0 and its derivative by p [1/Pa] at the pressures p [Pa], any shape."""
         return self.compression.ratio(p)
@@ -244,4 +271,15 @@ class Lubricant:
         from ehl.grades import graded_oil
 
         oil = graded_oil(vg, temperature, viscosity_index, base, density_15)
-        return cls(oil.viscosity, oil.pressure_viscosity, oil.density, compressible=compressible)
+        return cls(
+            oil.viscosity,
+            oil.pressure_viscosity,
+            oil.density,
+            compressible=compressible,
+            temperature=temperature,
+            viscosity_slope=oil.viscosity_slope,
+            conductivity=oil.conductivity,
+            heat_capacity=oil.heat_capacity,
+            expansion=oil.expansion,
+            limiting_shear_ratio=oil.limiting_shear_ratio,
+        )

@@ -6,32 +6,72 @@ from dataclasses import replace
 from typing import Any
 
 import ehl
+import gears
+from base import InputError
+from ehl.grades import LIMITS as GRADE
 from flankfilm import coupling
-from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, RoughnessSection
+from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, SHEAR_AND_HEAT, LubricantSection, RoughnessSection
 from flankfilm.scene.ground import under_keys
+from flankfilm.scene.key import ZERO_CELSIUS
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import required
 
 
 def lubricant(scene: Scene) -> ehl.Lubricant:
-    """Build the oil of a scene.
+    """Build the oil of a scene, as it is at the temperature of the flanks.
 
     Raises
     ------
     InputError
         Without the section, and with every fault that only the oil's laws find.
     """
-    oil = required(scene.lubricant, "[lubricant]", "the film")
+    section = required(scene.lubricant, "[lubricant]", "the film")
+    flanks = flank_temperatures(scene)
+    at = None if flanks is None else 0.5 * sum(flanks)
+    if at is not None and section.graded and not GRADE["temperature"].holds(at):
+        value, allowed = (
+            f"{at - ZERO_CELSIUS:g}",
+            "must be from -20 to 150 degC in the mean, where grades are known",
+        )
+        raise InputError.at("heat.pinion_temperature_C", value, allowed, "Give the oil by its numbers")
+    with under_keys(section, "lubricant"):
+        return _by_grade(section, at) if section.graded else _by_numbers(section, at)
+
+
+def flank_temperatures(scene: Scene) -> tuple[float, float] | None:
+    """Temperatures of the flanks of pinion and wheel [K]; None where they have the oil's."""
+    if scene.heat is None or not scene.heat.given("pinion_temperature_C", "wheel_temperature_C"):
+        return None
+    heat = gears.Heat(**scene.heat.si())
+    return heat.pinion_temperature, heat.wheel_temperature
+
+
+def _by_grade(section: LubricantSection, at: float | None) -> ehl.Lubricant:
+    """Oil of a grade at its own temperature, or at that of the flanks [K]."""
+    given = section.si(*BY_GRADE, "temperature_C", "compressible") | (
+        {} if at is None else {"temperature": at}
+    )
+    oil = ehl.Lubricant.from_iso_vg(**given)
+    return replace(oil, **_law(section), **section.si(*SHEAR_AND_HEAT))
+
+
+def _by_numbers(section: LubricantSection, at: float | None) -> ehl.Lubricant:
+    """Oil by its numbers, which hold at the temperature beside them, or at that of the flanks [K]."""
+    numbers = section.si(*BY_NUMBERS, *SHEAR_AND_HEAT, "temperature_C", "compressible")
+    oil = ehl.Lubricant(**numbers | _law(section))
+    if at is None:
+        return oil
+    return replace(oil, temperature=at) if section.temperature_C is None else oil.at_temperature(at)
+
+
+def _law(oil: LubricantSection) -> dict[str, Any]:
+    """Numbers by which a law of viscosity is meant."""
     law: dict[str, Any] = {}
     if oil.constant_viscosity:
         law["pressure_viscosity"] = 0.0
     if oil.viscosity_law == "barus":
         law["roelands_z"] = 1.0  # Roelands' law of this index is Barus' law
-    with under_keys(oil, "lubricant"):
-        if not oil.graded:
-            return ehl.Lubricant(**oil.si(*BY_NUMBERS, "compressible") | law)
-        graded = ehl.Lubricant.from_iso_vg(**oil.si(*BY_GRADE, "compressible"))
-        return replace(graded, **law) if law else graded
+    return law
 
 
 def film_model(scene: Scene, name: str) -> coupling.FilmModel:

@@ -11,6 +11,8 @@ LIMITS = {
     "poisson_ratio": Limit(0.0, 0.4999, remedy="give Poisson's ratio of a compressible solid (steel 0.3)"),
     "density": Limit(1.0, 1e5, "kg/m3", "give the density in kg/m3 (steel 7850)"),
     "thermal_expansion": Limit(0.0, 1e-3, "1/K", "give the coefficient per kelvin (steel 11.5e-6)"),
+    "conductivity": Limit(1e-3, 1e5, "W/(m K)", "give the thermal conductivity in W/(m K) (steel 46)"),
+    "heat_capacity": Limit(10.0, 1e5, "J/(kg K)", "give the heat capacity in J/(kg K) (steel 470)"),
 }
 """What the numbers of a material may be."""
 
@@ -32,6 +34,10 @@ class Material:
         Mass density [kg/m3].
     thermal_expansion : float
         Coefficient of linear expansion alpha [1/K]; of steel unless given.
+    conductivity : float
+        Of heat, k [W/(m K)]; of steel unless given.
+    heat_capacity : float
+        c per mass [J/(kg K)]; of steel unless given.
 
     Examples
     --------
@@ -44,6 +50,8 @@ class Material:
     poisson_ratio: float  # nu, -
     density: float  # kg/m3
     thermal_expansion: float = 11.5e-6  # alpha, 1/K
+    conductivity: float = 46.0  # k, W/(m K)
+    heat_capacity: float = 470.0  # c, J/(kg K)
 
     @property
     def shear_modulus(self) -> float:

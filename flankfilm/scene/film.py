@@ -11,11 +11,22 @@ from base import Limit
 from ehl.asperities import LIMITS as ROUGHNESS
 from ehl.grades import LIMITS as GRADE
 from ehl.lubricant import LIMITS as OIL
+from ehl.lubricant import STRESS_LIMITS
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 
 BY_NUMBERS = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3", "roelands_z")
-BY_GRADE = ("iso_vg", "temperature_C", "viscosity_index", "base", "density_15_kg_per_m3")
+BY_GRADE = ("iso_vg", "viscosity_index", "base", "density_15_kg_per_m3")
+SHEAR_AND_HEAT = (
+    "viscosity_slope_per_K",
+    "conductivity_W_per_m_K",
+    "heat_capacity_J_per_kg_K",
+    "thermal_expansion_per_K",
+    "eyring_stress_MPa",
+    "limiting_shear_ratio",
+)
+"""Keys of films with heat, of oils given either way."""
+
 SUPPLIES = {"meniscus": ("meniscus_mm", "meniscus_half_widths"), "oil-layer": ("oil_layer_um",)}
 """Keys of which one gives the value of a supply."""
 
@@ -24,6 +35,10 @@ _OIL = {
     "viscosity": Limit(1e-5, 1e3, "Pa s"),
     "pressure_viscosity": Limit(0.0, 1e-7, "1/Pa"),
     "density": Limit(100.0, 5000.0, "kg/m3"),
+    "conductivity": Limit(1e-3, 10.0, "W/(m K)"),
+    "heat_capacity": Limit(10.0, 1e5, "J/(kg K)"),
+    "eyring_stress": Limit(1e4, 1e9, "Pa"),
+    "limiting_shear_ratio": Limit(1e-3, 1.0),
 }
 _DRAWN = Limit(1e-9, 1e-4, "m")
 _ROUGHNESS = {
@@ -36,12 +51,14 @@ _ROUGHNESS = {
 
 
 class LubricantSection(Section):
-    """Oil at the temperature of the contact's inlet: by its numbers, or by its ISO grade and temperature."""
+    """Oil by its numbers at one temperature, or by its ISO grade and temperature."""
 
-    ground = OIL | GRADE | _OIL
+    ground = OIL | STRESS_LIMITS | GRADE | _OIL
 
     viscosity_Pa_s: float | None = key(
-        "viscosity at the inlet's temperature and ambient pressure", None, example=0.075
+        "viscosity at temperature_C and ambient pressure; without that key, at the temperature of the flanks",
+        None,
+        example=0.075,
     )
     pressure_viscosity_per_GPa: float | None = key(
         "pressure-viscosity coefficient at ambient pressure", None, example=19.6
@@ -58,7 +75,10 @@ class LubricantSection(Section):
         "grade instead of the numbers above: viscosity at 40 degC in mm2/s", None, of="vg", such_as=100
     )
     temperature_C: float | None = key(
-        "temperature of a graded oil at the contact's inlet", None, celsius="temperature", such_as=60
+        "temperature of the oil, required of a graded one; flanks have it too unless [heat] gives the gears theirs",
+        None,
+        celsius="temperature",
+        such_as=60,
     )
     viscosity_index: float | None = key(
         "viscosity index of a graded oil, 140 to 250 of synthetic ones; 95 if left out", None, such_as=95
@@ -70,6 +90,34 @@ class LubricantSection(Section):
     )
     density_15_kg_per_m3: float | None = key(
         "density of a graded oil at 15 degC; typical of the base if left out", None, such_as=880
+    )
+    viscosity_slope_per_K: float | None = key(
+        "fall of the viscosity's logarithm with the temperature; if left out 0.04, or by ASTM D341 of a graded oil",
+        None,
+        such_as=0.04,
+    )
+    conductivity_W_per_m_K: float | None = key(
+        "thermal conductivity; if left out 0.14, or typical of the base of a graded oil", None, such_as=0.14
+    )
+    heat_capacity_J_per_kg_K: float | None = key(
+        "heat capacity; if left out 2000, or typical of the base of a graded oil", None, such_as=2000
+    )
+    thermal_expansion_per_K: float | None = key(
+        "thermal expansion by volume; if left out 6.5e-4, or typical of the base of a graded oil",
+        None,
+        of="expansion",
+        such_as=6.5e-4,
+    )
+    eyring_stress_MPa: float | None = key(
+        "shear stress from which the oil thins, in films with heat; if left out 5, beside losses with 10",
+        None,
+        such_as=5,
+    )
+    limiting_shear_ratio: float | None = key(
+        "greatest mean shear stress over the pressure, in films with heat; if left out typical of the base of a graded "
+        "oil, else none",
+        None,
+        such_as=0.047,
     )
 
     @property

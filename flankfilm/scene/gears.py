@@ -215,6 +215,12 @@ class ElasticSection(Section):
         None,
         such_as=11.5e-6,
     )
+    conductivity_W_per_m_K: float | None = key(
+        "thermal conductivity, of films with heat; 46 of steel if left out without a name", None, such_as=46
+    )
+    heat_capacity_J_per_kg_K: float | None = key(
+        "heat capacity, of films with heat; 470 of steel if left out without a name", None, such_as=470
+    )
 
     @model_validator(mode="after")
     def _by_name_or_by_constants(self) -> ElasticSection:
@@ -255,6 +261,12 @@ class MaterialSection(Section):
     density_kg_per_m3: float | None = key("density of both gears; 7850 if left out", None, example=7850)
     thermal_expansion_per_K: float | None = key(
         "coefficient of linear expansion of both gears; 11.5e-6 of steel if left out", None, such_as=11.5e-6
+    )
+    conductivity_W_per_m_K: float | None = key(
+        "thermal conductivity of both gears, of films with heat; 46 of steel if left out", None, such_as=46
+    )
+    heat_capacity_J_per_kg_K: float | None = key(
+        "heat capacity of both gears, of films with heat; 470 of steel if left out", None, such_as=470
     )
     pinion: ElasticSection | None = key("material of the pinion alone, instead of the keys above", None)
     wheel: ElasticSection | None = key("material of the wheel alone, beside that of the pinion", None)

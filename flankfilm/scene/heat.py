@@ -1,4 +1,4 @@
-"""Keys of temperatures: gears and housing grow from what they were measured at."""
+"""Keys of temperatures: gears and housing grow from what they were measured at, and flanks warm the film."""
 
 from __future__ import annotations
 
@@ -10,15 +10,22 @@ from gears.heat import LIMITS
 
 
 class HeatSection(Section):
-    """Temperatures of gears and housing, whose growth changes backlash, pressure angle and base pitches."""
+    """Temperatures of gears and housing, whose growth changes backlash, pressure angle and base pitches.
+
+    The temperature of a gear is that of its flanks as well, where the film forms: one that is given decides both.
+    """
 
     ground: ClassVar[Limits] = LIMITS
 
-    pinion_temperature_C: float = key(
-        "temperature of the pinion", 20.0, celsius="pinion_temperature", such_as=90.0
+    pinion_temperature_C: float | None = key(
+        "temperature of the pinion and its flanks; if left out 20, and flanks are as warm as the oil unless that of "
+        "the wheel is given",
+        None,
+        celsius="pinion_temperature",
+        such_as=90.0,
     )
-    wheel_temperature_C: float = key(
-        "temperature of the wheel", 20.0, celsius="wheel_temperature", such_as=80.0
+    wheel_temperature_C: float | None = key(
+        "the same of the wheel", None, celsius="wheel_temperature", such_as=80.0
     )
     housing_temperature_C: float = key(
         "temperature of the housing between the axes", 20.0, celsius="housing_temperature", such_as=60.0

@@ -68,3 +68,18 @@ def test_an_oil_thinner_than_the_pole_of_the_law_is_refused():
 def test_an_unusual_index_is_warned_of():
     with pytest.warns(RangeWarning, match="Roelands index"):
         Lubricant(viscosity=0.06, pressure_viscosity=60e-9)
+
+
+def test_an_oil_at_another_temperature_is_the_same_oil():
+    oil = Lubricant(0.075, 19.6e-9, 910.0, temperature=353.15, viscosity_slope=0.04)
+    warm = oil.at_temperature(378.15)
+    p, T = np.array([0.0, 3e8, 1e9]), np.array([360.0, 378.15, 420.0])
+    ratio = math.log(warm.viscosity / oil.viscosity)
+    np.testing.assert_allclose(
+        warm.hot_log_viscosity(p, T)[0] + ratio, oil.hot_log_viscosity(p, T)[0], atol=1e-12
+    )
+    assert warm.z == pytest.approx(oil.z)
+    h = 1e-3
+    by_T = (oil.hot_log_viscosity(0.0, 378.15 + h)[0] - oil.hot_log_viscosity(0.0, 378.15 - h)[0]) / (2 * h)
+    assert warm.viscosity_slope == pytest.approx(-float(by_T), rel=1e-6)
+    assert warm.density == pytest.approx(910.0 * (1 - 25 * 6.5e-4))

@@ -120,6 +120,15 @@ def test_density_falls_by_the_expansion_of_its_base(base, density_15, per_K):
     )
 
 
+@pytest.mark.parametrize("base", ["mineral", "pao", "ester", "pag"])
+def test_slope_of_the_viscosity_is_that_of_its_line(base):
+    cold, oil, hot = (Lubricant.from_iso_vg(220, 343.15 + T, base=base) for T in (-0.05, 0.0, 0.05))
+    slope = -math.log(hot.viscosity / cold.viscosity) / 0.1
+    assert oil.viscosity_slope == pytest.approx(slope, rel=1e-6)
+    assert oil.expansion == pytest.approx((cold.density - hot.density) / 0.1 / oil.density, rel=1e-9)
+    assert oil.temperature == 343.15
+
+
 def test_faults_together_and_other_viscosities_warned_of():
     with pytest.raises(InputError) as caught:
         Lubricant.from_iso_vg(1, 90.0, viscosity_index=500, base="water", density_15=-1)
