@@ -19,7 +19,8 @@ from ehl.levels import Level, dry_approach
 from ehl.plan import Plan, expected_film
 from ehl.supply import OilLayer, Supply
 
-_STEP = 3e-7  # of ln w and of ln(distance of the meniscus), in differences of the residual
+STEP = 3e-7
+"""Of ln w and of ln(distance of the meniscus), in differences of the residual."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     """
     contact, plan = level.contact, level.plan
     before = Residual.of(level.grid, level.groups, level.found.P, level.found.H0)
-    heavier = replace(contact, load=contact.load * math.exp(_STEP))
+    heavier = replace(contact, load=contact.load * math.exp(STEP))
     growth = expected_film(heavier) / expected_film(contact)
     moving = _along(level, before, heavier, growth, supply)
     if supply is None or not plan.fixed:
@@ -74,7 +75,7 @@ def _along(
     by_load = _respond(level, before, heavier, moved, flow=fed)
     if not fed:
         return by_load
-    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_STEP))
+    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(STEP))
     by_distance = _respond(level, before, level.contact, farther, flow=True)
     follow = by_load.flow / by_distance.flow
     return _Response(*(a - follow * b for a, b in zip(by_load, by_distance, strict=True)))
@@ -82,10 +83,21 @@ def _along(
 
 def _respond(level: Level, before: Residual, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:
     """Differentiate towards another contact on the nodes of another plan."""
-    grid, ratio = level.grid, level.grid.ratio
-    nodes = plan.nodes(grid.nodes.size, grid.nodes * ratio)
-    moved = plan.over(nodes, ratio)
-    return _differentiate(level, before, contact, moved, flow=flow)
+    return _differentiate(level, before, contact, moved_grid(level, plan), flow=flow)
+
+
+def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
+    """Return the contact under a load a step larger, and the grid whose nodes follow its film."""
+    contact = level.contact
+    heavier = replace(contact, load=contact.load * math.exp(STEP))
+    growth = expected_film(heavier) / expected_film(contact)
+    return heavier, moved_grid(level, level.plan.for_load(growth, heavier.load / contact.load, supply))
+
+
+def moved_grid(level: Level, plan: Plan) -> Grid:
+    """Return the level's grid with the nodes of another plan, on its scale."""
+    ratio = level.grid.ratio
+    return plan.over(plan.nodes(level.grid.nodes.size, level.grid.nodes * ratio), ratio)
 
 
 def _differentiate(
@@ -94,23 +106,38 @@ def _differentiate(
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     found, grid, groups = level.found, level.grid, level.groups
     assert found.factors is not None, "only a converged level is differentiated"
+    own = explicit(level, before, contact, moved)
+    dP, dH0 = found.factors.solve(-own.net_flux, own.short, found.P.size)
+    by_pressure = groups.compliance * float(grid.centre @ dP)
+    carried = _flow_slope(level, before, own.flow, dP, dH0) if flow else math.nan
+    return _Response(
+        central=own.central + (dH0 - by_pressure) * groups.gap,
+        separation=own.separation + dH0 * groups.gap,
+        flow=carried,
+    )
+
+
+class Explicit(NamedTuple):
+    """Derivatives by a parameter at fixed P and H0, on nodes that may move."""
+
+    net_flux: Array  # into each inner node (n-2,)
+    short: float  # load that is missing
+    flow: Array  # through each cell (n-1,) [m], negative downstream
+    central: float  # [m]
+    separation: float  # [m]
+
+
+def explicit(level: Level, before: Residual, contact: LineContact, moved: Grid) -> Explicit:
+    """Differentiate the residual and the figures towards another contact on another grid, a step away."""
+    found, groups = level.found, level.groups
     after = Groups.on(contact, moved)
     changed = Residual.of(moved, after, found.P, found.H0)
-    dP, dH0 = found.factors.solve(
-        (np.diff(before.flux) - np.diff(changed.flux)) / _STEP,
-        (changed.short - before.short) / _STEP,
-        found.P.size,
-    )
-    by_pressure = groups.compliance * float(grid.centre @ dP)
-    explicit = (found.H0 + dry_approach(grid)) * (after.gap - groups.gap) / _STEP
-    carried = math.nan
-    if flow:
-        by_step = (changed.flux * after.gap - before.flux * groups.gap) / _STEP
-        carried = _flow_slope(level, before, by_step, dP, dH0)
-    return _Response(
-        central=(changed.centre - before.centre) / _STEP + (dH0 - by_pressure) * groups.gap,
-        separation=explicit + dH0 * groups.gap,
-        flow=carried,
+    return Explicit(
+        net_flux=(np.diff(changed.flux) - np.diff(before.flux)) / STEP,
+        short=(changed.short - before.short) / STEP,
+        flow=(changed.flux * after.gap - before.flux * groups.gap) / STEP,
+        central=(changed.centre - before.centre) / STEP,
+        separation=(found.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / STEP,
     )
 
 

@@ -15,6 +15,7 @@ PICTURES: Mapping[str, str] = {
     "fem.tooth_root:RootStress": "root_stress",
     "ehl.film:Film": "curves",
     "ehl.mixed:MixedFilm": "mixed_film",
+    "ehl.frequency:FilmResponse": "film_response",
     "dynamics.motions:Trajectory": "portrait",
     "dynamics.shooting:Orbit": "orbit",
     "dynamics.branch:Branch": "branch",

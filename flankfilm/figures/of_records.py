@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     import dynamics
     import gears
-    from ehl import MixedFilm
+    from ehl import FilmResponse, MixedFilm
     from fem import RootStress
     from flankfilm.coupling import (
         MeshSeries,
@@ -128,6 +128,29 @@ def closed_form(found: gears.closed_form.ClosedForm) -> Figure:
 def mixed_film(found: MixedFilm) -> Figure:
     """Draw the film that carries its share of the load."""
     return curves(found.film)
+
+
+def film_response(found: FilmResponse) -> Figure:
+    """Draw yielding per load, in phase and a quarter behind, and damping over the frequency."""
+    order = np.argsort(found.frequency, axis=None)
+    at = found.frequency.ravel()[order] / (2e3 * np.pi)
+    yielding = 1e12 * found.compliance.ravel()[order]
+    with sheet(None, 2, height=4.6, legend=2) as (drawn, panels):
+        for values, colour, dash, label in zip(
+            (yielding.real, -yielding.imag),
+            colours(2),
+            DASHES,
+            ("in phase with the load", "a quarter of a period behind"),
+            strict=False,
+        ):
+            panels[0].plot(at, values, color=colour, linestyle=dash, label=label)
+        panels[0].set_ylabel("yielding per load\n[µm per kN/mm]")
+        panels[1].plot(at, 1e-9 * found.damping.ravel()[order], color=colours(1)[0])
+        panels[1].set_ylabel("damping [N s/(mm µm)]")
+        panels[1].set_xlabel("frequency [kHz]")
+        if at[0] > 0.0 and at[-1] > 30.0 * at[0]:
+            panels[1].set_xscale("log")
+    return drawn
 
 
 def root_stress(found: RootStress) -> Figure:

@@ -1,0 +1,116 @@
+"""Answer of a film to an oscillating load: static limit, rigid closed form, symmetry, grids, refusals."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from base import InputError
+from ehl import (
+    LineContact,
+    Lubricant,
+    Meniscus,
+    OilLayer,
+    Roughness,
+    film_response,
+    solve_mixed,
+    solve_thermal,
+)
+from tests.ehl.films import quiet
+from tests.validation.article import PITCH
+
+LIGHT = replace(PITCH, load=0.03 * PITCH.load)
+
+
+def rate(contact: LineContact) -> float:
+    """u/b [1/s]."""
+    return contact.entrainment / contact.half_width
+
+
+@pytest.mark.parametrize("contact", [PITCH, LIGHT, LineContact.from_moes(20.0, 10.0)])
+def test_slow_oscillations_meet_the_approach_stiffness(contact):
+    film = quiet(contact, tolerance=1e-3)
+    answer = film_response(film, 0.0)
+    assert answer.stiffness == pytest.approx(film.stiffness("approach"), rel=1e-5)
+    # and, without any derivative of the package, the difference of films on grids of their own
+    light, heavy = (quiet(replace(contact, load=contact.load * f), tolerance=1e-4) for f in (0.98, 1.02))
+    secant = 0.04 * contact.load / (light.separation - heavy.separation)
+    assert answer.stiffness == pytest.approx(secant, rel=0.01)
+    assert answer.static_stiffness == film.stiffness("approach")
+
+
+def test_the_least_and_the_central_film_follow_slow_loads():
+    film = quiet(PITCH, tolerance=1e-3)
+    answer = film_response(film, 0.0)
+    light, heavy = (quiet(replace(PITCH, load=PITCH.load * f), tolerance=1e-4) for f in (0.98, 1.02))
+    for name, found in (
+        ("minimum_thickness", answer.least_compliance),
+        ("central_thickness", answer.central_compliance),
+    ):
+        yielded = (getattr(light, name) - getattr(heavy, name)) / (0.04 * PITCH.load)
+        assert found.real == pytest.approx(yielded, rel=0.03), name
+
+
+def test_a_real_load_gives_a_real_film():
+    film = quiet(PITCH)
+    at = rate(PITCH) * np.array([0.3, 1.0, 4.0])
+    forth, back = film_response(film, at), film_response(film, -at)
+    assert np.array_equal(back.compliance, np.conj(forth.compliance))
+    assert np.array_equal(back.damping, forth.damping)
+
+
+def test_a_rigid_cylinder_has_the_damping_of_the_closed_form():
+    # constant viscosity, inlet at -infinity: F = 4.895 eta u R/h0, -dF/d(dh0/dt) = 6.548 eta (R/h0)^1.5, per face
+    eta, u, R, E = 0.05, 1.0, 0.01, 2.2e11
+    oil = Lubricant(eta, 0.0, 900.0, compressible=False)
+    load = 1e-3 * math.sqrt(2 * eta * u / (E * R)) * E * R
+    film = quiet(LineContact(load, u, R, E, oil), tolerance=1e-3)
+    h0 = 4.895 * eta * u * R / load
+    assert film.separation == pytest.approx(h0, rel=5e-4)
+    answer = film_response(film, u / math.sqrt(h0 * R) * np.array([0.0, 0.01, 0.1, 1.0]))
+    assert answer.damping == pytest.approx(np.full(4, 6.548 * eta * (R / h0) ** 1.5), rel=2e-3)
+    assert answer.stiffness == pytest.approx(np.full(4, load / h0), rel=2e-3)
+
+
+def test_errors_cover_what_finer_grids_change():
+    at = rate(PITCH) * np.array([0.0, 0.1, 0.5, 1.0, 2.0, 3.0])
+    coarse, fine = (film_response(quiet(PITCH, nodes=n), at) for n in (129, 513))
+    off = np.abs(coarse.compliance / fine.compliance - 1.0)
+    assert (off < coarse.relative_error).all()
+    assert (off[:4] < 0.02).all()
+    assert coarse.error == np.max(coarse.relative_error)
+
+
+def test_damping_of_a_loaded_film_falls_with_frequency():
+    film = quiet(PITCH, tolerance=1e-3)
+    slow, mesh = film_response(film, [0.0, 2.0 * np.pi * 7100.0]).damping
+    assert 7.0 < slow / mesh < 20.0  # physics: seven to twenty times
+
+
+def test_a_meniscus_that_stays_is_held_in_the_answer_too():
+    film = quiet(PITCH, supply=Meniscus(-1.1 * PITCH.half_width))
+    assert film_response(film, 0.0).stiffness == pytest.approx(film.stiffness("approach"), rel=1e-5)
+
+
+def test_shapes_are_those_of_the_frequencies():
+    film = quiet(PITCH, nodes=65)
+    assert film_response(film, 1e4).compliance.shape == ()
+    assert film_response(film, [[1e4, 2e4]]).damping.shape == (1, 2)
+
+
+def test_what_cannot_be_answered_is_refused_with_the_reason():
+    film = quiet(PITCH, nodes=65)
+    layer = quiet(PITCH, supply=OilLayer(0.5 * film.flow))
+    for refused, word in (
+        (layer, "behind a layer"),
+        (solve_thermal(PITCH, nodes=129), "isothermal"),
+        (solve_mixed(LIGHT, Roughness(1e-7, 4e10, 1e-5)), "sperities"),
+        (replace(film, converged=False, message="more nodes"), "converged"),
+        (PITCH, "Film"),
+    ):
+        with pytest.raises(InputError, match=word):
+            film_response(refused, 0.0)
+    for frequency in ("fast", [], [math.nan], math.inf):
+        with pytest.raises(InputError, match="frequency"):
+            film_response(film, frequency)
