@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|W/(m K)|J/(kg K)"
+_SI = "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|W/(m K)|J/(kg K)"
 
 FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "%": 1e-2,
@@ -16,7 +16,9 @@ FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "um": 1e-6,
     "N/mm": 1e3,
     "N/(mm um)": 1e9,
+    "kW": 1e3,
     "MPa": 1e6,
+    "MPa m/s": 1e6,
     "Pa^0.5": 1.0,
     "MPa^0.5": 1e3,
     "GPa": 1e9,

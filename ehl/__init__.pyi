@@ -9,6 +9,7 @@ from .film import Spike as Spike
 from .film import hertz_approach as hertz_approach
 from .frequency import FilmResponse as FilmResponse
 from .frequency import film_response as film_response
+from .flash import blok_flash_temperature as blok_flash_temperature
 from .lubricant import Lubricant as Lubricant
 from .mixed import MixedFilm as MixedFilm
 from .mixed import solve_mixed as solve_mixed

@@ -1,6 +1,7 @@
 from . import figures as figures
 from .coupling.films import FilmModel as FilmModel
 from .coupling.jumps import jump_speeds as jump_speeds
+from .coupling.losses import mesh_losses as mesh_losses
 from .coupling.lubricated import film_along_path as film_along_path
 from .coupling.lubricated import lubricated_cycle as lubricated_cycle
 from .coupling.mesh_cycles import mesh_cycle as mesh_cycle

@@ -5,6 +5,7 @@ from .contact_stress import iso6336_2 as iso6336_2
 from .dynamic_factor import Iso6336DynamicFactor as Iso6336DynamicFactor
 from .dynamic_factor import iso6336_dynamic as iso6336_dynamic
 from .half_plane import weber_banaschek as weber_banaschek
+from .loss_factor import ohlendorf_loss_factor as ohlendorf_loss_factor
 from .record import ClosedForm as ClosedForm
 from .root_stress import Iso6336RootStress as Iso6336RootStress
 from .root_stress import RootSection as RootSection

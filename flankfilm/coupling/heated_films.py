@@ -1,0 +1,205 @@
+"""Films with heat and shear at loaded contacts along the path, each from its neighbour."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+import ehl
+import gears
+from base import Array, Integers, SolverError
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.films import contacts_of
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class HeatedOil:
+    """What films with heat are computed from, beside the contact.
+
+    Attributes
+    ----------
+    solids : (ehl.Solid, ehl.Solid)
+        Pinion and wheel.
+    roughness : ehl.Roughness or None
+        Of both flanks together.
+    boundary_friction : float
+        Coefficient of friction of what asperities carry.
+    tolerance : float
+        Of the films, relative.
+    """
+
+    solids: tuple[ehl.Solid, ehl.Solid]
+    roughness: ehl.Roughness | None
+    boundary_friction: float
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class HeatedFilms:
+    """Films with heat in the order of the path, with what asperities carry beside them.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (n,)
+        Curvature radius of the pinion's flank [m].
+    contacts : tuple of ehl.LineContact
+        With the whole load.
+    films : tuple of ehl.ThermalFilm
+        Of the part of the load that asperities leave, at the share that an isothermal film leaves them.
+    mixed : tuple of ehl.MixedFilm
+        Isothermal, of rough flanks; empty for smooth ones.
+    oil : HeatedOil
+    """
+
+    rho1: Array
+    contacts: tuple[ehl.LineContact, ...]
+    films: tuple[ehl.ThermalFilm, ...]
+    mixed: tuple[ehl.MixedFilm, ...]
+    oil: HeatedOil
+
+    @property
+    def solids(self) -> tuple[ehl.Solid, ehl.Solid]:
+        """Pinion and wheel."""
+        return self.oil.solids
+
+    @property
+    def rough(self) -> bool:
+        """Whether asperities carry a share."""
+        return bool(self.mixed)
+
+    @property
+    def asperity_share(self) -> Array:
+        """Share of the load on asperities (n,)."""
+        if not self.mixed:
+            return np.zeros(len(self.films))
+        return np.array([one.asperity_share for one in self.mixed])
+
+    @property
+    def friction(self) -> Array:
+        """Coefficient of friction, of film and asperities by their shares (n,)."""
+        film = np.abs([film.traction_coefficient for film in self.films])
+        share = self.asperity_share
+        return np.asarray((1.0 - share) * film + share * self.oil.boundary_friction)
+
+    @property
+    def rolling(self) -> Array:
+        """Power lost by the oil's flow under its pressure (n,) [W/m]."""
+        return np.array([film.losses.rolling for film in self.films if film.losses is not None])
+
+    @property
+    def first_part(self) -> Array:
+        """Part of the heat into both bodies that the first takes (n,)."""
+        taken = [
+            (film.losses.first_body, film.losses.second_body)
+            for film in self.films
+            if film.losses is not None
+        ]
+        first, second = np.array(taken).T
+        whole = first + second
+        return np.where(whole > 0.0, first / np.where(whole > 0.0, whole, 1.0), 0.5)
+
+    @property
+    def minimum_thickness(self) -> Array:
+        """Least film (n,) [m]."""
+        return np.array([film.minimum_thickness for film in self.films])
+
+    @property
+    def film_ratio(self) -> Array | None:
+        """Least film over the standard deviation of heights (n,); None of smooth flanks."""
+        rough = self.oil.roughness
+        return None if rough is None else np.asarray(self.minimum_thickness / rough.deviation)
+
+    def every(self, step: int) -> HeatedFilms:
+        """Give every so many of them, the last as well."""
+        kept = thinned(len(self.films), step)
+        return replace(
+            self,
+            rho1=self.rho1[kept],
+            contacts=_taken(self.contacts, kept),
+            films=_taken(self.films, kept),
+            mixed=_taken(self.mixed, kept) if self.mixed else (),
+        )
+
+
+def sliding_contacts(
+    pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
+) -> tuple[Array, tuple[ehl.LineContact, ...]]:
+    """Line contacts of a cycle with their sliding speeds, with their places on the path [m]."""
+    rho1, contacts = contacts_of(pair, cycle, speed, lubricant)
+    slides = pair.path_at(rho1).sliding(speed).tolist()
+    return rho1, tuple(replace(contact, sliding=slip) for contact, slip in zip(contacts, slides, strict=True))
+
+
+def heated_films(
+    rho1: Array,
+    contacts: Sequence[ehl.LineContact],
+    oil: HeatedOil,
+    bulk: tuple[float, float],
+    before: HeatedFilms | None = None,
+) -> HeatedFilms:
+    """Solve the films of contacts in the order of the path.
+
+    Parameters
+    ----------
+    rho1 : ndarray, shape (n,)
+        Their places [m].
+    contacts : sequence of ehl.LineContact
+        With their sliding speeds.
+    oil : HeatedOil
+    bulk : (float, float)
+        Temperatures of pinion and wheel [K].
+    before : HeatedFilms, optional
+        Films at the same places to start from; each starts from its neighbour without.
+
+    Raises
+    ------
+    SolverError
+        Where a film has no solution.
+    """
+    films: list[ehl.ThermalFilm] = []
+    mixed: list[ehl.MixedFilm] = []
+    for i, contact in enumerate(contacts):
+        carried = contact
+        if oil.roughness is not None:
+            shared = ehl.solve_mixed(contact, oil.roughness, max(oil.tolerance, 0.01))
+            if not shared.converged:
+                raise _none_at(rho1[i], shared.message)
+            mixed.append(shared)
+            carried = replace(shared.film.contact, sliding=contact.sliding)
+        near = before.films[i] if before is not None else films[-1] if films else None
+        films.append(_film(carried, oil, bulk, near, float(rho1[i])))
+    return HeatedFilms(rho1, tuple(contacts), tuple(films), tuple(mixed), oil)
+
+
+def _film(
+    contact: ehl.LineContact,
+    oil: HeatedOil,
+    bulk: tuple[float, float],
+    near: ehl.ThermalFilm | None,
+    rho1: float,
+) -> ehl.ThermalFilm:
+    """Solve a film from its neighbour, from nothing where that fails."""
+    found = ehl.solve_thermal(contact, oil.solids, bulk, oil.tolerance, start=near)
+    if not found.converged and near is not None:
+        found = ehl.solve_thermal(contact, oil.solids, bulk, oil.tolerance)
+    if not found.converged:
+        raise _none_at(rho1, found.message)
+    return found
+
+
+def _none_at(rho1: float, why: str) -> SolverError:
+    return SolverError(f"no film with heat at rho1 = {1e3 * rho1:.3f} mm: {why}")
+
+
+def thinned(count: int, step: int) -> Integers:
+    """Numbers of every so many of some, the last as well."""
+    return np.unique(np.append(np.arange(0, count, step), count - 1))
+
+
+def _taken(values: tuple[T, ...], kept: Integers) -> tuple[T, ...]:
+    return tuple(values[k] for k in kept.tolist())

@@ -1,0 +1,379 @@
+"""Losses and temperatures of the mesh: films with heat, load share and bulk temperatures in agreement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Unpack
+
+import numpy as np
+
+import ehl
+import gears
+from base import Array, Cost, Faults, Limit, SolverError, Stopwatch, unclocked
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
+from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth, TeethOptions
+from flankfilm.coupling.losses_along_path import losses_along
+from flankfilm.coupling.mean_losses import Carried, Means, means_of
+from flankfilm.coupling.mesh_cycles import resolved
+from flankfilm.coupling.mesh_losses import LossBand, MeshLosses
+from flankfilm.coupling.warned import warned_once
+
+POSITIONS = 40
+"""Positions of a base pitch at which films are solved."""
+
+FINER = 8
+"""Times as many positions show what those leave out."""
+
+FEW = 8
+"""Of so many films one is solved where a part of them does: for first values, and at the ends of the band."""
+
+BAND = (5e6, 10e6)
+"""Eyring's stress of most oils [Pa]."""
+
+FIRST_FRICTION = 0.03
+
+MOST_ROUNDS = 12
+
+WARMER = 0.5
+"""Change of bulk temperatures that is left where they are balanced [K]."""
+
+BALANCE = Limit.above(
+    0.0, 1e6, "W/K", "heat transfer coefficient times area of a gear; 1 to 100 W/K are usual"
+)
+TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
+BOUNDARY = Limit(0.0, 0.5, remedy="0.08 to 0.15 is usual")
+
+
+def mesh_losses(
+    pair: gears.GearPair,
+    torque: float,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    *,
+    solids: tuple[ehl.Solid, ehl.Solid] = (ehl.STEEL, ehl.STEEL),
+    bulk_temperatures: tuple[float, float] | None = None,
+    heat_transfer: tuple[float, float] | None = None,
+    ambient_temperature: float | None = None,
+    tolerance: float = 0.01,
+    roughness: ehl.Roughness | None = None,
+    boundary_friction: float = 0.1,
+    positions: int = POSITIONS,
+    **teeth: Unpack[TeethOptions],
+) -> MeshLosses:
+    """Friction, losses and temperatures of a lubricated mesh over one base pitch.
+
+    Films with heat and shear thinning are solved at every loaded contact, each from its neighbour. Their mean friction
+    tilts the forces by which the load is shared, and that is done again until the forces stay.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    torque, speed : float
+        Of the pinion [N m], [rad/s].
+    lubricant : ehl.Lubricant
+        With Eyring's stress and what heat does with it.
+    solids : (ehl.Solid, ehl.Solid)
+        What pinion and wheel do with heat.
+    bulk_temperatures : (float, float), optional
+        Of pinion and wheel [K]; those of the lubricant's data unless given or balanced.
+    heat_transfer : (float, float), optional
+        From pinion and wheel to their surroundings, heat transfer coefficient times area [W/K]: the bulk temperatures
+        are then those at which this takes away the mesh's losses.
+    ambient_temperature : float, optional
+        Of these surroundings, beside `heat_transfer` [K].
+    tolerance : float
+        Relative, of films and friction.
+    roughness : ehl.Roughness, optional
+        Of both flanks together; smooth without.
+    boundary_friction : float
+        Coefficient of friction of what asperities carry.
+    positions : int
+        Equal intervals of the base pitch.
+    **teeth
+        As of `lubricated_cycle`.
+
+    Returns
+    -------
+    MeshLosses
+
+    Raises
+    ------
+    InputError
+        With every fault of the arguments.
+    SolverError
+        Where a film has no solution, or temperatures do not settle.
+
+    Notes
+    -----
+    The films do not change the load share but by friction. Half of what rough flanks carry is left out: asperities
+    make no heat in the film. Equations and limits: docs/theory/losses.md.
+
+    Examples
+    --------
+    >>> from ehl import Lubricant
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> oil = Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, eyring_stress=5e6)
+    >>> found = mesh_losses(pair, 300.0, 209.44, oil, model="potential-energy", positions=4)
+    >>> 0.99 < found.efficiency < 1.0
+    True
+    """
+    loaded = LoadedTeeth(pair, torque, **teeth)
+    given = _checked(loaded, lubricant, solids, bulk_temperatures, heat_transfer, ambient_temperature)
+    _check_numbers(given, boundary_friction, positions, roughness)
+    given.raise_if_any()
+    with warned_once():
+        loaded, _ = resolved(loaded, tolerance, speed=speed)
+        with unclocked():
+            ehl.solve_thermal  # noqa: B018 - loads the solver
+        at_rest = lubricant.temperature
+        run = _Run(
+            loaded,
+            speed,
+            lubricant,
+            HeatedOil(solids, roughness, boundary_friction, tolerance),
+            positions,
+            0.5 * tolerance,
+            None if heat_transfer is None else np.array(heat_transfer),
+            at_rest if ambient_temperature is None else ambient_temperature,
+        )
+        return run.solved(bulk_temperatures or (at_rest, at_rest))
+
+
+def _checked(
+    teeth: LoadedTeeth,
+    lubricant: ehl.Lubricant,
+    solids: tuple[ehl.Solid, ehl.Solid],
+    bulk: tuple[float, float] | None,
+    transfer: tuple[float, float] | None,
+    ambient: float | None,
+) -> Faults:
+    """Note faults of what the oil and the bodies do with heat."""
+    found = Faults()
+    if lubricant.eyring_stress is None:
+        remedy = "5e6 to 1e7 Pa is usual: a Newtonian oil's friction and heat have no bound at the pressures of gears"
+        found.add("lubricant.eyring_stress", None, "must be given for losses", remedy)
+    for name, body, material in zip(("pinion", "wheel"), solids, teeth.pair.materials, strict=True):
+        if material.youngs_modulus < COMPLIANT and body is ehl.STEEL:
+            given = f"those of steel, of a {name} of {1e-9 * material.youngs_modulus:.3g} GPa"
+            found.add(
+                "solids",
+                given,
+                "must be the gear's own",
+                "give ehl.Solid(conductivity, density, heat_capacity)",
+            )
+    if teeth.flanks.friction:
+        found.add(
+            "flanks.friction", teeth.flanks.friction, "must be left out: it is found here", "leave it out"
+        )
+    if bulk is not None and transfer is not None:
+        remedy = "give one of them"
+        found.add("bulk_temperatures", bulk, "must be left out beside heat_transfer", remedy)
+    if transfer is None and ambient is not None:
+        found.add("ambient_temperature", ambient, "must be left out without heat_transfer", "give both")
+    if transfer is not None and ambient is None:
+        found.add(
+            "ambient_temperature", ambient, "must be given beside heat_transfer", "in K; 293.15 is 20 degC"
+        )
+    elif ambient is not None:
+        found.number("ambient_temperature", ambient, TEMPERATURE)
+    for where, two, limit in (("bulk_temperatures", bulk, TEMPERATURE), ("heat_transfer", transfer, BALANCE)):
+        if two is not None and np.shape(two) != (2,):
+            found.add(where, two, "must be two numbers", "give pinion and wheel")
+        elif two is not None:
+            for value in two:
+                found.number(where, value, limit)
+    return found
+
+
+def _check_numbers(found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None) -> None:
+    found.number("boundary_friction", boundary, BOUNDARY)
+    found.number("positions", positions, Limit(2, whole=True))
+    if roughness is not None and not isinstance(roughness, ehl.Roughness):
+        found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
+
+
+@dataclass(frozen=True)
+class _Agreed:
+    """Films, forces and temperatures that agree."""
+
+    films: HeatedFilms
+    cycle: MeshCycle
+    bulk: tuple[float, float]
+    means: Means
+    rounds: int
+    shares: float
+    warmer: float
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What films, load share and temperatures are computed from."""
+
+    teeth: LoadedTeeth
+    speed: float
+    lubricant: ehl.Lubricant
+    oil: HeatedOil
+    positions: int
+    agreement: float
+    transfer: Array | None
+    ambient: float
+
+    def solved(self, bulk: tuple[float, float]) -> MeshLosses:
+        """Solve everything."""
+        watch = Stopwatch()
+        first = self._agree(FEW, FIRST_FRICTION, bulk)
+        agreed = self._agree(1, first.means.friction, first.bulk)
+        band = self._band(agreed)
+        finer = self._means(self._cycle(agreed.means.friction, FINER * self.positions), agreed.films)
+        left_out = (
+            abs(finer.sliding_loss / agreed.means.sliding_loss - 1.0) if agreed.means.sliding_loss else 0.0
+        )
+        path, means = losses_along(self.teeth.pair, agreed.films, agreed.bulk), agreed.means
+        by_films = (
+            np.average(path.friction_error, weights=path.sliding_loss) if path.sliding_loss.any() else 0.0
+        )
+        nodes = max(film.cost.unknowns for film in agreed.films.films)
+        return MeshLosses(
+            cycle=agreed.cycle,
+            path=path,
+            speed=self.speed,
+            input_power=self._power,
+            mean_friction=means.friction,
+            sliding_loss=means.sliding_loss,
+            rolling_loss=means.rolling_loss,
+            edge_loss=means.edge_loss,
+            loss_factor=means.loss_factor,
+            ohlendorf_loss_factor=_ohlendorf(self.teeth.pair),
+            bulk_temperatures=np.array(agreed.bulk),
+            heat=means.heat,
+            heat_transfer=self.transfer,
+            band=band,
+            rounds=first.rounds + agreed.rounds,
+            share_mismatch=agreed.shares,
+            temperature_mismatch=agreed.warmer,
+            error=float(by_films) + left_out + agreed.shares,
+            cost=Cost(watch.seconds, nodes, parts={}),
+        )
+
+    @property
+    def _power(self) -> float:
+        return abs(self.teeth.torque) * self.speed
+
+    def _cycle(self, friction: float, positions: int) -> MeshCycle:
+        flanks = replace(self.teeth.flanks, friction=friction)
+        return replace(self.teeth, flanks=flanks).cycle(positions)
+
+    def _means(self, cycle: MeshCycle, films: HeatedFilms, carried: Carried | None = None) -> Means:
+        return means_of(self.teeth.pair, cycle, self.speed, self._power, carried or Carried.of(films))
+
+    def _agree(self, step: int, friction: float, bulk: tuple[float, float]) -> _Agreed:
+        """Iterate films, load share and temperatures, with every so many of the films."""
+        shares, warmer, rounds = np.inf, np.inf, 0
+        cycle, films = self._cycle(friction, self.positions), None
+        balance = _Balance()
+        while shares > self.agreement or warmer > WARMER:
+            if rounds == MOST_ROUNDS:
+                raise SolverError(
+                    f"losses and bulk temperatures did not agree within {MOST_ROUNDS} rounds (temperatures still "
+                    f"change by {warmer:.2g} K, forces by {shares:.1e} of the whole): give bulk_temperatures"
+                )
+            rounds += 1
+            films = self._films(cycle, step, bulk, films)
+            means = self._means(cycle, films)
+            before, cycle = cycle, self._cycle(means.friction, self.positions)
+            shares = float(np.nanmax(np.abs(cycle.load_share - before.load_share)))
+            means = self._means(cycle, films)
+            warm = bulk if self.transfer is None else balance.next(bulk, self._balanced(means))
+            warmer, used = float(np.max(np.abs(np.subtract(warm, bulk)))), bulk
+            bulk = warm
+        assert films is not None
+        return _Agreed(films, cycle, used if step == 1 else bulk, means, rounds, shares, warmer)
+
+    def _films(
+        self, cycle: MeshCycle, step: int, bulk: tuple[float, float], before: HeatedFilms | None
+    ) -> HeatedFilms:
+        rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant)
+        kept = thinned(len(contacts), step)
+        same = before is not None and before.rho1.size == kept.size
+        return heated_films(
+            rho1[kept], [contacts[k] for k in kept.tolist()], self.oil, bulk, before if same else None
+        )
+
+    def _balanced(self, means: Means) -> tuple[float, float]:
+        """Temperatures at which the losses are taken away."""
+        assert self.transfer is not None
+        first, second = (self.ambient + means.heat / self.transfer).tolist()
+        if max(first, second) > TEMPERATURE.high:
+            raise SolverError(
+                f"bulk temperatures of {first:.4g} and {second:.4g} K would take away the mesh's losses of "
+                f"{means.heat.sum():.4g} W: give more heat_transfer"
+            )
+        return first, second
+
+    def _band(self, agreed: _Agreed) -> LossBand:
+        """Losses at the ends of the band of Eyring's stress, by the ratios of some films."""
+        some = agreed.films.every(FEW)
+        found, off = [], [0.0]
+        for stress in BAND:
+            ratios = self._ratios(some, stress, agreed.bulk)
+            coarser = ratios.every(2)
+            values = [
+                self._means(agreed.cycle, agreed.films, Carried.of(agreed.films, one))
+                for one in (ratios, coarser)
+            ]
+            found.append(values[0])
+            if values[0].mesh_loss:
+                off.append(abs(values[1].mesh_loss / values[0].mesh_loss - 1.0))
+        return _band(found, max(off), self._power)
+
+    def _ratios(self, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
+        """Friction and rolling of some films at another stress, over those at the given one."""
+        if stress == self.lubricant.eyring_stress:
+            return Carried.ones(some.rho1)
+        oil = replace(self.lubricant, eyring_stress=stress)
+        contacts = [replace(one, lubricant=oil) for one in some.contacts]
+        return Carried.of(heated_films(some.rho1, contacts, self.oil, bulk, some)).over(Carried.of(some))
+
+
+class _Balance:
+    """Bulk temperatures that are sought: the mean of both by secants, what they differ by as it comes."""
+
+    def __init__(self) -> None:
+        self.last: tuple[float, float] | None = None
+
+    def next(self, given: tuple[float, float], asked: tuple[float, float]) -> tuple[float, float]:
+        """Temperatures to try next, after given ones have asked for others."""
+        at, wanted = 0.5 * sum(given), 0.5 * sum(asked)
+        slope = 0.0
+        if self.last is not None and at != self.last[0]:
+            slope = float(np.clip((wanted - self.last[1]) / (at - self.last[0]), -3.0, 0.5))
+        self.last = at, wanted
+        mean = at + (wanted - at) / (1.0 - slope)
+        apart = 0.5 * (asked[0] - asked[1])
+        return mean + apart, mean - apart
+
+
+def _band(found: Sequence[Means], error: float, power: float) -> LossBand:
+    def each(name: str) -> Array:
+        return np.array([getattr(one, name) for one in found])
+
+    loss = each("mesh_loss")
+    return LossBand(
+        eyring_stress=np.array(BAND),
+        mean_friction=each("friction"),
+        sliding_loss=each("sliding_loss"),
+        rolling_loss=each("rolling_loss"),
+        mesh_loss=loss,
+        efficiency=1.0 - loss / power,
+        error=error,
+    )
+
+
+def _ohlendorf(pair: gears.GearPair) -> float | None:
+    try:
+        return gears.closed_form.ohlendorf_loss_factor(pair)
+    except gears.GeometryError:
+        return None

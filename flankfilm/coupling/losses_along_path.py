@@ -1,0 +1,154 @@
+"""Friction, losses and temperatures at the loaded contacts of a mesh cycle, in the order of the path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+import ehl
+import gears
+from base import Array, described, quantity, record
+from base.results import EXACT
+from fem.cycle import HERTZ
+from flankfilm.coupling.heated_films import HeatedFilms
+
+_CLOSED_FORM = "unknown: a closed form"
+
+
+@record
+class LossesAlongPath:
+    """Friction, losses and temperatures at the loaded contacts of a mesh cycle, in the order of the path.
+
+    Powers are those of a single contact over the whole face.
+    """
+
+    no_error = "not estimated in single places; films have an error, and so have friction and temperatures"
+    headline = ("least_film", "greatest_pressure_times_sliding", "greatest_contact_temperature")
+
+    rho1: Array = quantity("m", "curvature radius of the pinion's flank at the contact", "point", shown="mm")
+    load: Array = quantity("N/m", "force per length of face", "point", shown="N/mm", no_error=HERTZ)
+    hertz_pressure: Array = quantity(
+        "Pa", "Hertz pressure, the largest of the dry contact", "point", shown="GPa", no_error=HERTZ
+    )
+    sliding_speed: Array = quantity(
+        "m/s", "sliding speed u1 - u2, negative before C", "point", no_error=EXACT
+    )
+    entrainment: Array = quantity("m/s", "entrainment speed, the mean (u1 + u2)/2", "point", no_error=EXACT)
+    friction_coefficient: Array = quantity(
+        "1", "coefficient of friction of film and asperities", "point", error="friction_error"
+    )
+    shear_stress: Array = quantity(
+        "Pa",
+        "friction over the Hertz width, as the pinion feels it",
+        "point",
+        shown="MPa",
+        error="friction_error",
+    )
+    rolling_friction: Array = quantity(
+        "N/m", "force by which the oil's pressure resists rolling on either flank", "point", shown="N/mm"
+    )
+    sliding_loss: Array = quantity("W", "power lost by sliding", "point", error="friction_error")
+    rolling_loss: Array = quantity("W", "power lost by the oil's flow under its pressure", "point")
+    oil_temperature_rise: Array = quantity(
+        "K", "greatest oil temperature above the mean of the flanks' bulk", "point", error="temperature_error"
+    )
+    surface_temperature_rise: Array = quantity(
+        "K",
+        "greatest temperature of pinion's and wheel's flank above its bulk",
+        "gear point",
+        error="temperature_error",
+    )
+    contact_temperature: Array = quantity("K", "greatest temperature of the flanks", "point")
+    flash_temperature: Array = quantity(
+        "K", "flash temperature after Blok beside it", "point", no_error=_CLOSED_FORM
+    )
+    minimum_thickness: Array = quantity("m", "least film", "point", shown="um", error="film_error")
+    film_ratio: Array | None = quantity(
+        "1", "film ratio Lambda, least film over sigma; None of smooth flanks", "point", error="film_error"
+    )
+    asperity_share: Array | None = quantity(
+        "1", "asperities' share of the load; None of smooth flanks", "point"
+    )
+    closure: Array = quantity("1", "heat that arrives over heat that is made, less 1", "point")
+    friction_error: Array = quantity("1", "estimated relative error of friction, by the grid", "point")
+    temperature_error: Array = quantity(
+        "1", "estimated relative error of the oil's rise, by the grid", "point"
+    )
+    film_error: Array = quantity("1", "estimated relative error of the film", "point")
+
+    @described("Pa m/s", "point", no_error=HERTZ)
+    def pressure_times_sliding(self) -> Array:
+        """Hertz pressure times sliding speed, p v."""
+        return np.asarray(self.hertz_pressure * np.abs(self.sliding_speed))
+
+    @described("Pa m/s", no_error=HERTZ)
+    def greatest_pressure_times_sliding(self) -> float:
+        """Greatest Hertz pressure times sliding speed of the contacts."""
+        return float(self.pressure_times_sliding.max())
+
+    @described("m", shown="um")
+    def least_film(self) -> float:
+        """Least film of the contacts."""
+        return float(self.minimum_thickness.min())
+
+    @described("K")
+    def greatest_contact_temperature(self) -> float:
+        """Greatest temperature of the flanks at the contacts."""
+        return float(self.contact_temperature.max())
+
+
+def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, float]) -> LossesAlongPath:
+    """Read friction, losses and temperatures off heated films.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    found : HeatedFilms
+    bulk : (float, float)
+        Temperatures of pinion and wheel [K].
+    """
+    films, contacts, width = found.films, found.contacts, pair.face_width
+    friction = found.friction
+    half_width = _each(contacts, "half_width")
+    load, sliding = _each(contacts, "load"), _each(contacts, "sliding")
+    rises = np.array([_surface_rises(film, bulk) for film in films]).T
+    return LossesAlongPath(
+        rho1=found.rho1,
+        load=load,
+        hertz_pressure=_each(contacts, "peak_pressure"),
+        sliding_speed=sliding,
+        entrainment=_each(contacts, "entrainment"),
+        friction_coefficient=friction,
+        shear_stress=np.sign(sliding) * friction * load / (2.0 * half_width),
+        rolling_friction=_each(films, "rolling_friction"),
+        sliding_loss=width * friction * load * np.abs(sliding),
+        rolling_loss=width * found.rolling,
+        oil_temperature_rise=_each(films, "oil_temperature_rise"),
+        surface_temperature_rise=rises,
+        contact_temperature=np.max(rises + np.array(bulk)[:, None], axis=0),
+        flash_temperature=np.array(
+            [
+                ehl.blok_flash_temperature(contact, mu, found.solids)
+                for contact, mu in zip(contacts, friction.tolist(), strict=True)
+            ]
+        ),
+        minimum_thickness=found.minimum_thickness,
+        film_ratio=found.film_ratio,
+        asperity_share=found.asperity_share if found.rough else None,
+        closure=np.array([film.losses.closure for film in films if film.losses is not None]),
+        friction_error=_each(films, "traction_error"),
+        temperature_error=_each(films, "temperature_error"),
+        film_error=_each(films, "error"),
+    )
+
+
+def _surface_rises(film: ehl.ThermalFilm, bulk: tuple[float, float]) -> tuple[float, float]:
+    """Greatest rise of both surfaces above their bulk [K]."""
+    assert film.temperature is not None
+    return float(film.temperature[:, 0].max() - bulk[0]), float(film.temperature[:, -1].max() - bulk[1])
+
+
+def _each(records: Sequence[object], figure: str) -> Array:
+    """A figure of every record."""
+    return np.array([getattr(one, figure) for one in records])

@@ -1,0 +1,137 @@
+"""Mean losses over a base pitch, from friction and rolling at places of the path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import gears
+from base import Array
+from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.heated_films import HeatedFilms, thinned
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What films at places of the path give to the contacts between them, linear in the place.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (n,)
+        Places [m], growing.
+    friction : ndarray, shape (n,)
+        Coefficient of friction.
+    rolling : ndarray, shape (n,)
+        Power lost by the oil's flow under its pressure [W/m].
+    first_part : ndarray, shape (n,)
+        Part of the heat that the pinion takes up.
+    """
+
+    rho1: Array
+    friction: Array
+    rolling: Array
+    first_part: Array
+
+    @classmethod
+    def of(cls, films: HeatedFilms, ratios: Carried | None = None) -> Carried:
+        """Read films, times ratios at other places."""
+        found = cls(films.rho1, films.friction, films.rolling, films.first_part)
+        if ratios is None:
+            return found
+        by = ratios.at(films.rho1)
+        return replace(found, friction=found.friction * by.friction, rolling=found.rolling * by.rolling)
+
+    @classmethod
+    def ones(cls, rho1: Array) -> Carried:
+        """Ratios that change nothing."""
+        one = np.ones(rho1.size)
+        return cls(rho1, one, one, one)
+
+    def over(self, other: Carried) -> Carried:
+        """Ratios to what other films at the same places give; 1 where these give nothing."""
+
+        def ratio(a: Array, b: Array) -> Array:
+            return np.where(b == 0.0, 1.0, a / np.where(b == 0.0, 1.0, b))
+
+        return replace(
+            self,
+            friction=ratio(self.friction, other.friction),
+            rolling=ratio(self.rolling, other.rolling),
+            first_part=np.ones(self.rho1.size),
+        )
+
+    def every(self, step: int) -> Carried:
+        """Give every so many places, the last as well."""
+        kept = thinned(self.rho1.size, step)
+        return Carried(self.rho1[kept], self.friction[kept], self.rolling[kept], self.first_part[kept])
+
+    def at(self, rho1: Array) -> Carried:
+        """Carry to other places."""
+        values = (np.interp(rho1, self.rho1, one) for one in (self.friction, self.rolling, self.first_part))
+        return Carried(rho1, *values)
+
+
+@dataclass(frozen=True)
+class Means:
+    """Means over one base pitch [W], and what follows from them."""
+
+    friction: float
+    sliding_loss: float
+    rolling_loss: float
+    edge_loss: float
+    loss_factor: float
+    heat: Array
+
+    @property
+    def mesh_loss(self) -> float:
+        """Power lost in all ways [W]."""
+        return self.sliding_loss + self.rolling_loss + self.edge_loss
+
+
+def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, given: Carried) -> Means:
+    """Average over the positions of a cycle.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : MeshCycle
+        Forces at places of the path; tip edges as well where it has them.
+    speed : float
+        Of the pinion [rad/s].
+    power : float
+        Put in [W].
+    given : Carried
+        Friction and rolling.
+    """
+    positions = cycle.position.size
+    touching = np.isfinite(cycle.rho1) & (cycle.forces > 0.0)
+    rho1, force = cycle.rho1[touching], cycle.forces[touching]
+    here = given.at(rho1)
+    slid = force * np.abs(pair.path_at(rho1).sliding(speed))
+    lost = here.friction * slid
+    rolled = pair.face_width * here.rolling
+    both = float(slid.sum())
+    friction = float(lost.sum()) / both if both else 0.0
+    edges = _edges(cycle, speed)
+    first = float(np.sum(here.first_part * (lost + rolled)) / positions)
+    on_path = float(np.sum(lost + rolled) / positions)
+    first += 0.5 * friction * edges
+    return Means(
+        friction=friction,
+        sliding_loss=float(lost.sum()) / positions,
+        rolling_loss=float(rolled.sum()) / positions,
+        edge_loss=friction * edges,
+        loss_factor=(both / positions + edges) / power,
+        heat=np.array([first, on_path + friction * edges - first]),
+    )
+
+
+def _edges(cycle: MeshCycle, speed: float) -> float:
+    """Mean force times sliding speed of tip edges outside the path [W]."""
+    contact = cycle.contact
+    if contact is None:
+        return 0.0
+    pressed = contact.edge & (contact.forces > 0.0)
+    slips = np.abs(contact.sliding(speed))
+    return float(np.sum(np.where(pressed, contact.forces * slips, 0.0))) / cycle.position.size
