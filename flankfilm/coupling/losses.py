@@ -107,8 +107,8 @@ def mesh_losses(
 
     Notes
     -----
-    The films do not change the load share but by friction. Half of what rough flanks carry is left out: asperities
-    make no heat in the film. Equations and limits: docs/theory/losses.md.
+    The films change the load share by friction alone. What asperities carry makes heat that no film feels. Equations
+    and limits: docs/theory/losses.md.
 
     Examples
     --------

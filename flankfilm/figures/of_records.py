@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array
 from flankfilm.figures.reading import PER_FACE, Reading, read_figure, unit_text
-from flankfilm.figures.style import DASHES, colours, legend_over, sheet
+from flankfilm.figures.style import DASHES, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from ehl import FilmResponse, MixedFilm
     from fem import RootStress
     from flankfilm.coupling import (
+        LossesAlongPath,
+        MeshLosses,
         MeshSeries,
         PairOscillator,
         RootStresses,
@@ -87,6 +89,48 @@ def _titled(axes: Axes, readings: Sequence[Reading]) -> None:
     axes.set_ylabel(f"[{readings[0].unit}]")
     long = sum(len(one.meaning) for one in readings) > WIDEST
     legend_over(axes, 1 if long else len(readings))
+
+
+def mesh_losses(found: MeshLosses) -> Figure:
+    """Draw friction, losses and temperatures along the path."""
+    return losses_along_path(found.path)
+
+
+def losses_along_path(found: LossesAlongPath) -> Figure:
+    """Draw friction, power, temperatures, pressure times sliding and film at the contacts along the path."""
+    x = read_figure(found, "rho1")
+    powers = {"sliding": found.sliding_loss, "rolling": found.rolling_loss}
+    rises = {
+        "oil": found.oil_temperature_rise,
+        "pinion's flank": found.surface_temperature_rise[0],
+        "wheel's flank": found.surface_temperature_rise[1],
+        "flash, Blok": found.flash_temperature,
+    }
+    with sheet(None, 5, height=8.4, legend=0) as (drawn, panels):
+        friction, power, warmth, pressed, film = panels
+        _curve(friction, x, read_figure(found, "friction_coefficient"), "coefficient of\nfriction [-]")
+        for axes, curves_, label in ((power, powers, "power lost [W]"), (warmth, rises, "rise [K]")):
+            for (name, values), colour, dash in zip(
+                curves_.items(), colours(len(curves_)), DASHES, strict=False
+            ):
+                axes.plot(x.values, values, color=colour, linestyle=dash, label=name)
+            axes.set_ylabel(label)
+            legend_over(axes, len(curves_))
+        times = 1e-6 * found.pressure_times_sliding
+        pressed.plot(x.values, times, color=colours(1)[0])
+        pressed.set_ylabel("pressure times\nsliding [MPa m/s]")
+        if found.film_ratio is None:
+            _curve(film, x, read_figure(found, "minimum_thickness"), "least film [µm]")
+        else:
+            _curve(film, x, read_figure(found, "film_ratio"), "film ratio Λ [-]")
+        from_zero(*panels)
+        film.set_xlabel(x.label)
+    return drawn
+
+
+def _curve(axes: Axes, x: Reading, y: Reading, label: str) -> None:
+    axes.plot(x.values, y.values, color=colours(1)[0])
+    axes.set_ylabel(label)
 
 
 def pair(found: gears.GearPair) -> Figure:
