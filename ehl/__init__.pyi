@@ -7,9 +7,9 @@ from .film import Film as Film
 from .film import FilmErrors as FilmErrors
 from .film import Spike as Spike
 from .film import hertz_approach as hertz_approach
+from .flash import blok_flash_temperature as blok_flash_temperature
 from .frequency import FilmResponse as FilmResponse
 from .frequency import film_response as film_response
-from .flash import blok_flash_temperature as blok_flash_temperature
 from .lubricant import Lubricant as Lubricant
 from .mixed import MixedFilm as MixedFilm
 from .mixed import solve_mixed as solve_mixed
