@@ -28,7 +28,7 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.cycle:MeshCycle": "curves",
     "flankfilm.coupling.along_path:FilmAlongPath": "curves",
     "flankfilm.coupling.losses_along_path:LossesAlongPath": "losses_along_path",
-    "flankfilm.coupling.mesh_losses:MeshLosses": "mesh_losses",
+    "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
     "flankfilm.coupling.loads:TorqueCurves": "curves",
     "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",
     "flankfilm.coupling.jumps:SpeedDiagram": "speed_diagram",

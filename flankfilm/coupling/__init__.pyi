@@ -14,13 +14,13 @@ from .loads import revolution as revolution
 from .loads import torque_curves as torque_curves
 from .losses import mesh_losses as mesh_losses
 from .losses_along_path import LossesAlongPath as LossesAlongPath
+from .losses_record import LossBand as LossBand
+from .losses_record import MeshLosses as MeshLosses
 from .lubricated import LubricatedCycle as LubricatedCycle
 from .lubricated import film_along_path as film_along_path
 from .lubricated import lubricate as lubricate
 from .lubricated import lubricated_cycle as lubricated_cycle
 from .mesh_cycles import mesh_cycle as mesh_cycle
-from .mesh_losses import LossBand as LossBand
-from .mesh_losses import MeshLosses as MeshLosses
 from .mesh_table import MeshTable as MeshTable
 from .mesh_table import mesh_table as mesh_table
 from .motion import Portrait as Portrait

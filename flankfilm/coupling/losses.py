@@ -15,9 +15,9 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
 from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth, TeethOptions
 from flankfilm.coupling.losses_along_path import losses_along
+from flankfilm.coupling.losses_record import LossBand, MeshLosses
 from flankfilm.coupling.mean_losses import Carried, Means, means_of
 from flankfilm.coupling.mesh_cycles import resolved
-from flankfilm.coupling.mesh_losses import LossBand, MeshLosses
 from flankfilm.coupling.warned import warned_once
 
 POSITIONS = 40
