@@ -39,6 +39,8 @@ from .oscillator import GearOscillator as GearOscillator
 from .scaling import Scaling as Scaling
 from .shooting import Orbit as Orbit
 from .shooting import find_orbit as find_orbit
+from .spectra import Spectrum as Spectrum
+from .spectra import motion_spectrum as motion_spectrum
 from .stepwise.oscillator import SmoothOscillator as SmoothOscillator
 from .stepwise.oscillator import restoring_force as restoring_force
 from .stiffness import FourierStiffness as FourierStiffness

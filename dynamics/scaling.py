@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from base import Faults
+import numpy as np
+
+from base import Array, Faults
 from dynamics.limits import NUMBER, POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.stiffness import FourierStiffness
@@ -184,10 +187,10 @@ class Scaling:
         stiffness: FourierStiffness,
         damping_ratio: float,
         force: float,
-        error_amplitude: float,
+        error_amplitude: float | Sequence[float] | Array,
         half_backlash: float,
         speed: float,
-        error_phase: float = 0.0,
+        error_phase: float | Sequence[float] | Array = 0.0,
     ) -> GearOscillator:
         """Dimensionless oscillator of physical quantities.
 
@@ -199,11 +202,13 @@ class Scaling:
             Dimensionless.
         force : float
             Normal force [N].
-        error_amplitude, half_backlash : float
+        error_amplitude : float or sequence of float
+            Of the error's first harmonic, or of each, along the line of action [m].
+        half_backlash : float
             Along the line of action [m].
         speed : float
             Pinion speed [rad/s].
-        error_phase : float
+        error_phase : float or sequence of float
             [rad].
 
         Raises
@@ -212,14 +217,16 @@ class Scaling:
             With every fault found.
         """
         k = self.mean_stiffness
+        scaled = np.asarray(error_amplitude, dtype=np.float64) / self.length
+        turned = np.asarray(error_phase, dtype=np.float64)
         return GearOscillator(
             stiffness=FourierStiffness(
                 stiffness.mean / k, tuple(a / k for a in stiffness.amplitudes), stiffness.phases
             ),
             damping_ratio=damping_ratio,
             mean_force=self.mean_force(force),
-            error_amplitude=self.scaled(error_amplitude),
+            error_amplitude=tuple(scaled.tolist()) if scaled.ndim else float(scaled),
             frequency=self.frequency(speed),
             half_backlash=self.scaled(half_backlash),
-            error_phase=error_phase,
+            error_phase=tuple(turned.tolist()) if turned.ndim else float(turned),
         )

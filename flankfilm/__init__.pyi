@@ -1,4 +1,6 @@
 from . import figures as figures
+from .coupling.excitation import error_series as error_series
+from .coupling.excitation import unloaded_error as unloaded_error
 from .coupling.films import FilmModel as FilmModel
 from .coupling.jumps import jump_speeds as jump_speeds
 from .coupling.losses import mesh_losses as mesh_losses
@@ -7,6 +9,8 @@ from .coupling.lubricated import lubricated_cycle as lubricated_cycle
 from .coupling.mesh_cycles import mesh_cycle as mesh_cycle
 from .coupling.motion import speed_sweep as speed_sweep
 from .coupling.oscillator import pair_oscillator as pair_oscillator
+from .coupling.sidebands import mesh_spectrum as mesh_spectrum
+from .coupling.sidebands import revolution_error as revolution_error
 from .coupling.single_pairs import single_pair_stiffness as single_pair_stiffness
 from .coupling.verification import compare_closed_forms as compare_closed_forms
 from .front import optimise as optimise

@@ -23,7 +23,7 @@ from gears.hertz import half_width
 LEAST_SHARE = 0.5
 """Load of a pair at the pitch point, over that of pairs which share equally, that no pair there falls below."""
 
-MOTIONS = {"sweep", "diagram"}
+MOTIONS = {"sweep", "diagram", "spectrum"}
 
 ROUNDING = 1e-12
 """Overlap of flanks that is rounding [modules]."""
@@ -86,7 +86,7 @@ def _pressed(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
 
 def _undriven(section: DynamicsSection) -> Iterator[Fault]:
     """Fault of an oscillator that nothing drives, which rests anywhere in the backlash."""
-    if section.mean_force == 0.0 and section.error_amplitude == 0.0:
+    if section.mean_force == 0.0 and not any(section.error_amplitude or ()):
         allowed = (
             "must not be 0 where error_amplitude is 0 too: nothing drives the motions of the wanted diagram"
         )

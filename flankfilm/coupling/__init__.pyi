@@ -1,5 +1,8 @@
 from .along_path import FilmAlongPath as FilmAlongPath
 from .cycle import MeshCycle as MeshCycle
+from .excitation import ErrorSeries as ErrorSeries
+from .excitation import error_series as error_series
+from .excitation import unloaded_error as unloaded_error
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
 from .jump_order import OrderedJumps as OrderedJumps
@@ -41,6 +44,10 @@ from .roots import root_stresses as root_stresses
 from .series import MeshSeries as MeshSeries
 from .series import given_series as given_series
 from .series import mesh_series as mesh_series
+from .sidebands import MotionSpectrum as MotionSpectrum
+from .sidebands import mesh_spectrum as mesh_spectrum
+from .sidebands import over_revolution as over_revolution
+from .sidebands import revolution_error as revolution_error
 from .single_pairs import SinglePairs as SinglePairs
 from .single_pairs import single_pair_stiffness as single_pair_stiffness
 from .single_pairs import single_pairs as single_pairs

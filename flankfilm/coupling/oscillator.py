@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 import dynamics
 import gears
-from base import Cost, InputError, described, part, quantity, record
+from base import Array, Cost, InputError, described, part, quantity, record
 from base.results import EXACT
 from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.excitation import peak_to_peak
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.series import MeshSeries, mesh_series
 
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
+
+LISTED = 6
+"""Harmonics of the error that a table lists."""
 
 
 @record
@@ -33,8 +40,21 @@ class PairOscillator:
     series: MeshSeries = part("of the mesh stiffness")
     pair: gears.GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
     force: float = quantity("N", "normal force", no_error=EXACT, default=0.0)
-    error_amplitude: float = quantity(
-        "m", "amplitude of the unloaded transmission error", shown="um", no_error=EXACT, default=0.0
+    error_amplitude: Array = quantity(
+        "m",
+        "amplitudes of the harmonics of the unloaded transmission error",
+        "harmonic",
+        shown="um",
+        no_error=EXACT,
+        default_factory=lambda: np.zeros(1),
+    )
+    error_phase: Array = quantity(
+        "rad",
+        "phases of these harmonics; tau = 0 when a pair is at A",
+        "harmonic",
+        shown="deg",
+        no_error=EXACT,
+        default_factory=lambda: np.zeros(1),
     )
     backlash: float = quantity(
         "m", "whole backlash along the line of action", shown="um", no_error=EXACT, default=0.0
@@ -60,6 +80,11 @@ class PairOscillator:
     def reference(self) -> str | None:
         """What the deflection of the stiffness is measured against; None for a given series."""
         return self.series.reference
+
+    @described("m", shown="um", no_error=EXACT)
+    def error_range(self) -> float:
+        """Peak to peak of the unloaded transmission error."""
+        return peak_to_peak(self.error_amplitude, self.error_phase)
 
     @described("1")
     def mean_force(self) -> float:
@@ -108,7 +133,7 @@ class PairOscillator:
         rpm = "" if scales is None else f"{scales.rpm(osc.frequency):.6g} rpm of the pinion"
         own = [
             ("mean force F_m", f"{self.force:.6g} N", f"{osc.mean_force:.6g}"),
-            ("error amplitude epsilon", f"{1e6 * self.error_amplitude:.4g} µm", f"{osc.error_amplitude:.6g}"),
+            *self._error_rows(),
             ("half backlash D", f"{1e6 * self.backlash / 2:.4g} µm", f"{osc.half_backlash:.6g}"),
             ("damping ratio zeta", damping, f"{osc.damping_ratio:.6g}"),
             ("mesh frequency omega", rpm, f"{osc.frequency:.6g}"),
@@ -125,6 +150,20 @@ class PairOscillator:
             ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
         )
 
+    def _error_rows(self) -> list[tuple[str, str, str]]:
+        """Amplitudes of the error, the first of many, and its range where there are several."""
+        own = self.oscillator.error_series[0]
+        physical = np.resize(self.error_amplitude, len(own)) if self.scales else np.zeros(len(own))
+        if len(own) == 1:
+            return [("error amplitude epsilon", f"{1e6 * physical[0]:.4g} µm", f"{own[0]:.6g}")]
+        rows = [
+            (f"error amplitude epsilon_{j}", f"{1e6 * e:.4g} µm", f"{x:.6g}")
+            for j, (e, x) in enumerate(zip(physical[:LISTED], own[:LISTED], strict=True), start=1)
+        ]
+        rest = f", {len(own)} harmonics" if len(own) > LISTED else ""
+        whole = peak_to_peak(*self.oscillator.error_series)
+        return [*rows, (f"error, peak to peak{rest}", f"{1e6 * self.error_range:.4g} µm", f"{whole:.6g}")]
+
 
 def pair_oscillator(
     pair: gears.GearPair,
@@ -133,8 +172,8 @@ def pair_oscillator(
     speed: float,
     *,
     damping_ratio: float = 0.05,
-    error_amplitude: float = 0.0,
-    error_phase: float = 0.0,
+    error_amplitude: float | Sequence[float] | Array = 0.0,
+    error_phase: float | Sequence[float] | Array = 0.0,
     extra_inertia: tuple[float, float] = (0.0, 0.0),
     length_scale: float | None = None,
     one_sided: bool = False,
@@ -161,8 +200,9 @@ def pair_oscillator(
         load, and the stiffness is that of the back flanks.
     damping_ratio : float
         Dimensionless.
-    error_amplitude, error_phase : float
-        Of the unloaded transmission error [m], [rad]; the deflection is in the stiffness already.
+    error_amplitude, error_phase : float or sequence of float
+        Of the unloaded transmission error [m], [rad], of its first harmonic or of each; the deflection is in the
+        stiffness already. `error_series` takes them from a curve.
     extra_inertia : (float, float)
         What turns with pinion and wheel, on their bores [kg m2].
     length_scale : float, optional
@@ -194,6 +234,9 @@ def pair_oscillator(
         remedy = "give more backlash; the mesh cycle of pressed teeth needs no motion"
         raise InputError.at("pair.backlash", f"{1e6 * pair.backlash:.4g} um", allowed, remedy)
     force = abs(pair.normal_force(torque))
+    amplitudes, phases = (np.asarray(one, dtype=np.float64) for one in (error_amplitude, error_phase))
+    if phases.ndim == 0 and phases == 0.0:  # serves any number of amplitudes
+        phases = np.zeros(amplitudes.shape)
     scales = pair_scales(pair, torque, series.mean, extra_inertia, length_scale)
     oscillator = scales.oscillator(
         stiffness=series.stiffness,
@@ -202,7 +245,7 @@ def pair_oscillator(
         error_amplitude=error_amplitude,
         half_backlash=0.5 * max(pair.backlash, 0.0),
         speed=speed,
-        error_phase=error_phase if torque > 0.0 else error_phase + math.pi,
+        error_phase=_as_given(phases + (0.0 if torque > 0.0 else math.pi)),
     )
     return PairOscillator(
         replace(oscillator, one_sided=one_sided),
@@ -210,11 +253,17 @@ def pair_oscillator(
         series,
         pair,
         force,
-        error_amplitude,
+        np.atleast_1d(amplitudes),
+        np.atleast_1d(phases),
         pair.backlash,
         pair_inertias(pair, extra_inertia),
         message=said,
     )
+
+
+def _as_given(values: Array) -> float | tuple[float, ...]:
+    """One number as a number, several as a tuple."""
+    return tuple(values.tolist()) if values.ndim else float(values)
 
 
 def _measured(

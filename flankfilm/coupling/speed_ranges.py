@@ -60,7 +60,7 @@ def standard_factors(motion: PairOscillator, frequency: Array) -> Array:
         motion.force,
         scales.equivalent_mass,
         scales.speed(1.0) * frequency,
-        pitch_deviation=2.0 * motion.error_amplitude,
+        pitch_deviation=motion.error_range,
         relief=max(reliefs, default=0.0),
     )
     return np.asarray(factor.K_v)

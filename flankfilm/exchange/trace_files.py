@@ -24,7 +24,7 @@ from base import Faults, InputError, shorten
 from flankfilm.folder import content_of
 from flankfilm.scene.flank_sections import POSITIONS
 
-__all__ = ["VALUES", "read_curves"]
+__all__ = ["VALUES", "TableRow", "read_curves", "table_rows"]
 
 LARGEST = 10_000_000
 """Bytes; a thousand points of a hundred teeth are a tenth of it."""
@@ -86,7 +86,7 @@ def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
     InputError
         With every fault of the file.
     """
-    rows = _rows(path, where)
+    rows = table_rows(path, where)
     head = [cell.strip().lower() for cell in rows[0].cells]
     by = [column for column in head if column in POSITIONS]
     value = [column for column in head if column in VALUES[name]]
@@ -108,7 +108,7 @@ def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
     return curves if each or "tooth" in head else curves[0]
 
 
-class _Row(NamedTuple):
+class TableRow(NamedTuple):
     """Cells of a row and the number of its line."""
 
     line: int
@@ -122,7 +122,7 @@ class _Row(NamedTuple):
             return math.nan
 
 
-def _rows(path: Path, where: str) -> list[_Row]:
+def table_rows(path: Path, where: str) -> list[TableRow]:
     """Rows of a file that are no remarks, at least one."""
     try:
         text = content_of(path, LARGEST, "name a CSV file beside the scene", "leave out points").decode(
@@ -134,7 +134,7 @@ def _rows(path: Path, where: str) -> list[_Row]:
         cells = csv.reader(
             [line if mark == "," else line.replace(",", ".") for _, line in lines], delimiter=mark
         )
-        rows = [_Row(number, one) for (number, _), one in zip(lines, cells, strict=True)]
+        rows = [TableRow(number, one) for (number, _), one in zip(lines, cells, strict=True)]
     except InputError as error:
         raise InputError(replace(fault, where=where, value=fault.where) for fault in error.faults) from error
     except (UnicodeDecodeError, csv.Error, ValueError) as fault:
@@ -144,7 +144,7 @@ def _rows(path: Path, where: str) -> list[_Row]:
     return rows
 
 
-def _side_by_side(rows: Sequence[_Row], place: int, columns: Mapping[int, int]) -> dict[int, _Points]:
+def _side_by_side(rows: Sequence[TableRow], place: int, columns: Mapping[int, int]) -> dict[int, _Points]:
     """Teeth in columns at common positions."""
     teeth = {tooth: _Points() for tooth in columns}
     for row in rows:
@@ -154,7 +154,7 @@ def _side_by_side(rows: Sequence[_Row], place: int, columns: Mapping[int, int]) 
     return teeth
 
 
-def _one_below_the_other(rows: Sequence[_Row], tooth: int, place: int, value: int) -> dict[int, _Points]:
+def _one_below_the_other(rows: Sequence[TableRow], tooth: int, place: int, value: int) -> dict[int, _Points]:
     """Teeth in rows; those of which nobody says whose they are stand under -1."""
     teeth: dict[int, _Points] = {}
     for row in rows:

@@ -3,6 +3,8 @@ from .animation import animate_cycle as animate_cycle
 from .animation import teeth_scene as teeth_scene
 from .animation import tooth_picture as tooth_picture
 from .animation import view_cycle as view_cycle
+from .excitation import excitation as excitation
+from .excitation import spectrum as spectrum
 from .film import film_along_path as film_along_path
 from .film import film_changes as film_changes
 from .film import film_families as film_families

@@ -164,6 +164,14 @@ def scale(results: xr.Dataset, of: str) -> Reading:
     return read(results, name) if name in results else Reading(np.array(1.0), of, "-")
 
 
+def rpm_text(results: xr.Dataset) -> str:
+    """Speed of a spectrum, and its frequency."""
+    frequency = f"ω = {float(results['spectrum_frequency']):.4g}"
+    if "spectrum_speed" not in results:
+        return frequency
+    return f"{float(read(results, 'spectrum_speed').values):.0f} rpm, {frequency}"
+
+
 def rpm_of_one(results: xr.Dataset) -> float:
     """Pinion speed of the mesh frequency that is the natural one [rpm]."""
     return float(read(results, "sweep_speed").values[0] / results["sweep_frequency"].values[0])

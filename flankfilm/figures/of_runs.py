@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 MAIN = (
     ("diagram_force_factor", figures.diagram),
     ("sweep_frequency", figures.resonance),
+    ("spectrum_force", figures.spectrum),
     ("film_central_thickness", figures.film_along_path),
     ("dry_secant_stiffness", figures.mesh_stiffness),
     ("single_pair_rho1", figures.single_pairs),

@@ -20,6 +20,8 @@ STAGES: Mapping[str, str] = {
     "iso6336_2": "closed forms",
     "oscillator": "scaling",
     "fourier": "fourier",
+    "excitation": "excitation",
+    "spectrum": "spectrum",
     **dict.fromkeys(("sweep", "portrait"), "sweep"),
     **dict.fromkeys(("diagram", "special", "jump", "missed", "stable", "force"), "diagram"),
     "field": "fields",

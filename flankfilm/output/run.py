@@ -112,6 +112,8 @@ TABLES: Mapping[str, Table] = {
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
     "film_along_path": Table("film", "rho1", axis="point"),
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
+    "excitation": Table("excitation", "amplitude", axis="harmonic"),
+    "spectrum": Table("spectrum", "force", axis="line"),
     "resonance": Table("sweep", "force_factor_up", RESONANCE),
     "diagram": Table("diagram", "frequency", axis="point"),
     "special_points": Table("special", "frequency", axis="point"),
@@ -202,8 +204,12 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         yield _fourier(series)
     if (motion := values.get("scaling")) is not None:
         yield of_record("oscillator", motion, None if motion.scales is not None else DIMENSIONLESS)
+    if (excitation := values.get("excitation")) is not None:
+        yield of_record("excitation", excitation)
     if (sweep := values.get("sweep")) is not None:
         yield from _sweep(sweep)
+    if (spectrum := values.get("spectrum")) is not None:
+        yield of_record("spectrum", spectrum)
     if (diagram := values.get("diagram")) is not None:
         yield from branch_tables(diagram)
     if (fields := values.get("fields")) is not None and pair is not None:

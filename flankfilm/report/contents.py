@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.figures.reading import read_figure
-from flankfilm.report import film_parts, mesh_parts, motion_parts, pair_parts, run_parts
+from flankfilm.report import excitation_parts, film_parts, mesh_parts, motion_parts, pair_parts, run_parts
 from flankfilm.report.page import Fact, Headline, Part, said, write_page
 from flankfilm.report.text import counted, percent, seconds
 
@@ -34,9 +34,11 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "root stress": mesh_parts.root_stress,
     "fields": mesh_parts.fields,
     "fourier": motion_parts.fourier,
+    "excitation": excitation_parts.excitation,
     "scaling": motion_parts.scaling,
     "sweep": motion_parts.sweep,
     "diagram": motion_parts.diagram,
+    "spectrum": excitation_parts.spectrum,
 }
 """Stages with a section of their own, after geometry, stiffness and film."""
 

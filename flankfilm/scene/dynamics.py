@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal
 
@@ -10,6 +9,7 @@ from pydantic import Field, model_validator
 
 from base import Limit
 from dynamics.limits import OSCILLATOR as LIMITS
+from flankfilm.scene.error_curve import AMPLITUDE_UM, PHASE_DEG, ErrorCurveSection, harmonics
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 
@@ -21,11 +21,18 @@ FASTEST = 1e7
 """Upper end of a range of speeds [rpm], or of frequencies."""
 
 DIMENSIONLESS = ("mean_force", "error_amplitude", "half_backlash")
-PHYSICAL = ("error_amplitude_um", "length_scale_um")
+PHYSICAL = ("error_amplitude_um", "error_curve", "length_scale_um")
 """Keys of which those of one kind alone are given."""
 
-OSCILLATOR = ("damping_ratio", "error_phase_deg", "one_sided", *DIMENSIONLESS, *PHYSICAL)
-"""Keys that the oscillator takes as they are, in SI."""
+OSCILLATOR = (
+    "damping_ratio",
+    "error_phase_deg",
+    "one_sided",
+    *DIMENSIONLESS,
+    "error_amplitude_um",
+    "length_scale_um",
+)
+"""Keys that the oscillator takes as they are, in SI; amplitudes and phases of an error are lists."""
 
 _NUMBER = Limit(0.0, 1e6)
 """Of a dimensionless quantity, to catch a number with a unit."""
@@ -90,10 +97,8 @@ class DynamicsSection(Section):
 
     ground: ClassVar[Limits] = {
         "damping_ratio": replace(LIMITS["damping_ratio"], high=5.0),
-        "error_phase": Limit(-2.0 * math.pi, 2.0 * math.pi, "rad"),
         "length_scale": Limit.above(0.0, 1.0, "m"),
         "mean_force": _NUMBER,
-        "error_amplitude": _NUMBER,
         "half_backlash": _NUMBER,
     }
 
@@ -110,14 +115,28 @@ class DynamicsSection(Section):
         such_as="bore",
     )
     damping_ratio: float = key("damping of the mesh over the critical one", 0.05, shown=True)
-    error_amplitude_um: float | None = key(
-        "unloaded transmission error; the deflection is in the stiffness; 0 if left out",
+    error_amplitude_um: Annotated[tuple[float, ...], harmonics(AMPLITUDE_UM)] | None = key(
+        "unloaded transmission error, its first harmonic or a list of harmonics; the deflection is in the stiffness; 0 "
+        "if left out",
         None,
         of="error_amplitude",
-        limit=Limit(0.0, 0.01, "m"),
         example=10,
     )
-    error_phase_deg: float = key("phase of this error when a pair is at A", 0.0, example=0)
+    error_phase_deg: Annotated[tuple[float, ...], harmonics(PHASE_DEG)] = key(
+        "phase of this error when a pair is at A, one for each harmonic",
+        (0.0,),
+        of="error_phase",
+        example=0,
+    )
+    error_curve: ErrorCurveSection | Literal["unloaded"] | None = key(
+        "instead of them: the error over a base pitch, in a file or by points, or unloaded: that of the scene's own "
+        "reliefs and mean deviations, by the geometry",
+        None,
+        such_as="error.csv",
+    )
+    error_order: Annotated[int, Field(ge=1, le=1000)] | Literal["auto"] = key(
+        'harmonics of that curve, or "auto": as few as the tolerance allows', "auto", such_as="auto"
+    )
     extra_inertia_kg_m2: ExtraInertia = key(
         "moments of inertia that turn with the gears, on their bores",
         ExtraInertia(),
@@ -129,8 +148,8 @@ class DynamicsSection(Section):
     mean_force: float | None = key(
         "dimensionless, with the next two instead of the physical keys", None, such_as=0.1
     )
-    error_amplitude: float | None = key(
-        "dimensionless amplitude of the transmission error", None, such_as=0.2
+    error_amplitude: Annotated[tuple[float, ...], harmonics(_NUMBER)] | None = key(
+        "dimensionless amplitude of the transmission error, or a list of its harmonics", None, such_as=0.2
     )
     half_backlash: float | None = key("dimensionless half of the backlash", None, such_as=0.2)
     one_sided: bool = key("whether there is no second flank, as with much backlash", False, shown=True)
@@ -153,6 +172,19 @@ class DynamicsSection(Section):
     def dimensionless(self) -> bool:
         """Whether force, error and backlash are given in the oscillator's own units."""
         return self.mean_force is not None
+
+    @model_validator(mode="after")
+    def _one_error(self) -> DynamicsSection:
+        amplitudes = self.error_amplitude or self.error_amplitude_um or (0.0,)
+        if self.error_curve is not None:
+            if given := self.given("error_amplitude", "error_amplitude_um"):
+                raise refused(f"must not have {given[0]} beside error_curve; leave one of them out")
+            if any(self.error_phase_deg):
+                raise refused("must not have error_phase_deg beside error_curve, which has phases of its own")
+        elif len(self.error_phase_deg) != len(amplitudes) and self.error_phase_deg != (0.0,):
+            counts = f"{len(amplitudes)} and {len(self.error_phase_deg)}"
+            raise refused(f"must have as many error_phase_deg as amplitudes of the error, not {counts}")
+        return self
 
     @model_validator(mode="after")
     def _one_set_of_units(self) -> DynamicsSection:

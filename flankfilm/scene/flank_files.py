@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from base import Fault, InputError
+from flankfilm.scene.error_curve import POINTS
+from flankfilm.scene.error_file import names_the_error, read_error_file, without_points
 from flankfilm.scene.flank_sections import POSITIONS
 
 __all__ = ["CURVES", "names_a_file", "read_flank_files", "without_curves"]
@@ -15,12 +17,14 @@ FILES = {("deviations", "traces"): "material_um", ("wear",): "depth_um"}
 """Tables of a gear that may name a file, and what its values are."""
 
 
-CURVES = ("teeth", *POSITIONS, *dict.fromkeys(FILES.values()))
+CURVES = ("teeth", *POSITIONS, *dict.fromkeys(FILES.values()), *POINTS)
 """Keys that a file gives."""
 
 
-def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] = ()) -> list[Fault]:
+def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()) -> list[Fault]:
     """Put the curves of the files that a scene names beside their names; return what is wrong with the files.
+
+    The curves are those of flanks, and that of the transmission error.
 
     Parameters
     ----------
@@ -32,7 +36,7 @@ def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] =
     keys : sequence of str
         Dotted keys that alone are looked at, where others have been read; all unless given.
     """
-    found: list[Fault] = []
+    found = read_error_file(raw, folder, keys)
     for path, table, parent, kind in _tables(raw):
         where = f"pair.{path}.file"
         if keys and where not in keys:
@@ -59,12 +63,16 @@ def read_flank_files(raw: Mapping[str, Any], folder: Path, keys: Sequence[str] =
 
 
 def names_a_file(key: str) -> bool:
-    """Whether a dotted key of a scene names a file of flanks."""
-    return any(key == f"pair.{gear}.{'.'.join(path)}.file" for gear in ("pinion", "wheel") for path in FILES)
+    """Whether a dotted key of a scene names a file of flanks, or of the transmission error."""
+    return names_the_error(key) or any(
+        key == f"pair.{gear}.{'.'.join(path)}.file" for gear in ("pinion", "wheel") for path in FILES
+    )
 
 
-def without_curves(raw: Mapping[str, Any], key: str) -> None:
+def without_curves(raw: dict[str, Any], key: str) -> None:
     """Take out what was read from the file that stood at a key, which now names another."""
+    if names_the_error(key):
+        without_points(raw)
     for path, table, *_ in _tables(raw):
         if key == f"pair.{path}.file":
             for name in CURVES:

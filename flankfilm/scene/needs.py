@@ -10,8 +10,11 @@ from base import Fault, shorten
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
 
-MOTIONS = ("sweep", "diagram")
-"""Wants that need the oscillator; each has a key of its own in [dynamics]."""
+RANGED = ("sweep", "diagram")
+"""Wants of motions over a range, which is a key of its own in [dynamics]."""
+
+MOTIONS = (*RANGED, "spectrum")
+"""Wants that need the oscillator."""
 
 Raw = Mapping[str, Any]
 
@@ -86,7 +89,7 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     if "torques" in listed and "operating" in raw and not operating.get("torques_Nm"):
         remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
         yield _required("operating.torques_Nm", "the wanted torques", remedy)
-    for want in MOTIONS:
+    for want in RANGED:
         if want in listed and "dynamics" in raw and want not in dynamics:
             remedy = f"Add {want} = {{ speed_rpm = [500, 30000] }}"
             yield _required(f"dynamics.{want}", f"the wanted {want}", remedy)

@@ -32,6 +32,7 @@ Want = Literal[
     "fourier",
     "sweep",
     "diagram",
+    "spectrum",
     "vtk",
     "report",
 ]

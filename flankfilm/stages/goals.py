@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flankfilm.scene import Scene
+from flankfilm.scene import Scene, needs
 from flankfilm.stages import catalogue as of
 from flankfilm.stages import motion
 from flankfilm.stages.engine import Stage
+from flankfilm.stages.excitation import EXCITATION
 
 
 def goals(scene: Scene) -> tuple[Stage[Any], ...]:
@@ -32,9 +33,11 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     yield from (wanted for wanted in (of.TORQUES, of.REVOLUTION) if wanted.name in wants)
     if "root-stress" in wants:
         yield of.ROOT_STRESS
-    if wants & {"fourier", "sweep", "diagram"}:
+    if wants & {"fourier", *needs.MOTIONS}:
         yield motion.FOURIER
-    for wanted in (motion.SWEEP, motion.DIAGRAM):
+    if scene.dynamics is not None and scene.dynamics.error_curve is not None and wants & {*needs.MOTIONS}:
+        yield EXCITATION
+    for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM):
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)
     if "vtk" in wants:

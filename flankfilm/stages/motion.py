@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import dynamics
+from base import InputError
 from flankfilm import coupling
 from flankfilm.build import pinion_torque
 from flankfilm.scene.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
@@ -17,6 +18,8 @@ from flankfilm.scene.section import required
 from flankfilm.slow_motion import followed_speed
 from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
+from flankfilm.stages.ranges import frequency_range, moving_mesh
 
 
 @stage(
@@ -39,7 +42,7 @@ def _series(run: Engine) -> coupling.MeshSeries:
     if section is None:
         return coupling.mesh_series(moving_mesh(run), order=1)
     order = None if section.fourier_order == "auto" else section.fourier_order
-    share, bounds = run[PLAN].series or scene.tolerance, _frequency_range(run, section)
+    share, bounds = run[PLAN].series or scene.tolerance, frequency_range(run, section)
     mesh = moving_mesh(run)
     return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, section.damping_ratio)
 
@@ -49,6 +52,7 @@ def _series(run: Engine) -> coupling.MeshSeries:
     "every branch of motions, with the harmonics that its jumps need",
     "operating dynamics pair material heat wants",
     CURVE_SERIES,
+    EXCITATION,
     kept="dynamics flankfilm gears",
     settings=lambda run: {"tolerance": run.scene.tolerance} if _by_jumps(run) else {},
 )
@@ -88,31 +92,7 @@ def _by_jumps(run: Engine) -> bool:
     return section.fourier_order == "auto" and "diagram" in scene.wants
 
 
-def moving_mesh(run: Engine) -> coupling.MeshCycle:
-    """Mesh cycle that the motion uses, its deflection measured against what the scene asks for: the bodies."""
-    cycle, section = run[MESH], run.scene.dynamics
-    if cycle.contact is None:
-        return cycle
-    if section is None:
-        return cycle.against("body")
-    return cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
-
-
-def _frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
-    """Range of the mesh frequency over the natural one that sweep and diagram cover; None without either."""
-    asked = [ranged for ranged in (section.sweep, section.diagram) if ranged is not None]
-    if not asked or not {"sweep", "diagram"} & set(run.scene.wants):
-        return None
-    ends = [end for ranged in asked for end in ranged.frequency or ()]
-    if not section.dimensionless:
-        mean = moving_mesh(run).mean(section.stiffness)
-        extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
-        scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
-        ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
-    return min(ends), max(ends)
-
-
-@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER)
+@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER, EXCITATION)
 def SCALING(run: Engine) -> coupling.PairOscillator:
     """Oscillator of the scene at its speed, or at the start of the sweep."""
     return _oscillator(run, run[FOURIER])
@@ -122,6 +102,8 @@ def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscill
     """Oscillator of the scene with a series of its stiffness."""
     section = _dynamics(run)
     ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
+    if given["error_phase"] == (0.0,):
+        given["error_phase"] = 0.0  # of all harmonics
     if section.dimensionless:
         start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
         oscillator = dynamics.GearOscillator(
@@ -129,6 +111,8 @@ def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscill
         )
         return coupling.PairOscillator(oscillator, None, series)
     rpm = followed_speed(run.scene, run[PAIR], series)
+    if section.error_curve is not None and (error := run[EXCITATION]) is not None:
+        given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
     given["extra_inertia"] = section.extra_inertia_kg_m2.each
     given["reference"] = section.stiffness_reference or "body"
     return coupling.pair_oscillator(
@@ -169,6 +153,26 @@ def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
         return run[BRANCHES].diagram
     asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
     return coupling.jump_speeds(run[SCALING], **_ranged(asked))
+
+
+@stage(
+    "spectrum",
+    "orders of the motion at the speed, with sidebands of a revolution",
+    "operating dynamics",
+    SCALING,
+    REVOLUTION_ERROR,
+    kept="dynamics flankfilm gears",
+)
+def SPECTRUM(run: Engine) -> coupling.MotionSpectrum:
+    """Spectrum of the motion at the scene's speed; over a revolution where teeth differ."""
+    motion = run[SCALING]
+    error = None if motion.scales is None else run[REVOLUTION_ERROR]
+    if error is not None and pinion_torque(run.scene) < 0.0:
+        allowed = "must be positive for a spectrum with deviations of single teeth, which are those of the front flanks"
+        raise InputError.at(
+            "operating.pinion_torque_Nm", "negative", allowed, "leave spectrum out, or the pitches"
+        )
+    return coupling.mesh_spectrum(motion, error)
 
 
 def _ranged(asked: DiagramSection) -> dict[str, Any]:

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Figure
+from base.results import figures
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MEANS
-from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
+from flankfilm.coupling.sidebands import MotionSpectrum
+from flankfilm.stages.motion import DIAGRAM, SCALING, SPECTRUM, SWEEP
 from flankfilm.studies.output import Named, in_result, output_of, outputs_from
 
 if TYPE_CHECKING:
@@ -132,6 +134,13 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "contact_loss_error",
         Figure("1", "estimated relative error of that speed; nan where unknown"),
         attrgetter("least_grazing_error"),
+    ),
+    _oscillator("error_range"),
+    output_of(
+        "sidebands",
+        figures(MotionSpectrum)["sidebands"],
+        "spectrum",
+        in_result(SPECTRUM, attrgetter("sidebands")),
     ),
     *_jumps(),
     output_of(

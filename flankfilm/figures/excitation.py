@@ -1,0 +1,116 @@
+"""The unloaded transmission error with its harmonics, and orders of the motion with their sidebands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.figures.motion import rpm_text, scale
+from flankfilm.figures.reading import need, read
+from flankfilm.figures.style import MARK, Style, colours, sheet
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+SHOWN = 40
+"""Harmonics that are drawn."""
+
+DECADES = 5.0
+"""Powers of ten that a spectrum shows below its largest line."""
+
+SHOWN_DECADES = 4.0
+"""The same of the error's harmonics."""
+
+
+def excitation(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the unloaded transmission error over its period with its series, and the amplitudes of the harmonics.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run whose scene has ``dynamics.error_curve``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(
+        results,
+        "run a scene with dynamics.error_curve that wants a motion",
+        "excitation_curve",
+        "excitation_amplitude",
+    )
+    at, curve = (results[f"excitation_{name}"].values for name in ("position", "curve"))
+    amplitude, phase = (results[f"excitation_{name}"].values for name in ("amplitude", "phase"))
+    meshes = int(results["excitation_meshes"])
+    order = np.arange(1, len(amplitude) + 1)
+    turn = np.linspace(0.0, meshes, 801)
+    series = curve.mean() + np.cos(2 * np.pi * turn[:, None] * order / meshes + phase) @ amplitude
+    every = read(results, "excitation_all_amplitudes")
+    with sheet(style, 2, height=4.6, legend=2, sharex=False) as (drawn, (over, lines)):
+        first, second = colours(2)
+        over.plot(at, 1e6 * curve, color=MARK, linewidth=2.4, label="unloaded transmission error")
+        over.plot(turn, 1e6 * series, color=first, linewidth=1.0, label=f"series of order {len(amplitude)}")
+        over.set(xlabel="position, base pitches from A [-]", ylabel="error [µm]")
+        shown = every.values[:SHOWN]
+        kept = np.arange(1, len(shown) + 1) <= len(amplitude)
+        places = np.arange(1, len(shown) + 1) / meshes
+        wide = 0.6 / meshes
+        lines.bar(places[kept], shown[kept], wide, color=first)
+        lines.bar(places[~kept], shown[~kept], wide, color=second, alpha=0.6)
+        if shown.max(initial=0.0) > 0.0:
+            lines.set_yscale("log")
+        low = float(shown.max(initial=0.0)) * 10.0**-SHOWN_DECADES
+        lines.set(ylim=(low, None), xlabel="mesh order [-]", ylabel="amplitude [µm]")
+    return drawn
+
+
+def spectrum(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the lines of force and displacement over the mesh order; between whole orders lie sidebands.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``spectrum``; in N and um where the scene has scales.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(
+        results,
+        'run a scene that wants "spectrum"',
+        "spectrum_order",
+        "spectrum_force",
+        "spectrum_displacement",
+    )
+    order = results["spectrum_order"].values
+    force, length = scale(results, "force"), scale(results, "length")
+    whole = np.abs(order - np.round(order)) < 1e-9
+    with sheet(style, 2, height=4.8, legend=2) as (drawn, panels):
+        for axes, name, unit, label in zip(
+            panels,
+            ("force", "displacement"),
+            (force, length),
+            ("force, amplitude", "displacement,\namplitude"),
+            strict=True,
+        ):
+            values = float(unit.values) * results[f"spectrum_{name}"].values
+            low = max(float(np.nanmax(values, initial=0.0)), 1e-300) * 10.0**-DECADES
+            for these, colour, width, text in zip(
+                (~whole, whole),
+                colours(6)[5:] + colours(1),
+                (0.8, 1.8),
+                ("sidebands", "mesh orders"),
+                strict=True,
+            ):
+                if these.any():
+                    axes.vlines(
+                        order[these],
+                        low,
+                        np.maximum(values[these], low),
+                        color=colour,
+                        linewidth=width,
+                        label=text,
+                    )
+            axes.set(yscale="log", ylim=(low, None), ylabel=unit.named(label))
+        panels[-1].set(xlabel=f"mesh order [-], at {rpm_text(results)}")
+    return drawn

@@ -1,0 +1,63 @@
+"""The stages of what drives the motion beside the stiffness: the unloaded transmission error, and a revolution's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flankfilm import coupling
+from flankfilm.build import pinion_torque, tip_roundings
+from flankfilm.build_flanks import deviations
+from flankfilm.scene.section import required
+from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.ranges import deflection, frequency_range
+
+KEYS = "operating dynamics pair material heat stiffness.contact_beyond_path tolerance"
+
+
+@stage("excitation", "unloaded transmission error", f"{KEYS} wants", PAIR, MESH)
+def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
+    """Harmonics of the scene's curve of the error; None where it gives harmonics."""
+    scene = run.scene
+    section = required(scene.dynamics, "[dynamics]", "the motion")
+    curve = section.error_curve
+    if curve is None:
+        return None
+    given = scene.stiffness.model == "given"
+    asked: dict[str, Any] = {
+        "order": None if section.error_order == "auto" else section.error_order,
+        "share": scene.tolerance,
+        "deflection": 0.0 if given else deflection(run, section),
+        "bounds": None if given else frequency_range(run, section),
+        "damping_ratio": section.damping_ratio,
+    }
+    if curve != "unloaded":
+        about = "curve of the scene" if curve.file is None else f"curve of {curve.file}"
+        at, error = curve.position, curve.value("error_um")
+        assert at is not None
+        return coupling.error_series(error, at, source=about, **asked)
+    return coupling.unloaded_error(
+        run[PAIR],
+        deviations=deviations(scene, run[PAIR], every_tooth=False),
+        tip_rounding=tip_roundings(scene),
+        beyond_path=scene.stiffness.contact_beyond_path,
+        back=pinion_torque(scene) < 0.0,
+        **asked,
+    )
+
+
+@stage("revolution error", "error of a revolution", KEYS, PAIR)
+def REVOLUTION_ERROR(run: Engine) -> coupling.ErrorSeries | None:
+    """What deviations of single teeth add to the error over the hunting period; None where all teeth are alike."""
+    scene = run.scene
+    if scene.pair is None:
+        return None
+    each = deviations(scene, run[PAIR], every_tooth=True)
+    if each is None or all(one is None or one.every_tooth_alike for one in each):
+        return None
+    return coupling.revolution_error(
+        run[PAIR],
+        each,
+        tip_rounding=tip_roundings(scene),
+        beyond_path=scene.stiffness.contact_beyond_path,
+    )
