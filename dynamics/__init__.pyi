@@ -13,6 +13,7 @@ from .crises import boundary_crises as boundary_crises
 from .crises import boundary_crisis as boundary_crisis
 from .diagrams import Diagram as Diagram
 from .diagrams import diagram as diagram
+from .drives.oscillator import DriveOscillator as DriveOscillator
 from .edges import edge_saddles as edge_saddles
 from .exponents import LyapunovResult as LyapunovResult
 from .exponents import lyapunov_exponents as lyapunov_exponents

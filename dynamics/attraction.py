@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 
-from base import Array, Cost, Faults, Integers, Stopwatch, part, quantity, record
+from base import Array, Cost, Faults, InputError, Integers, Stopwatch, part, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.exponents import stretch_rate
 from dynamics.homes import Homes
 from dynamics.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
 from dynamics.protocol import Flow, Oscillator
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.states import apart
+from dynamics.states import apart, checked_state
 from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after, settling_periods
 
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
@@ -45,8 +46,8 @@ class Attractor:
 class BasinResult(AsArray):
     """Which attractor every start comes to."""
 
-    x: Array = quantity("1", "starting values of X", "x")
-    v: Array = quantity("1", "starting values of V", "v")
+    x: Array = quantity("1", "starting values of X, or along the first direction of the plane", "x")
+    v: Array = quantity("1", "starting values of V, or along the second direction of the plane", "v")
     labels: Integers = quantity("1", "index into the attractors; -1 unsettled, -2 unbounded", "x v")
     attractors: tuple[Attractor, ...] = part(
         "in the order in which they were found; all aperiodic motion counts as one"
@@ -66,6 +67,8 @@ def basins(
     x: tuple[float, float, int],
     v: tuple[float, float, int],
     *,
+    plane: npt.ArrayLike | None = None,
+    through: npt.ArrayLike | None = None,
     limit: int | None = None,
     radius: float = 1e-4,
     max_period: int = 16,
@@ -86,7 +89,12 @@ def basins(
     oscillator : Oscillator
         The oscillator.
     x, v : tuple
-        First value, last value and number of starting values of X and of V.
+        First value, last value and number of starting values of X and of V; in several freedoms, of how far starts
+        are from `through` along the two directions of `plane`.
+    plane : array_like, shape (2, dimension), optional
+        Directions of the starts. Left out: those of X and V; in several freedoms as y and its rate move alone.
+    through : array_like, shape (dimension,), optional
+        State that the plane of the starts passes. Left out: 0; in several freedoms the state at rest.
     limit : int, optional
         Periods after which a start without a known attractor is looked at. Left out: as the transient of `sweep`.
     radius : float
@@ -122,7 +130,7 @@ def basins(
         longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
         wait = settling_periods(oscillator) if limit is None else faults.whole("limit", limit, *PATIENT)
     flow = long_flow(oscillator, tolerance)
-    starts = np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1).reshape(-1, 2)
+    starts = _starts(oscillator, np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1), plane, through)
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
     found = _Found(oscillator, flow, longest, near, wait)
     sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
@@ -161,6 +169,23 @@ def basins(
     )
 
 
+def _starts(
+    oscillator: Oscillator, grid: Array, plane: npt.ArrayLike | None, through: npt.ArrayLike | None
+) -> Array:
+    """Starting states, shape (k, dimension), of distances along two directions, shape (x, v, 2)."""
+    along, centre = oscillator.start_plane()
+    if plane is not None:
+        along = np.array(plane, dtype=np.float64)
+        if along.shape != (2, oscillator.dimension) or not np.linalg.matrix_rank(along) == 2:
+            allowed = f"must be two independent directions of {oscillator.dimension} numbers"
+            raise InputError.at(
+                "plane", np.asarray(plane).tolist(), allowed, "give one row for x and one for v"
+            )
+    if through is not None:
+        centre = checked_state(through, "through", oscillator.dimension)
+    return np.asarray(centre + grid.reshape(-1, 2) @ along)
+
+
 class _Found:
     """Attractors found so far."""
 
@@ -184,7 +209,7 @@ class _Found:
 
     def wandering(self, states: Array) -> int:
         """Label of a motion that does not repeat: chaotic, on its way to an orbit after all, or unsettled."""
-        if self.oscillator.damping_ratio == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
+        if self.oscillator.decay == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
             return self.note(None, states)
         if self.trials == TRIALS:
             return UNSETTLED
@@ -253,9 +278,11 @@ class _Found:
 
 
 class _Sieve:
-    """The cells of a rectangle that a chaotic motion visits, and their neighbours."""
+    """The cells that a chaotic motion visits in the first displacement and its speed, and their neighbours."""
 
     def __init__(self, motion: Array) -> None:
+        self.pair = [0, motion.shape[1] // 2]
+        motion = motion[:, self.pair]
         self.low = motion.min(axis=0)
         self.size = np.maximum((motion.max(axis=0) - self.low) / SIEVE, 1e-300)
         visited = np.zeros((SIEVE + 4, SIEVE + 4), dtype=bool)
@@ -271,4 +298,4 @@ class _Sieve:
 
     def holds(self, states: Array) -> bool:
         """Whether a motion has come to it: all of the later half of its states."""
-        return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :]).T)]))
+        return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :, self.pair]).T)]))

@@ -18,20 +18,20 @@ from dynamics.sweeps import long_flow, settling_periods
 
 @record
 class LyapunovResult(AsArray):
-    """Lyapunov exponents, per unit of dimensionless time."""
+    """Lyapunov exponents, per unit of dimensionless time; two in one freedom."""
 
     headline = ("standard_error",)
 
     exponents: Array = quantity(
-        "1", "the larger first; their sum is minus the mean of all damping, -2 zeta if it is linear, which is not "
-        "used to compute them", "exponent",
+        "1", "the largest first; their sum is minus the mean of all damping, -2 zeta if it is linear in one freedom, "
+        "which is not used to compute them", "exponent",
     )  # fmt: skip
     standard_errors: Array = quantity(
         "1",
-        "of both, from the scatter of 20 batches of the motion; equal to rounding where the sum is exact",
+        "of each, from the scatter of 20 batches of the motion; equal to rounding where the sum is exact",
         "exponent",
     )
-    error: float = quantity("1", "standard error over the larger modulus of the two")
+    error: float = quantity("1", "standard error of the largest over the largest modulus")
     state: Array = quantity("1", "last state", "coordinate")
     cost: Cost
     converged: bool = quantity(
@@ -41,11 +41,11 @@ class LyapunovResult(AsArray):
 
     @property
     def standard_error(self) -> float:
-        """Of the larger exponent."""
+        """Of the largest exponent."""
         return float(self.standard_errors[0])
 
     def columns(self) -> Array:
-        """Return the two exponents."""
+        """Return the exponents."""
         return self.exponents
 
 
@@ -95,7 +95,7 @@ def lyapunov_exponents(
         skip = settling_periods(oscillator)
         if transient is not None:
             skip = faults.whole("transient", transient, *TRANSIENT)
-    at = oscillator.rest_state() if state is None else checked_state(state)
+    at = oscillator.rest_state() if state is None else checked_state(state, size=oscillator.dimension)
     sizes = np.array([n // BATCHES + (i < n % BATCHES) for i in range(BATCHES)])
     motion = long_flow(oscillator, tolerance).stretches(at, [skip, *sizes.tolist()])
     if motion.message:
@@ -117,7 +117,7 @@ def lyapunov_exponents(
 
 @record
 class LyapunovScan(AsArray):
-    """Both Lyapunov exponents over a parameter."""
+    """Lyapunov exponents over a parameter."""
 
     headline = ("parameter", "defect")
 
@@ -130,7 +130,7 @@ class LyapunovScan(AsArray):
     states: Array = quantity("1", "last states", "value coordinate")
     defect: float = quantity(
         "1",
-        "largest departure of the sum from -2 zeta: a check of a flow with linear damping",
+        "largest departure of the sum from what linear damping makes it, -2 zeta in one freedom: a check of the flow",
     )
     error: float = quantity("1", "largest standard error")
     cost: Cost
@@ -197,8 +197,9 @@ def lyapunov_scan(
         n = faults.whole("periods", periods, *AVERAGED)
         if transient is not None:
             faults.whole("transient", transient, *TRANSIENT)
-    start = None if state is None else checked_state(state)
-    exponents, errors, states = (np.full((len(grid), 2), np.nan) for _ in range(3))
+    start = None if state is None else checked_state(state, size=oscillator.dimension)
+    exponents, errors = (np.full((len(grid), oscillator.directions), np.nan) for _ in range(2))
+    states = np.full((len(grid), oscillator.dimension), np.nan)
     at, defect, used, unsure = start, 0.0, 0, 0
     for i, value in enumerate(grid):
         here = oscillator.with_parameter(parameter, float(value))
@@ -212,7 +213,7 @@ def lyapunov_scan(
                 progress(i + 1, len(grid))
         exponents[i], errors[i], states[i] = result.exponents, result.standard_errors, result.state
         at = result.state
-        defect = max(defect, abs(float(result.exponents.sum()) + 2.0 * here.damping_ratio))
+        defect = max(defect, abs(float(result.exponents.sum()) + here.contraction))
         used += result.cost.periods
         unsure += not result.converged
     lost = int(np.sum(np.isnan(exponents[:, 0])))

@@ -17,7 +17,7 @@ from dynamics.states import checked_state
 
 # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
 DEGREE = 13
-_REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
+REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class Tables(Flow):
         # the damping is the same in every region
         decay = -2.0 * self.packed[1] * (2.0 * math.pi / self.packed[4]) * (periods + skip)
         cost = Cost(watch.seconds, periods=periods + skip)
-        return MapResult(states, jacobian, float(decay), counts, _REASONS.get(flag, ""), cost)
+        return MapResult(states, jacobian, float(decay), counts, REASONS.get(flag, ""), cost)
 
     def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
         """Samples, extrema and impacts; repeated with more room if the last two did not fit."""
@@ -78,7 +78,7 @@ class Tables(Flow):
             turns, events = np.empty((room, 5)), np.empty((room, 4))
             flag, turned, happened = walk(self.arrays, state.copy(), periods, points, samples, turns, events)
             if flag:
-                raise lost_motion(state, _REASONS[int(flag)])
+                raise lost_motion(state, REASONS[int(flag)])
             if turned <= room and happened <= room:
                 return samples, turns[:turned], events[:happened]
             room = max(turned, happened)
@@ -97,7 +97,7 @@ class Tables(Flow):
                 flag = flag or int(iterate(self.arrays, at, size - len(part), 2, frame, part, unseen))
             row[:] = frame[2]
             kept.append(part)
-        return Stretches(logs, np.vstack(kept) if keep else at[None], _REASONS.get(flag, ""))
+        return Stretches(logs, np.vstack(kept) if keep else at[None], REASONS.get(flag, ""))
 
     def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
         """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
@@ -106,7 +106,7 @@ class Tables(Flow):
         room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
         at = np.array(state, dtype=np.float64)
         waited = int(calm(self.arrays, at, limit, room, tallies, 1e-13))
-        return at, abs(waited), _REASONS.get(-waited, "")
+        return at, abs(waited), REASONS.get(-waited, "")
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
         """Follow starts until they stay near known attractors."""

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from base import Faults, InputError
+from dynamics.drives.flow import drive_flow
+from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import tables
+from dynamics.limits import POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, Oscillator
 from dynamics.stepwise.flow import StepwiseFlow
@@ -20,10 +23,11 @@ def flow_of(
 
     Parameters
     ----------
-    oscillator : GearOscillator or SmoothOscillator
+    oscillator : GearOscillator, DriveOscillator or SmoothOscillator
         The oscillator.
     tolerance : float, optional
-        Of a step (stepwise flow) or of one period's map (exact flow).
+        Of a step (stepwise flow) or of one period's map (exact flow of one freedom); that of several freedoms leaves
+        rounding alone, whatever is asked for.
     parameters : tuple of str
         Parameters to differentiate by, stepwise flow alone.
     extrema : bool
@@ -35,22 +39,31 @@ def flow_of(
         If the tolerance is out of range or there is no such parameter; also if derivatives by parameters or extrema
         of the exact flow are asked for, which `map_derivatives` and `turning_points` give.
     """
-    if isinstance(oscillator, GearOscillator):
-        asked = (
-            ("parameters", parameters, "take dynamics.sensitivity.map_derivatives"),
-            ("extrema", extrema, "take dynamics.flow.turning_points"),
-        )
-        with Faults() as faults:
-            for name, value, remedy in asked:
-                if value:
-                    faults.add(name, value, "must be left out for a GearOscillator", remedy)
-        return tables(oscillator, tolerance=tolerance)
     if isinstance(oscillator, SmoothOscillator):
         return StepwiseFlow(oscillator, tolerance, parameters, extrema)
-    raise unserved(oscillator)
+    if not isinstance(oscillator, GearOscillator | DriveOscillator):
+        raise unserved(oscillator)
+    drives = isinstance(oscillator, DriveOscillator)
+    asked = (
+        (
+            "parameters",
+            parameters,
+            "take differences" if drives else "take dynamics.sensitivity.map_derivatives",
+        ),
+        ("extrema", extrema, "take trajectory" if drives else "take dynamics.flow.turning_points"),
+    )
+    with Faults() as faults:
+        for name, value, remedy in asked:
+            if value:
+                faults.add(name, value, f"must be left out for a {type(oscillator).__name__}", remedy)
+        if tolerance is not None:
+            faults.number("tolerance", tolerance, POSITIVE)
+    if isinstance(oscillator, GearOscillator):
+        return tables(oscillator, tolerance=tolerance)
+    return drive_flow(oscillator)
 
 
 def unserved(oscillator: object) -> InputError:
     """Error of what is no oscillator that there is a flow for."""
-    allowed = "must be a GearOscillator or a SmoothOscillator"
+    allowed = "must be a GearOscillator, a SmoothOscillator or a DriveOscillator"
     return InputError.at("oscillator", type(oscillator).__name__, allowed, "take one of these")

@@ -17,8 +17,8 @@ class Homes:
     ----------
     flow : Flow
         Of the oscillator.
-    points : sequence of ndarray, shape (n, 2), or None
-        X and V of each attractor after every excitation period; None for one that is not periodic.
+    points : sequence of ndarray, shape (n, dimension), or None
+        States of each attractor after every excitation period; None for one that is not periodic.
     nearness : float
         Distance that counts as arrived, over the size of the largest of them.
     """
@@ -30,8 +30,8 @@ class Homes:
             if p is not None
         ]
         self.flow, self.number = flow, len(points)
-        self.rows = np.vstack(rows) if rows else np.zeros((0, 4))
-        self.size = float(np.max(np.abs(self.rows[:, :2]), initial=0.0))
+        self.rows = np.vstack(rows) if rows else np.zeros((0, flow.dimension + 2))
+        self.size = float(np.max(np.abs(self.rows[:, :-2]), initial=0.0))
         self.radius = nearness * self.size
         self.periods = 0
 

@@ -23,8 +23,9 @@ class Trajectory(AsArray):
     headline = ("points_per_period",)
 
     tau: Array = quantity("1", "dimensionless time from 0, both ends included", "sample")
-    x: Array = quantity("1", "displacement X", "sample")
+    x: Array = quantity("1", "displacement X; in several freedoms y, which the backlash limits", "sample")
     v: Array = quantity("1", "speed dX/dtau", "sample")
+    states: Array = quantity("1", "displacements and speeds: X and V, or all of them", "sample coordinate")
     points_per_period: int = quantity("1", "samples per excitation period")
     events: Array = quantity(
         "1",
@@ -42,13 +43,13 @@ class Trajectory(AsArray):
     message = ""
 
     def columns(self) -> Array:
-        """Columns tau, X, V."""
-        return np.stack([self.tau, self.x, self.v], axis=1)
+        """Columns tau, then those of the state."""
+        return np.column_stack([self.tau, self.states])
 
     @property
     def poincare(self) -> Array:
-        """States at tau = 0 mod the excitation period, shape (periods + 1, 2)."""
-        return np.stack([self.x, self.v], axis=1)[:: self.points_per_period]
+        """States at tau = 0 mod the excitation period, shape (periods + 1, dimension)."""
+        return self.states[:: self.points_per_period]
 
 
 def period_map(
@@ -68,8 +69,8 @@ def period_map(
     oscillator : Oscillator or Flow
         The oscillator; its flow (`dynamics.flows.flow_of`) made once saves the cost of that in repeated calls, and the
         error estimate.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
+    state : array_like, shape (dimension,)
+        State at tau = 0: X and V, or displacements and speeds.
     periods : int
         Number of periods kept.
     skip : int
@@ -99,7 +100,8 @@ def period_map(
     array([0.3, 0. ])
     """
     watch = Stopwatch()
-    at = checked_state(state)
+    flow = oscillator if isinstance(oscillator, Flow) else flow_of(oscillator, tolerance, parameters, extrema)
+    at = checked_state(state, size=flow.dimension)
     if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
         return oscillator.follow(at, periods, skip)
     with Faults() as faults:
@@ -107,7 +109,6 @@ def period_map(
         n_skip = faults.whole("skip", skip, *TRANSIENT)
     if isinstance(oscillator, Flow):
         return oscillator.follow(at, n, n_skip)
-    flow = flow_of(oscillator, tolerance, parameters, extrema)
     here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
     size = max(float(np.max(np.abs(here.states))), oscillator.floor)
     error = float(np.max(np.abs(here.state - there.state))) / size
@@ -129,8 +130,8 @@ def trajectory(
     ----------
     oscillator : Oscillator
         The oscillator.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
+    state : array_like, shape (dimension,)
+        State at tau = 0: X and V, or displacements and speeds.
     periods : int
         Excitation periods.
     points_per_period : int
@@ -160,12 +161,16 @@ def trajectory(
         n = faults.whole("periods", periods, *PERIODS)
         points = faults.whole("points_per_period", points_per_period, *POINTS)
     flow = flow_of(oscillator, tolerance)
-    samples, turns, events = flow.sampled(checked_state(state), n, points)
-    finer, _, _ = flow.finer().sampled(checked_state(state), n, points)
+    at = checked_state(state, size=flow.dimension)
+    samples, turns, events = flow.sampled(at, n, points)
+    finer, _, _ = flow.finer().sampled(at, n, points)
+    tau = np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points)
+    x, v = oscillator.contact_motion(tau, samples)
     return Trajectory(
-        tau=np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points),
-        x=samples[:, 0],
-        v=samples[:, 1],
+        tau=tau,
+        x=x,
+        v=v,
+        states=samples,
         points_per_period=points,
         events=events,
         extrema=turns[:, :3],

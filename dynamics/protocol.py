@@ -1,8 +1,8 @@
 """What an oscillator and its flow offer; every function that takes any oscillator asks for no more.
 
-There are two kinds of flow: the exact one of `GearOscillator` and the stepwise one of `SmoothOscillator`;
-`dynamics.flows` makes the one that an oscillator has. A state is a vector with X first; nothing here says how long it
-is.
+There are three kinds of flow: the exact one of `GearOscillator`, that of `DriveOscillator` in several freedoms, and the
+stepwise one of `SmoothOscillator`; `dynamics.flows` makes the one that an oscillator has. A state is a vector:
+displacements, then their speeds.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class MapResult:
 
     headline = ("log_determinant",)
 
-    states: Array = quantity("1", "X and V after each period", "period coordinate")
+    states: Array = quantity("1", "state after each period", "period coordinate")
     jacobian: Array = quantity("1", "derivative of the last state with respect to the first", "row column")
     log_determinant: float = quantity(
         "1", "logarithm of the determinant of the Jacobian, minus all damping on the way"
@@ -58,7 +58,7 @@ class MapResult:
 
     @property
     def state(self) -> Array:
-        """Last state, shape (2,)."""
+        """Last state."""
         return np.asarray(self.states[-1])
 
     @property
@@ -68,13 +68,13 @@ class MapResult:
 
 
 class Stretches(NamedTuple):
-    """Logarithms by which two directions grew along stretches of a motion.
+    """Logarithms by which directions grew along stretches of a motion, as many as the flow distinguishes.
 
     Attributes
     ----------
-    logs : ndarray, shape (stretches, 2)
-        Of the length of the first direction, and of the second one across it.
-    states : ndarray, shape (periods, 2)
+    logs : ndarray, shape (stretches, directions)
+        Of the length of the first direction, and of each further one across those before it.
+    states : ndarray, shape (periods, dimension)
         States after every period if asked for, else the last one alone.
     message : str
         Empty, or why the motion could not be followed.
@@ -90,6 +90,8 @@ class Flow(ABC):
 
     tolerance: float
     """Of a step, over the size of the motion; rounding where the flow is exact."""
+    dimension: int = 2
+    """Length of a state."""
     noise: float
     """Residual, over the size of the motion and the stretch of the map, below which nothing gets."""
 
@@ -103,7 +105,7 @@ class Flow(ABC):
 
     @abstractmethod
     def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
-        """Samples (X, V), extrema (tau, X, X'', ...) and events (tau, X, V, region entered) of a motion.
+        """Samples of the state, extrema (tau, X, X'', ...) and events (tau, X, V, region entered) of a motion.
 
         Raises
         ------
@@ -113,7 +115,7 @@ class Flow(ABC):
 
     @abstractmethod
     def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
-        """Growth of two directions along a motion, over stretches of so many periods each."""
+        """Growth of all directions along a motion, over stretches of so many periods each."""
 
     def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
         """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
@@ -127,10 +129,10 @@ class Flow(ABC):
 
         Parameters
         ----------
-        starts : ndarray, shape (k, 2)
+        starts : ndarray, shape (k, dimension)
             Starting states.
-        homes : ndarray, shape (m, 4)
-            X, V, attractor and its period for every point of every attractor.
+        homes : ndarray, shape (m, dimension + 2)
+            State, attractor and its period for every point of every attractor.
         radius : float
             A motion has arrived when it is so near to a point, in the largest norm, and no farther one round later.
         limit : int
@@ -153,13 +155,13 @@ class Flow(ABC):
                 for state in image.states:
                     starts[i] = state
                     period, wait = period + 1, wait - 1
-                    gaps = np.max(np.abs(homes[:, :2] - state), axis=1)
+                    gaps = np.max(np.abs(homes[:, :-2] - state), axis=1)
                     if wait == 0 and gaps[home] <= distance:
-                        labels[i] = int(homes[home, 2])
+                        labels[i] = int(homes[home, -2])
                         break
                     if wait < 0 and len(gaps) and gaps.min() < radius:
                         home = int(gaps.argmin())
-                        distance, wait = float(gaps[home]), int(homes[home, 3])
+                        distance, wait = float(gaps[home]), int(homes[home, -1])
             used += period
         return used
 
@@ -169,9 +171,9 @@ class Oscillator(ABC):
 
     is_exact: ClassVar = False
     """Whether the flow is the exact one in the plane, which many functions need."""
+    has_steps: ClassVar = True
+    """Whether the flow takes steps, of a tolerance."""
 
-    damping_ratio: float
-    mean_force: float
     error_amplitude: Harmonics
     error_phase: Harmonics
     frequency: float
@@ -190,15 +192,43 @@ class Oscillator(ABC):
     def rest_state(self) -> Array:
         """State at rest under the mean force."""
 
+    @abstractmethod
+    def start_plane(self) -> tuple[Array, Array]:
+        """Directions, shape (2, dimension), of the starts of basins, and the state that their plane passes."""
+
     @property
     def period(self) -> float:
         r"""Excitation period :math:`T = 2 \pi / \omega`."""
         return 2.0 * math.pi / self.frequency
 
     @property
+    @abstractmethod
+    def dimension(self) -> int:
+        """Length of a state."""
+
+    @property
+    @abstractmethod
+    def decay(self) -> float:
+        """Rate at which damping shrinks a disturbance."""
+
+    @property
+    @abstractmethod
+    def contraction(self) -> float:
+        """Rate at which damping shrinks volumes of states, where it is linear."""
+
+    @property
+    def directions(self) -> int:
+        """Independent directions of a disturbance."""
+        return self.dimension
+
+    @property
+    @abstractmethod
     def natural_size(self) -> float:
         """Size of the displacements that go in."""
-        return natural_size(self.floor, self.mean_force, largest(self.error_series))
+
+    @abstractmethod
+    def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
+        """Displacement that the backlash limits, and its rate, of states (k, dimension) at times (k,)."""
 
     @property
     def error_series(self) -> Array:
@@ -231,6 +261,37 @@ class Oscillator(ABC):
     def _known(self, parameter: str) -> None:
         if parameter not in self.parameters:
             raise unknown(parameter, self.parameters)
+
+
+class PlanarOscillator(Oscillator):
+    """What moves in one freedom: a state is X and V."""
+
+    dimension = 2
+    damping_ratio: float
+    mean_force: float
+
+    @property
+    def decay(self) -> float:
+        """The damping ratio."""
+        return self.damping_ratio
+
+    @property
+    def contraction(self) -> float:
+        """Twice the damping ratio."""
+        return 2.0 * self.damping_ratio
+
+    @property
+    def natural_size(self) -> float:
+        """Size of the displacements that go in."""
+        return natural_size(self.floor, self.mean_force, largest(self.error_series))
+
+    def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
+        """X and V."""
+        return states[:, 0], states[:, 1]
+
+    def start_plane(self) -> tuple[Array, Array]:
+        """The plane of X and V."""
+        return np.eye(2), np.zeros(2)
 
 
 def lost_motion(state: Array, reason: str) -> InputError:

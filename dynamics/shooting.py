@@ -28,8 +28,10 @@ class Orbit:
 
     headline = ("label", "periods", "stable", "residual")
 
-    oscillator: Any = part("what moves: a `GearOscillator` or a `SmoothOscillator`")
-    state: Array = quantity("1", "X and V at tau = 0; nan if not converged", "coordinate")
+    oscillator: Any = part("what moves: a `GearOscillator`, a `SmoothOscillator` or a `DriveOscillator`")
+    state: Array = quantity(
+        "1", "X and V at tau = 0, or displacements and speeds; nan if not converged", "coordinate"
+    )
     periods: int = quantity(
         "1", "least period n, in excitation periods; it may be a divisor of the number asked for"
     )
@@ -38,13 +40,15 @@ class Orbit:
         "Floquet multipliers over n periods, the larger modulus first; complex if they are a pair",
         "multiplier",
     )
-    stable: bool = quantity("1", "both multipliers within the unit circle (or a pair on it, without damping)")
+    stable: bool = quantity("1", "all multipliers within the unit circle (or a pair on it, without damping)")
     label: str = quantity(
         "", "n-p-q: periods, exits from X > D, entries into X < -D; U before it if unstable"
     )
     counts: tuple[int, int] = quantity("1", "p and q", "side")
     jacobian: Array = quantity("1", "derivative of the n-period map", "row column")
-    determinant: float = quantity("1", "determinant of the Jacobian, from all damping along the motion")
+    determinant: float = quantity(
+        "1", "determinant of the Jacobian, from all damping along the motion; free rotations left out"
+    )
     residual: float = quantity("1", "largest component of map minus state")
     error: float = quantity(
         "1", "estimated relative error of the state: the Newton step that a finer flow would still take"
@@ -63,7 +67,7 @@ class Orbit:
 
     @cached_property
     def points(self) -> Array:
-        """X and V after each excitation period, shape (periods, 2)."""
+        """States after each excitation period, shape (periods, dimension)."""
         flow = flow_of(self.oscillator, self.tolerance)
         return flow.follow(self.state, self.periods, derivatives=False).states
 
@@ -92,8 +96,16 @@ def floquet_multipliers(trace: float, determinant: float) -> npt.NDArray[np.comp
     return np.array([large, determinant / large if large != 0.0 else 0.0])
 
 
+def multipliers_of(jacobian: Array, determinant: float) -> npt.NDArray[np.complex128] | Array:
+    """Eigenvalues of a map, the larger modulus first; `determinant` is its own, which the plane makes use of."""
+    if len(jacobian) == 2:
+        return floquet_multipliers(float(np.trace(jacobian)), determinant)
+    values = np.linalg.eigvals(jacobian) if np.all(np.isfinite(jacobian)) else np.full(len(jacobian), np.nan)
+    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+
 def is_stable(multipliers: npt.NDArray[np.complex128] | Array) -> bool:
-    """Whether both multipliers lie within the unit circle, or are a pair on it up to rounding."""
+    """Whether all multipliers lie within the unit circle, or are a pair on it up to rounding."""
     largest = float(np.max(np.abs(multipliers)))
     return largest < 1.0 or (np.iscomplexobj(multipliers) and largest < 1.0 + 4.0 * EPS)
 
@@ -159,7 +171,7 @@ def find_orbit(
         limit = faults.whole("max_iterations", max_iterations, *NEWTON_STEPS)
         wait = faults.whole("transient", transient, *TRANSIENT)
     flow = flow_of(oscillator, tolerance)
-    state = checked_state(guess, "guess")
+    state = checked_state(guess, "guess", flow.dimension)
     size = max(float(np.max(np.abs(state))), oscillator.natural_size)
     used = wait
     if wait:
@@ -244,7 +256,7 @@ def make_orbit(
             residual, error, cost, False, message, history, none, tolerance,
         )  # fmt: skip
     determinant = math.exp(image.log_determinant)
-    multipliers = floquet_multipliers(float(np.trace(image.jacobian)), determinant)
+    multipliers = multipliers_of(image.jacobian, determinant)
     counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
     stable = is_stable(multipliers)
     return Orbit(
@@ -311,7 +323,7 @@ def _gap(image: MapResult, x: Array) -> float:
 
 def _remedy(residual: float, image: MapResult, scale: float, flow: Flow) -> str:
     """Why Newton's method stopped, and what to try."""
-    resonant = abs(1.0 - np.trace(image.jacobian) + math.exp(image.log_determinant)) < 1e-6
+    resonant = abs(np.linalg.det(np.eye(len(image.jacobian)) - image.jacobian)) < 1e-6
     if resonant and scale > 1e6:
         return "resonance: a multiplier is one and the motion grows without end; change frequency or damping"
     stretch = float(np.max(np.abs(image.jacobian)))

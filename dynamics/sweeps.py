@@ -57,19 +57,19 @@ class SweepResult(AsArray):
     message: str = quantity("", "what to know about the result")
 
     def columns(self) -> Array:
-        """States, shape (values, kept, 2)."""
+        """States, shape (values, kept, dimension)."""
         return self.states
 
 
 def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -> int:
     """Periods in which damping alone shrinks a disturbance by 1e-6, within [low, high]."""
-    decay = oscillator.damping_ratio * oscillator.period
+    decay = oscillator.decay * oscillator.period
     return high if decay <= 0.0 else int(min(max(math.log(1e6) / decay, low), high))
 
 
 def long_flow(oscillator: Oscillator, tolerance: float | None) -> Flow:
     """Flow of a motion that is followed for long; no tolerance makes the exact one coarser unless it is given."""
-    return flow_of(oscillator, tolerance if tolerance is not None or oscillator.is_exact else TOLERANCE)
+    return flow_of(oscillator, tolerance if tolerance is not None or not oscillator.has_steps else TOLERANCE)
 
 
 def sweep(
@@ -102,7 +102,7 @@ def sweep(
     transient : int, optional
         Periods dropped before those. Left out: as many as damping needs for a disturbance to shrink by 1e-6,
         between 200 and 5000; a motion that then creeps to an orbit is followed on.
-    initial : array_like, shape (2,), optional
+    initial : array_like, shape (dimension,), optional
         State at the first value visited. Left out: at rest in contact under the mean force.
     max_period : int
         Longest period that is recognised, in excitation periods.
@@ -131,9 +131,9 @@ def sweep(
     watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
-    state = first.rest_state() if initial is None else checked_state(initial, "initial")
+    state = first.rest_state() if initial is None else checked_state(initial, "initial", oscillator.dimension)
     restart = state.copy()
-    states = np.full((len(grid), kept, 2), np.nan)
+    states = np.full((len(grid), kept, oscillator.dimension), np.nan)
     impacts = np.full((len(grid), 2), np.nan)
     labels, periods = [DIVERGED] * len(grid), np.zeros(len(grid), dtype=np.int64)
     error, total, lost = 0.0, 0, []

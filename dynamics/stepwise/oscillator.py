@@ -15,11 +15,11 @@ from dynamics.excitation import Harmonics, checked_error, error_names, largest
 from dynamics.laws.contacts import Law
 from dynamics.limits import NUMBER, OSCILLATOR
 from dynamics.naming import natural_size, value_at, with_value
-from dynamics.protocol import Oscillator
+from dynamics.protocol import PlanarOscillator
 
 
 @dataclass(frozen=True)
-class SmoothOscillator(Oscillator):
+class SmoothOscillator(PlanarOscillator):
     r"""Oscillator with a smooth or piecewise smooth restoring force.
 
     .. math::

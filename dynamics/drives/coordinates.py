@@ -1,0 +1,122 @@
+"""Coordinates of a drive train in which the mesh acts on the first one alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from base import Array, InputError
+
+FREE = 1e-13  # of the largest: what is less is rounding of an assembled matrix
+UNBALANCED = 1e-9  # of the load, along a free rotation
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    r"""Displacements q as :math:`w = W q`, whose first one is :math:`g \cdot q`.
+
+    With :math:`M = L L^T`, :math:`\hat g = L^{-1} g`, :math:`\gamma = |\hat g|` and an orthonormal basis B that
+    begins with :math:`\hat g / \gamma`, :math:`W = \gamma B^T L^T` and the equation becomes
+
+    .. math::
+
+        \ddot w + \hat C \dot w + \hat K w + \gamma^2 e_1 [c \dot y + k(t) f(y)] = \hat F, \qquad y = w_1 - e(t).
+
+    Rotations that meet neither stiffness nor damping nor mesh are left out of B; the other vectors make the rest of a
+    symmetric stiffness diagonal.
+
+    Attributes
+    ----------
+    down : ndarray, shape (m, n)
+        W.
+    up : ndarray, shape (n, m)
+        q of w, without what is left out.
+    stiffness, damping : ndarray, shape (m, m)
+        :math:`\hat K` and :math:`\hat C`, without the mesh.
+    force : ndarray, shape (m,)
+        :math:`\hat F`.
+    gain : float
+        :math:`\gamma^2`, one over the mass that the mesh feels.
+    """
+
+    down: Array
+    up: Array
+    stiffness: Array
+    damping: Array
+    force: Array
+    gain: float
+
+
+def coordinates_of(
+    mass: Array, damping: Array, stiffness: Array, direction: Array, force: Array
+) -> Coordinates:
+    """Coordinates of a drive train.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : ndarray, shape (n, n)
+        M, symmetric and positive definite, C and K.
+    direction, force : ndarray, shape (n,)
+        g and the mean force.
+
+    Raises
+    ------
+    InputError
+        If the mass is not symmetric and positive definite, the mesh touches nothing, a free rotation is loaded, or
+        a motion that nothing holds is damped.
+    """
+    try:
+        factor = np.linalg.cholesky(mass)
+    except np.linalg.LinAlgError:
+        allowed = "must be positive definite"
+        raise InputError.at(
+            "mass", np.linalg.eigvalsh(mass).tolist(), allowed, "give every freedom a mass"
+        ) from None
+    inverse = np.linalg.inv(factor)
+    k, c = (inverse @ matrix @ inverse.T for matrix in (stiffness, damping))
+    g, f = inverse @ direction, inverse @ force
+    gain = float(g @ g)
+    if gain == 0.0:
+        raise InputError.at(
+            "direction", direction.tolist(), "must not be zero", "say which freedoms the mesh joins"
+        )
+    free = _null_space([k, k.T, c, c.T, g[None] / np.sqrt(gain)])
+    drift, load = float(np.max(np.abs(free @ f), initial=0.0)), float(np.max(np.abs(f)))
+    if drift > UNBALANCED * load:
+        allowed = "must balance over a rotation that nothing holds"
+        remedy = (
+            "the moments of motor and load are in the ratio of their speeds; or hold the train by a stiffness"
+        )
+        raise InputError.at("mean_force", force.tolist(), allowed, remedy)
+    basis = _basis(g / np.sqrt(gain), free, k)
+    if len(_null_space([basis.T @ k @ basis, np.eye(1, basis.shape[1])])) > 0:
+        allowed = "must hold every freedom, or leave a rotation free of stiffness, damping and mesh alike"
+        raise InputError.at(
+            "stiffness", stiffness.tolist(), allowed, "add a soft spring, or take its damping away"
+        )
+    root = float(np.sqrt(gain))
+    return Coordinates(
+        root * basis.T @ factor.T,
+        inverse.T @ basis / root,
+        basis.T @ k @ basis,
+        basis.T @ c @ basis,
+        root * basis.T @ f,
+        gain,
+    )
+
+
+def _null_space(parts: list[Array]) -> Array:
+    """Unit vectors, as rows, that all of some matrices take to nothing, each measured by its size."""
+    scaled = [part / size for part in parts if (size := float(np.max(np.abs(part), initial=0.0))) > 0.0]
+    _, sizes, vectors = np.linalg.svd(np.vstack(scaled))
+    return np.asarray(vectors[np.count_nonzero(sizes > FREE * len(vectors)) :])
+
+
+def _basis(first: Array, free: Array, stiffness: Array) -> Array:
+    """Orthonormal columns: `first`, then what the free rotations leave, which make a symmetric stiffness diagonal."""
+    taken = np.column_stack([first, free.T])
+    rest = np.linalg.svd(taken)[0][:, taken.shape[1] :]
+    inner = rest.T @ stiffness @ rest
+    _, turn = np.linalg.eigh(0.5 * (inner + inner.T))
+    return np.column_stack([first, rest @ turn])

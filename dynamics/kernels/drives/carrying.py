@@ -1,0 +1,302 @@
+"""The period map in several freedoms: whole cells by their maps, and cells that hold an impact by expansion."""
+
+import math
+
+import numpy as np
+
+from dynamics.kernels.compiling import (
+    CROWDED,
+    DIVERGED,
+    FINE,
+    FREQUENCY,
+    HALF_BACKLASH,
+    MAX_EVENTS,
+    ONE,
+    ZERO,
+    FloatArray,
+    IntArray,
+    helper,
+    kernel,
+)
+from dynamics.kernels.drives.expanding import evaluate, excite, expand
+from dynamics.kernels.regions import clear, enter, leave, start
+from dynamics.kernels.roots import binomials, shift
+
+Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""par, systems, load, series, maps, reach"""
+Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""Two motions and their push (m, degree + 1), six rows of as many, a state (2 m,), and what `binomials` gives."""
+
+
+@helper
+def aim(
+    systems: FloatArray, load: FloatArray, series: FloatArray, cell: int, s: float, region: int, d: float,
+    z: FloatArray, room: Room,
+) -> None:  # fmt: skip
+    """Expand the motion through z at s of a cell, which becomes room[0]; stiffness and push about s are kept, too."""
+    a, _, push, lines, _, choose = room
+    m = len(a)
+    shift(series[cell, 0], s, choose, lines[0])
+    shift(series[cell, 1], s, choose, lines[1])
+    excite(systems, load, lines[1], push)
+    for i in range(m):
+        a[i, 0] = z[i]
+        a[i, 1] = z[m + i]
+    expand(systems, lines[0], push, 1.0, region * d, ZERO if region != 0 else ONE, a)
+
+
+@helper
+def carry_columns(systems: FloatArray, kind: int, t: float, jac: FloatArray, room: Room) -> None:
+    """Sensitivities over a time t after what `aim` expanded."""
+    _, column, push, lines, end, _ = room
+    m = len(column)
+    for j in range(2 * m):
+        for i in range(m):
+            column[i, 0] = jac[i, j]
+            column[i, 1] = jac[m + i, j]
+        expand(systems, lines[0], push, 0.0, 0.0, kind, column)
+        evaluate(column, t, end)
+        for i in range(2 * m):
+            jac[i, j] = end[i]
+
+
+@helper
+def cross_cell(
+    table: Drive,
+    cell: int,
+    region: int,
+    z: FloatArray,
+    want: int,
+    jac: FloatArray,
+    room: Room,
+    count: IntArray,
+) -> tuple[int, int]:
+    """Carry the state z through a cell that may hold impacts; counts exits and entries, and the time in contact."""
+    par, systems, load, series, _, _ = table
+    a, _, _, lines, _, _ = room
+    m, s, fresh = len(a), 0.0, ZERO
+    for _ in range(MAX_EVENTS):
+        aim(systems, load, series, cell, s, region, par[HALF_BACKLASH], z, room)
+        t, hit = leave(region, par, a[0], lines[2], lines[3], 1.0 - s, fresh)
+        evaluate(a, t, z)
+        kind = ZERO if region != 0 else ONE
+        if want > 0:
+            carry_columns(systems, kind, t, jac, room)
+        if region != 0:
+            lines[4, 0] += t
+        if hit == 0:
+            return region, FINE
+        count[0] += region == 1
+        region, z[0] = enter(region, hit, par)
+        count[1] += region == -1
+        jump = systems[1 if region != 0 else 2, 0, 0] - systems[1 + kind, 0, 0]
+        if want > 0 and jump != 0.0:  # damping jumps, and with it the acceleration
+            for j in range(2 * m):
+                jac[m, j] -= jump * jac[0, j]
+        fresh = hit
+        s += t
+        if s >= 1.0:
+            return region, FINE
+    return region, CROWDED
+
+
+@helper
+def straighten(jac: FloatArray, h: float) -> None:
+    """Make the columns of all rows but the last orthonormal, and add the logarithms of their lengths to that."""
+    n = jac.shape[1]
+    m = n // 2
+    for i in range(m, n):
+        for j in range(n):
+            jac[i, j] /= h
+    for j in range(n):
+        for _ in range(2):
+            for k in range(j):
+                along = 0.0
+                for i in range(n):
+                    along += jac[i, k] * jac[i, j]
+                for i in range(n):
+                    jac[i, j] -= along * jac[i, k]
+            size = 0.0
+            for i in range(n):
+                size += jac[i, j] * jac[i, j]
+            size = math.sqrt(size)
+            jac[n, j] += math.log(size)
+            for i in range(n):
+                jac[i, j] /= size
+    for i in range(m, n):
+        for j in range(n):
+            jac[i, j] *= h
+
+
+@helper
+def multiply(matrix: FloatArray, jac: FloatArray, spare: FloatArray) -> None:
+    """Multiply the first rows of `jac` by a matrix."""
+    n = jac.shape[1]
+    for j in range(n):
+        for i in range(n):
+            total = 0.0
+            for k in range(n):
+                total += matrix[i, k] * jac[k, j]
+            spare[i] = total
+        for i in range(n):
+            jac[i, j] = spare[i]
+
+
+@helper
+def some_cells(
+    table: Drive, first: int, number: int, region: int, z: FloatArray, want: int, jac: FloatArray, room: Room,
+    count: IntArray,
+) -> tuple[int, int]:  # fmt: skip
+    """Carry a state over some cells; returns its region and a flag. `want` and `jac` as in `iterate`, in cells."""
+    par, _, _, series, maps, reach = table
+    _, _, _, lines, end, _ = room
+    cells, n, d = len(series), len(z), par[HALF_BACKLASH]
+    for at in range(first, first + number):
+        cell = at % cells
+        row = cell if region != 0 else cell + cells
+        y = maps[row, 0, n] + region * d * maps[row, 0, n + 1]
+        bound = reach[row, n] + d * reach[row, n + 1]
+        for j in range(n):
+            y += maps[row, 0, j] * z[j]
+            bound += reach[row, j] * abs(z[j])
+        if clear(region, par, z[0], y, bound):
+            for i in range(1, n):
+                total = maps[row, i, n] + region * d * maps[row, i, n + 1]
+                for j in range(n):
+                    total += maps[row, i, j] * z[j]
+                end[i] = total
+            z[0] = y
+            for i in range(1, n):
+                z[i] = end[i]
+            if want > 0:
+                multiply(maps[row], jac, end)
+            if region != 0:
+                lines[4, 0] += 1.0
+        else:
+            region, flag = cross_cell(table, cell, region, z, want, jac, room, count)
+            if flag != FINE:
+                return region, flag
+        if want == 2 and (cell % 8 == 7 or cell == cells - 1):
+            straighten(jac, 2.0 * math.pi / par[FREQUENCY] / cells)
+    size = 0.0
+    for i in range(n):
+        size += abs(z[i])
+    return region, FINE if size < 1e150 else DIVERGED
+
+
+@helper
+def enter_cells(par: FloatArray, h: float, state: FloatArray, z: FloatArray) -> int:
+    """State in cells, z, of one in time; returns its region."""
+    m = len(z) // 2
+    for i in range(m):
+        z[i] = state[i]
+        z[m + i] = state[m + i] * h
+    region, y = start(state[0], state[m], par)
+    z[0] = y
+    return region
+
+
+@helper
+def leave_cells(par: FloatArray, h: float, region: int, z: FloatArray, state: FloatArray) -> None:
+    """State in time of one in cells."""
+    m = len(z) // 2
+    for i in range(m):
+        state[i] = z[i]
+        state[m + i] = z[m + i] / h
+    state[0] += region * par[HALF_BACKLASH]
+
+
+@helper
+def scale_rows(jac: FloatArray, factor: float) -> None:
+    """Multiply the rows of the speeds."""
+    n = jac.shape[1]
+    for i in range(n // 2, n):
+        for j in range(n):
+            jac[i, j] *= factor
+
+
+@kernel
+def iterate(
+    table: Drive, first: int, number: int, state: FloatArray, skip: int, want: int, jac: FloatArray,
+    states: FloatArray, counts: IntArray, clock: FloatArray,
+) -> int:  # fmt: skip
+    """Carry `state` over `skip` rounds, then fill `states` and `counts`, one row for each further round.
+
+    A round is `number` cells from cell `first`, a period if these are 0 and all. `want`, `jac`: as for one freedom,
+    2 m columns. `clock`, (1,): time in contact is added.
+    """
+    par, _, load, series, _, _ = table
+    m, n = load.shape[1], series.shape[2]
+    h = 2.0 * math.pi / par[FREQUENCY] / len(series)
+    room = (
+        np.empty((m, n)),
+        np.empty((m, n)),
+        np.zeros((m, n)),
+        np.zeros((6, n)),
+        np.empty(2 * m),
+        binomials(n - 1),
+    )
+    z, count = np.empty(2 * m), np.zeros(2, dtype=np.int64)
+    region = enter_cells(par, h, state, z)
+    if want > 0:
+        scale_rows(jac, h)
+    for period in range(skip + len(states)):
+        count[0] = count[1] = 0
+        region, flag = some_cells(table, first, number, region, z, want, jac, room, count)
+        if flag != FINE:
+            return flag
+        if period >= skip:
+            leave_cells(par, h, region, z, states[period - skip])
+            counts[period - skip, 0] = count[0]
+            counts[period - skip, 1] = count[1]
+    leave_cells(par, h, region, z, state)
+    if want > 0:
+        scale_rows(jac, 1.0 / h)
+    clock[0] += room[3][4, 0] * h
+    return FINE
+
+
+@kernel
+def settle(
+    table: Drive, starts: FloatArray, homes: FloatArray, radius: float, limit: int, labels: IntArray
+) -> int:
+    """Follow every start with label -1 until it stays near a known attractor; as for one freedom.
+
+    `homes`, (any, 2 m + 2): state, attractor and its period for every point of every attractor.
+    """
+    par, _, load, series, _, _ = table
+    m, n = load.shape[1], series.shape[2]
+    h = 2.0 * math.pi / par[FREQUENCY] / len(series)
+    room = (
+        np.empty((m, n)),
+        np.empty((m, n)),
+        np.zeros((m, n)),
+        np.zeros((6, n)),
+        np.empty(2 * m),
+        binomials(n - 1),
+    )
+    z, count, jac = np.empty(2 * m), np.zeros(2, dtype=np.int64), np.zeros((2 * m + 1, 2 * m))
+    used = 0
+    for i in range(len(starts)):
+        region = enter_cells(par, h, starts[i], z)
+        home = wait = period = 0
+        distance = 0.0
+        while labels[i] == -1 and period < limit:
+            period += 1
+            region, flag = some_cells(table, ZERO, len(series), region, z, ZERO, jac, room, count)
+            if flag != FINE:
+                labels[i] = -2
+            leave_cells(par, h, region, z, starts[i])
+            wait -= 1
+            for k in range(
+                home if wait == 0 else 0, home + 1 if wait == 0 else len(homes) if wait < 0 else 0
+            ):
+                gap = 0.0
+                for j in range(2 * m):
+                    gap = max(gap, abs(starts[i, j] - homes[k, j]))
+                if wait == 0 and gap <= distance:
+                    labels[i] = int(homes[k, 2 * m])
+                elif wait < 0 and gap < radius:
+                    home, distance, wait = k, gap, int(homes[k, 2 * m + 1])
+        used += period
+    return used

@@ -1,0 +1,89 @@
+"""The motion in several freedoms followed closely: samples, extrema of y and impacts."""
+
+import math
+
+import numpy as np
+
+from dynamics.kernels.compiling import (
+    CROWDED,
+    DIVERGED,
+    FINE,
+    FREQUENCY,
+    HALF_BACKLASH,
+    MAX_EVENTS,
+    ZERO,
+    FloatArray,
+    kernel,
+)
+from dynamics.kernels.drives.carrying import Drive, aim, enter_cells, leave_cells
+from dynamics.kernels.drives.expanding import evaluate
+from dynamics.kernels.regions import enter, leave, note_extremum
+from dynamics.kernels.roots import binomials, copy, find_turn
+
+
+@kernel
+def walk(
+    table: Drive, state: FloatArray, periods: int, points: int, samples: FloatArray, turns: FloatArray,
+    events: FloatArray,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Follow the motion closely; arguments and what is returned as for one freedom, samples (any, 2 m)."""
+    par, systems, load, series, _, _ = table
+    m, cells, n = load.shape[1], len(series), series.shape[2]
+    d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
+    choose, lines = binomials(n - 1), np.zeros((6, n))
+    a, z, end = np.empty((m, n)), np.empty(2 * m), np.empty(2 * m)
+    room = (a, np.empty((m, n)), np.zeros((m, n)), lines, end, choose)
+    g, b, rest, spare = lines[2], lines[3], lines[4], lines[5]
+    region = enter_cells(par, h, state, z)
+    filled = turned = happened = 0
+    way = ZERO
+    for global_cell in range(periods * cells):
+        s, fresh = 0.0, ZERO
+        for event in range(MAX_EVENTS + 1):
+            if event == MAX_EVENTS:
+                return CROWDED, turned, happened
+            now = global_cell + s
+            aim(systems, load, series, global_cell % cells, s, region, d, z, room)
+            t, hit = leave(region, par, a[0], g, b, 1.0 - s, fresh)
+            while points > 0 and filled < len(samples):
+                at = filled * (cells / points) - now
+                if at > t:
+                    break
+                evaluate(a, max(at, 0.0), end)
+                leave_cells(par, h, region, end, samples[filled])
+                filled += 1
+            done = 0.0
+            copy(a[0], rest)
+            while len(turns) > 0:
+                way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
+                if step < 0.0:
+                    break
+                done += step
+                if turned < len(turns):
+                    note_extremum(turns[turned], (now + done) * h, rest, region, par, h)
+                turned += 1
+                if step == 0.0:
+                    way, done = ZERO, 0.0
+            evaluate(a, t, z)
+            s = 1.0 if hit == 0 else s + t
+            if hit == 0:
+                break
+            region, z[0] = enter(region, hit, par)
+            fresh = hit
+            if happened < len(events):
+                events[happened, 0] = (global_cell + s) * h
+                events[happened, 1] = hit * d
+                events[happened, 2] = z[m] / h
+                events[happened, 3] = region
+            happened += 1
+            if s >= 1.0:
+                break
+        size = 0.0
+        for i in range(2 * m):
+            size += abs(z[i])
+        if not size < 1e150:
+            return DIVERGED, turned, happened
+    while filled < len(samples):
+        leave_cells(par, h, region, z, samples[filled])
+        filled += 1
+    return FINE, turned, happened
