@@ -108,8 +108,8 @@ def numbers(faults: Faults, where: str, given: object) -> tuple[float, ...]:
     return tuple(faults.number(f"{where}[{j}]", value, NUMBER) for j, value in enumerate(given))
 
 
-def check_stiffness(faults: Faults, stiffness: object) -> None:
+def check_stiffness(faults: Faults, stiffness: object, where: str = "stiffness") -> None:
     """Note a fault of what is no `FourierStiffness`."""
     if not isinstance(stiffness, FourierStiffness):
         remedy = "build one, or fit one with fit_fourier"
-        faults.add("stiffness", stiffness, "must be a FourierStiffness", remedy)
+        faults.add(where, stiffness, "must be a FourierStiffness", remedy)

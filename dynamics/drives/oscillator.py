@@ -117,7 +117,7 @@ class DriveOscillator(Oscillator):
                 faults.add(
                     "mass", values["mass"].tolist(), "must be symmetric", "take the mean with its transpose"
                 )
-            check_stiffness(faults, self.mesh_stiffness)
+            check_stiffness(faults, self.mesh_stiffness, "mesh_stiffness")
             for name in ("frequency", "half_backlash"):
                 values[name] = faults.number(name, getattr(self, name), OSCILLATOR[name])
             for name in ("mesh_damping", "free_mesh_damping"):

@@ -88,7 +88,7 @@ def test_exact_flow_names_what_gives_derivatives_and_extrema():
 
 
 def test_what_has_no_flow_is_refused():
-    with pytest.raises(InputError, match="must be a GearOscillator or a SmoothOscillator"):
+    with pytest.raises(InputError, match="must be a GearOscillator, a SmoothOscillator or a DriveOscillator"):
         dynamics.find_orbit(SERIES, (0.5, 0.2))
 
 
