@@ -176,7 +176,7 @@ def _starts(
     along, centre = oscillator.start_plane()
     if plane is not None:
         along = np.array(plane, dtype=np.float64)
-        if along.shape != (2, oscillator.dimension) or not np.linalg.matrix_rank(along) == 2:
+        if along.shape != (2, oscillator.dimension) or np.linalg.matrix_rank(along) != 2:
             allowed = f"must be two independent directions of {oscillator.dimension} numbers"
             raise InputError.at(
                 "plane", np.asarray(plane).tolist(), allowed, "give one row for x and one for v"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from base import Array, InputError
 
 FREE = 1e-13  # of the largest: what is less is rounding of an assembled matrix
-UNBALANCED = 1e-9  # of the load, along a free rotation
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +34,10 @@ class Coordinates:
         q of w, without what is left out.
     stiffness, damping : ndarray, shape (m, m)
         :math:`\hat K` and :math:`\hat C`, without the mesh.
-    force : ndarray, shape (m,)
-        :math:`\hat F`.
+    push : ndarray, shape (m, n)
+        :math:`\hat F` of F.
+    drift : ndarray, shape (r, n)
+        Load of each of r free rotations of F, which must be zero.
     gain : float
         :math:`\gamma^2`, one over the mass that the mesh feels.
     """
@@ -44,51 +46,50 @@ class Coordinates:
     up: Array
     stiffness: Array
     damping: Array
-    force: Array
+    push: Array
+    drift: Array
     gain: float
 
 
-def coordinates_of(
-    mass: Array, damping: Array, stiffness: Array, direction: Array, force: Array
-) -> Coordinates:
-    """Coordinates of a drive train.
+def coordinates_of(mass: Array, damping: Array, stiffness: Array, direction: Array) -> Coordinates:
+    """Coordinates of a drive train; those of the last few are kept.
 
     Parameters
     ----------
     mass, damping, stiffness : ndarray, shape (n, n)
         M, symmetric and positive definite, C and K.
-    direction, force : ndarray, shape (n,)
-        g and the mean force.
+    direction : ndarray, shape (n,)
+        g.
 
     Raises
     ------
     InputError
-        If the mass is not symmetric and positive definite, the mesh touches nothing, a free rotation is loaded, or
-        a motion that nothing holds is damped.
+        If the mass is not positive definite, the mesh touches nothing, or a motion that nothing holds is damped.
     """
+    entries = b"".join(np.ascontiguousarray(part).tobytes() for part in (mass, damping, stiffness, direction))
+    return _kept(len(direction), entries)
+
+
+@lru_cache(maxsize=16)
+def _kept(size: int, entries: bytes) -> Coordinates:
+    """Coordinates of M, C, K and g, one after the other."""
+    numbers = np.frombuffer(entries)
+    mass, damping, stiffness = numbers[: 3 * size**2].reshape(3, size, size)
+    direction = numbers[3 * size**2 :]
     try:
         factor = np.linalg.cholesky(mass)
     except np.linalg.LinAlgError:
-        allowed = "must be positive definite"
-        raise InputError.at(
-            "mass", np.linalg.eigvalsh(mass).tolist(), allowed, "give every freedom a mass"
-        ) from None
+        allowed, found = "must be positive definite", np.linalg.eigvalsh(mass).tolist()
+        raise InputError.at("mass", found, allowed, "give every freedom a mass") from None
     inverse = np.linalg.inv(factor)
     k, c = (inverse @ matrix @ inverse.T for matrix in (stiffness, damping))
-    g, f = inverse @ direction, inverse @ force
+    g = inverse @ direction
     gain = float(g @ g)
     if gain == 0.0:
         raise InputError.at(
             "direction", direction.tolist(), "must not be zero", "say which freedoms the mesh joins"
         )
     free = _null_space([k, k.T, c, c.T, g[None] / np.sqrt(gain)])
-    drift, load = float(np.max(np.abs(free @ f), initial=0.0)), float(np.max(np.abs(f)))
-    if drift > UNBALANCED * load:
-        allowed = "must balance over a rotation that nothing holds"
-        remedy = (
-            "the moments of motor and load are in the ratio of their speeds; or hold the train by a stiffness"
-        )
-        raise InputError.at("mean_force", force.tolist(), allowed, remedy)
     basis = _basis(g / np.sqrt(gain), free, k)
     if len(_null_space([basis.T @ k @ basis, np.eye(1, basis.shape[1])])) > 0:
         allowed = "must hold every freedom, or leave a rotation free of stiffness, damping and mesh alike"
@@ -101,7 +102,8 @@ def coordinates_of(
         inverse.T @ basis / root,
         basis.T @ k @ basis,
         basis.T @ c @ basis,
-        root * basis.T @ f,
+        root * basis.T @ inverse,
+        free @ inverse,
         gain,
     )
 

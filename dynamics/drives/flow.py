@@ -14,7 +14,7 @@ from dynamics.flow import REASONS
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, lost_motion
 
 # of motions expanded about the start of a cell, half a radian of every time scale long
-DEGREE = 18
+DEGREE = 16
 Arrays = tuple[Array, Array, Array, Array, Array, Array]
 
 
@@ -154,11 +154,11 @@ def tabulated(oscillator: DriveOscillator, cells: int) -> DriveFlow:
         whole[0, 0] += at.gain * damping * h
         dampings.append(whole)
     systems = np.stack([at.stiffness * h**2, *dampings])
-    load = np.stack([at.force * h**2, at.damping[:, 0] * h])
+    load = np.stack([oscillator.load * h**2, at.damping[:, 0] * h])
     mesh = np.array([[series.mean, *series.amplitudes], [0.0, *series.phases]])
     mesh[0] *= at.gain * h**2
     own = np.zeros(9)
-    own[2], own[4], own[6] = at.force[0], oscillator.frequency, oscillator.half_backlash
+    own[2], own[4], own[6] = oscillator.load[0], oscillator.frequency, oscillator.half_backlash
     own[7] = 1.0 if oscillator.one_sided else 2.0
     tables = tabulate(mesh, oscillator.error_series, cells, DEGREE, systems, load)
     return DriveFlow(oscillator, (own, systems, load, *tables))

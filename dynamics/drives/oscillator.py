@@ -27,6 +27,7 @@ from dynamics.protocol import Oscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
 MAX_ENTRIES = 20_000_000  # of the tables: 160 MB
+UNBALANCED = 1e-9  # of the load, along a free rotation
 MATRICES, VECTORS = ("mass", "damping", "stiffness"), ("direction", "mean_force")
 
 
@@ -127,6 +128,14 @@ class DriveOscillator(Oscillator):
             faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
             object.__setattr__(self, name, value)
+        force = values["mean_force"]
+        drift = np.max(np.abs(self.coordinates.drift @ force), initial=0.0)
+        if drift > UNBALANCED * np.max(np.abs(self.coordinates.drift) @ np.abs(force), initial=0.0):
+            allowed = "must balance over a rotation that nothing holds"
+            remedy = (
+                "moments of motor and load are in the ratio of their speeds; or hold the train by a stiffness"
+            )
+            raise InputError.at("mean_force", force.tolist(), allowed, remedy)
         entries = 4.0 * self.cells * self.coordinates.down.shape[0] * (self.dimension + 2)
         if not entries <= MAX_ENTRIES:
             allowed = f"must give tables of at most {MAX_ENTRIES} numbers (these have {entries:.3g})"
@@ -142,7 +151,12 @@ class DriveOscillator(Oscillator):
     @cached_property
     def coordinates(self) -> Coordinates:
         """What the flow moves in."""
-        return coordinates_of(*(np.asarray(getattr(self, name)) for name in (*MATRICES, *VECTORS)))
+        return coordinates_of(*(np.asarray(getattr(self, name)) for name in (*MATRICES, "direction")))
+
+    @cached_property
+    def load(self) -> Array:
+        """Mean force in the coordinates of the flow."""
+        return np.asarray(self.coordinates.push @ np.asarray(self.mean_force))
 
     @property
     def dampings(self) -> tuple[float, float]:
@@ -187,7 +201,7 @@ class DriveOscillator(Oscillator):
     def decay(self) -> float:
         """Rate at which a disturbance dies out that dies out most slowly, in contact with the mean stiffness."""
         at = self.coordinates
-        m = len(at.force)
+        m = len(self.load)
         stiff, drag = at.stiffness.copy(), at.damping.copy()
         stiff[0, 0] += at.gain * self.mesh_stiffness.mean
         drag[0, 0] += at.gain * self.mesh_damping
@@ -204,13 +218,13 @@ class DriveOscillator(Oscillator):
     @property
     def directions(self) -> int:
         """Directions of a disturbance, without free rotations."""
-        return 2 * len(self.coordinates.force)
+        return 2 * len(self.load)
 
     def rest_state(self) -> Array:
         """State at tau = 0 with y at rest under the mean force: on the flanks that it presses together, or between."""
         at = self.coordinates
         for side in (1.0, -1.0, 0.0):
-            stiff, force = at.stiffness.copy(), at.force.copy()
+            stiff, force = at.stiffness.copy(), self.load.copy()
             if side != 0.0:
                 push = at.gain * self.mesh_stiffness.mean
                 stiff[0, 0] += push

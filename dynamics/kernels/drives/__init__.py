@@ -11,7 +11,7 @@ that travel together:
 - `load`, (2, m): the mean force times h^2; the first column of the damping times h, without that of the mesh.
 - `series`, (cells, 2, degree + 1): Taylor coefficients about the start of a cell of the mesh stiffness (over the mass
   of y, times h^2) and of the error e.
-- `maps`, (2 cells, 2 m, 2 m + 2): the map over the whole cell, A, b and d: z becomes A z + b + region D d. The
-  first `cells` rows hold in contact, the others in the dead zone.
+- `maps`, (2 cells, 2 m + 2, 2 m): the map over the whole cell, A, b and d, transposed: z becomes A z + b + region D d.
+  The first `cells` rows hold in contact, the others in the dead zone.
 - `reach`, (2 cells, 2 m + 2): factors which bound how far y departs from its chord, reach . (|z|, 1, D).
 """

@@ -17,15 +17,32 @@ from dynamics.kernels.compiling import (
     IntArray,
     helper,
     kernel,
+    maker,
 )
-from dynamics.kernels.drives.expanding import evaluate, excite, expand
+from dynamics.kernels.drives.expanding import evaluate, evaluate_many, excite, expand, expand_many
 from dynamics.kernels.regions import clear, enter, leave, start
-from dynamics.kernels.roots import binomials, shift
+from dynamics.kernels.roots import binomials, copy, shift
 
 Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """par, systems, load, series, maps, reach"""
-Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""Two motions and their push (m, degree + 1), six rows of as many, a state (2 m,), and what `binomials` gives."""
+Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""A motion and its push (m, degree + 1), six rows of as many, a state (2 m,), what `binomials` gives; motions of many
+columns (degree + 1, m, 2 m), and as many states (2 m, 2 m)."""
+
+
+@maker
+def room_for(m: int, n: int) -> Room:
+    """Work space for m freedoms and n coefficients."""
+    many, square = np.empty((n, m, 2 * m)), np.empty((2 * m, 2 * m))
+    return (
+        np.empty((m, n)),
+        np.zeros((m, n)),
+        np.zeros((6, n)),
+        np.empty(2 * m),
+        binomials(n - 1),
+        many,
+        square,
+    )
 
 
 @helper
@@ -34,30 +51,27 @@ def aim(
     z: FloatArray, room: Room,
 ) -> None:  # fmt: skip
     """Expand the motion through z at s of a cell, which becomes room[0]; stiffness and push about s are kept, too."""
-    a, _, push, lines, _, choose = room
+    a, push, lines, _, choose, _, _ = room
     m = len(a)
-    shift(series[cell, 0], s, choose, lines[0])
-    shift(series[cell, 1], s, choose, lines[1])
+    if s == 0.0:
+        copy(series[cell, 0], lines[0])
+        copy(series[cell, 1], lines[1])
+    else:
+        shift(series[cell, 0], s, choose, lines[0])
+        shift(series[cell, 1], s, choose, lines[1])
     excite(systems, load, lines[1], push)
     for i in range(m):
         a[i, 0] = z[i]
         a[i, 1] = z[m + i]
-    expand(systems, lines[0], push, 1.0, region * d, ZERO if region != 0 else ONE, a)
+    expand(systems, lines[0], push, region * d, ZERO if region != 0 else ONE, a)
 
 
 @helper
 def carry_columns(systems: FloatArray, kind: int, t: float, jac: FloatArray, room: Room) -> None:
     """Sensitivities over a time t after what `aim` expanded."""
-    _, column, push, lines, end, _ = room
-    m = len(column)
-    for j in range(2 * m):
-        for i in range(m):
-            column[i, 0] = jac[i, j]
-            column[i, 1] = jac[m + i, j]
-        expand(systems, lines[0], push, 0.0, 0.0, kind, column)
-        evaluate(column, t, end)
-        for i in range(2 * m):
-            jac[i, j] = end[i]
+    _, _, lines, _, _, many, _ = room
+    expand_many(systems, lines[0], kind, jac, many)
+    evaluate_many(many, t, jac)
 
 
 @helper
@@ -73,7 +87,7 @@ def cross_cell(
 ) -> tuple[int, int]:
     """Carry the state z through a cell that may hold impacts; counts exits and entries, and the time in contact."""
     par, systems, load, series, _, _ = table
-    a, _, _, lines, _, _ = room
+    a, _, lines, _, _, _, _ = room
     m, s, fresh = len(a), 0.0, ZERO
     for _ in range(MAX_EVENTS):
         aim(systems, load, series, cell, s, region, par[HALF_BACKLASH], z, room)
@@ -129,17 +143,19 @@ def straighten(jac: FloatArray, h: float) -> None:
 
 
 @helper
-def multiply(matrix: FloatArray, jac: FloatArray, spare: FloatArray) -> None:
-    """Multiply the first rows of `jac` by a matrix."""
+def multiply(turned: FloatArray, jac: FloatArray, spare: FloatArray) -> None:
+    """Multiply the first rows of `jac` by the transpose of the first rows of a matrix."""
     n = jac.shape[1]
-    for j in range(n):
-        for i in range(n):
-            total = 0.0
-            for k in range(n):
-                total += matrix[i, k] * jac[k, j]
-            spare[i] = total
-        for i in range(n):
-            jac[i, j] = spare[i]
+    for i in range(n):
+        for j in range(n):
+            spare[i, j] = 0.0
+        for k in range(n):
+            factor = turned[k, i]
+            for j in range(n):
+                spare[i, j] += factor * jac[k, j]
+    for i in range(n):
+        for j in range(n):
+            jac[i, j] = spare[i, j]
 
 
 @helper
@@ -149,27 +165,22 @@ def some_cells(
 ) -> tuple[int, int]:  # fmt: skip
     """Carry a state over some cells; returns its region and a flag. `want` and `jac` as in `iterate`, in cells."""
     par, _, _, series, maps, reach = table
-    _, _, _, lines, end, _ = room
+    _, _, lines, end, _, _, square = room
     cells, n, d = len(series), len(z), par[HALF_BACKLASH]
     for at in range(first, first + number):
         cell = at % cells
         row = cell if region != 0 else cell + cells
-        y = maps[row, 0, n] + region * d * maps[row, 0, n + 1]
         bound = reach[row, n] + d * reach[row, n + 1]
+        for i in range(n):
+            end[i] = maps[row, n, i] + region * d * maps[row, n + 1, i]
         for j in range(n):
-            y += maps[row, 0, j] * z[j]
             bound += reach[row, j] * abs(z[j])
-        if clear(region, par, z[0], y, bound):
-            for i in range(1, n):
-                total = maps[row, i, n] + region * d * maps[row, i, n + 1]
-                for j in range(n):
-                    total += maps[row, i, j] * z[j]
-                end[i] = total
-            z[0] = y
-            for i in range(1, n):
-                z[i] = end[i]
+            for i in range(n):
+                end[i] += maps[row, j, i] * z[j]
+        if clear(region, par, z[0], end[0], bound):
+            copy(end, z)
             if want > 0:
-                multiply(maps[row], jac, end)
+                multiply(maps[row], jac, square)
             if region != 0:
                 lines[4, 0] += 1.0
         else:
@@ -228,14 +239,7 @@ def iterate(
     par, _, load, series, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
-    room = (
-        np.empty((m, n)),
-        np.empty((m, n)),
-        np.zeros((m, n)),
-        np.zeros((6, n)),
-        np.empty(2 * m),
-        binomials(n - 1),
-    )
+    room = room_for(m, n)
     z, count = np.empty(2 * m), np.zeros(2, dtype=np.int64)
     region = enter_cells(par, h, state, z)
     if want > 0:
@@ -252,7 +256,7 @@ def iterate(
     leave_cells(par, h, region, z, state)
     if want > 0:
         scale_rows(jac, 1.0 / h)
-    clock[0] += room[3][4, 0] * h
+    clock[0] += room[2][4, 0] * h
     return FINE
 
 
@@ -267,14 +271,7 @@ def settle(
     par, _, load, series, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
-    room = (
-        np.empty((m, n)),
-        np.empty((m, n)),
-        np.zeros((m, n)),
-        np.zeros((6, n)),
-        np.empty(2 * m),
-        binomials(n - 1),
-    )
+    room = room_for(m, n)
     z, count, jac = np.empty(2 * m), np.zeros(2, dtype=np.int64), np.zeros((2 * m + 1, 2 * m))
     used = 0
     for i in range(len(starts)):

@@ -15,10 +15,10 @@ from dynamics.kernels.compiling import (
     FloatArray,
     kernel,
 )
-from dynamics.kernels.drives.carrying import Drive, aim, enter_cells, leave_cells
+from dynamics.kernels.drives.carrying import Drive, aim, enter_cells, leave_cells, room_for
 from dynamics.kernels.drives.expanding import evaluate
 from dynamics.kernels.regions import enter, leave, note_extremum
-from dynamics.kernels.roots import binomials, copy, find_turn
+from dynamics.kernels.roots import copy, find_turn
 
 
 @kernel
@@ -30,9 +30,9 @@ def walk(
     par, systems, load, series, _, _ = table
     m, cells, n = load.shape[1], len(series), series.shape[2]
     d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
-    choose, lines = binomials(n - 1), np.zeros((6, n))
-    a, z, end = np.empty((m, n)), np.empty(2 * m), np.empty(2 * m)
-    room = (a, np.empty((m, n)), np.zeros((m, n)), lines, end, choose)
+    room = room_for(m, n)
+    a, _, lines, end, choose, _, _ = room
+    z = np.empty(2 * m)
     g, b, rest, spare = lines[2], lines[3], lines[4], lines[5]
     region = enter_cells(par, h, state, z)
     filled = turned = happened = 0
