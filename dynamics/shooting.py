@@ -15,7 +15,7 @@ from dynamics.flows import flow_of
 from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
 from dynamics.multiple_shooting import shoot_in_stretches
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import EPS, Flow, MapResult, Oscillator
+from dynamics.protocol import EPS, Flow, MapResult, Oscillator, PlanarOscillator
 from dynamics.states import checked_state
 
 FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
@@ -72,7 +72,7 @@ class Orbit:
         return flow.follow(self.state, self.periods, derivatives=False).states
 
 
-def exact_determinant(oscillator: Oscillator, periods: int) -> float:
+def exact_determinant(oscillator: PlanarOscillator, periods: int) -> float:
     r"""Return :math:`\det DP^n = e^{-4 \pi \zeta n / \omega}`; the damping is the same in every region."""
     return math.exp(-2.0 * oscillator.damping_ratio * oscillator.period * periods)
 

@@ -96,7 +96,7 @@ class DriveFlow(Flow):
             if flag:
                 raise lost_motion(state, REASONS[int(flag)])
             if turned <= room and happened <= room:
-                tau = np.arange(len(samples)) * (osc.period / max(points, 1))
+                tau = np.arange(len(samples), dtype=np.float64) * (osc.period / max(points, 1))
                 return osc.lifted(samples, tau), turns[:turned], events[:happened]
             room = max(turned, happened)
 
@@ -120,8 +120,10 @@ class DriveFlow(Flow):
                 )
             row[:] = frame[n]
             kept.append(part)
-        states = np.vstack(kept) if keep else moved[None]
-        return Stretches(logs, self.oscillator.lifted(states, np.zeros(len(states))), REASONS.get(flag, ""))
+        states: Array = np.vstack(kept) if keep else moved[None]
+        return Stretches(
+            logs, self.oscillator.lifted(np.asarray(states), np.zeros(len(states))), REASONS.get(flag, "")
+        )
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
         """Follow starts until they stay near known attractors."""

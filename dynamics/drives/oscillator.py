@@ -232,7 +232,7 @@ class DriveOscillator(Oscillator):
             w = np.linalg.lstsq(stiff, force, rcond=None)[0]
             if side * (w[0] - side * self.half_backlash) > 0.0 and not (side < 0.0 and self.one_sided):
                 break
-        return self.lifted(np.concatenate([w, np.zeros(len(w))])[None], np.zeros(1))[0]
+        return np.asarray(self.lifted(np.concatenate([w, np.zeros(len(w))])[None], np.zeros(1))[0])
 
     def start_plane(self) -> tuple[Array, Array]:
         """Directions in which y and its rate move alone, by one each, and the state at rest."""
@@ -270,7 +270,7 @@ class DriveOscillator(Oscillator):
         """Contact coordinate y and its rate."""
         n, g = self.dimension // 2, np.asarray(self.direction)
         error, rate = self.error_motion(tau)
-        return states[:, :n] @ g - error, states[:, n:] @ g - rate
+        return np.asarray(states[:, :n] @ g - error), np.asarray(states[:, n:] @ g - rate)
 
 
 def _array(faults: Faults, name: str, given: npt.ArrayLike, shape: tuple[int, ...] | None) -> Array:

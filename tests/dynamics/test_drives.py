@@ -15,6 +15,8 @@ from dynamics import DriveOscillator, FourierStiffness, GearOscillator, find_orb
 
 SERIES = FourierStiffness(1.0, (0.18, 0.05), (0.3, 1.0))
 ERROR, PHASE = (0.2, 0.03), (0.4, 1.0)
+START = np.array([0.5, 0.2])
+KICK = np.array([0.3, -0.4, 0.1, 0.2, 0.5, -0.6, 0.2, 0.1])
 
 
 def same_as(gear: GearOscillator) -> DriveOscillator:
@@ -117,12 +119,12 @@ def test_one_freedom_is_the_gear_oscillator(gear):
     """States, Jacobian, damping and impacts to 1e-13 over five periods: neither flow has an error but rounding."""
     drive = same_as(gear)
     shift = np.ravel(drive.error_motion(np.zeros(1)))
-    ours, theirs = period_map(drive, shift + (0.5, 0.2), 5), period_map(gear, (0.5, 0.2), 5)
+    ours, theirs = period_map(drive, shift + START, 5), period_map(gear, START, 5)
     assert ours.states - shift == pytest.approx(theirs.states, abs=1e-13)
     assert ours.jacobian == pytest.approx(theirs.jacobian, abs=1e-13 * np.max(np.abs(theirs.jacobian)))
     assert ours.log_determinant == pytest.approx(theirs.log_determinant, rel=1e-14)
     assert np.array_equal(ours.counts, theirs.counts)
-    mine, other = trajectory(drive, shift + (0.5, 0.2), 2, 25), trajectory(gear, (0.5, 0.2), 2, 25)
+    mine, other = trajectory(drive, shift + START, 2, 25), trajectory(gear, START, 2, 25)
     assert mine.columns()[:, 0] == pytest.approx(other.tau)
     assert np.column_stack([mine.x, mine.v]) == pytest.approx(other.states, abs=1e-13)
     assert mine.events == pytest.approx(other.events, abs=1e-12)
@@ -137,7 +139,7 @@ def test_one_freedom_is_the_gear_oscillator(gear):
 def test_four_freedoms_against_an_integrator(changes):
     """States to 1e-9 after two periods with impacts, Jacobian to 1e-8: what the integrator's tolerance leaves."""
     drive = chain(**changes)
-    start = drive.rest_state() + (0.3, -0.4, 0.1, 0.2, 0.5, -0.6, 0.2, 0.1)
+    start = drive.rest_state() + KICK
     state, jacobian, crossings = by_steps(drive, start, 2 * drive.period)
     ours = period_map(drive, start, 2)
     assert crossings > 3 or drive.half_backlash == 0.0
@@ -240,7 +242,8 @@ def test_in_contact_without_variation_it_is_a_linear_system():
 def pair(**changes) -> DriveOscillator:
     """Two gears, nothing that holds them: q are their motions along the line of action."""
     given = {
-        "mass": np.diag([2.0, 3.0]), "damping": np.zeros((2, 2)), "stiffness": np.zeros((2, 2)), "direction": [1.0, -1.0],
+        "mass": np.diag([2.0, 3.0]), "damping": np.zeros((2, 2)), "stiffness": np.zeros((2, 2)),
+        "direction": [1.0, -1.0],
         "mesh_stiffness": SERIES, "mesh_damping": 0.12, "mean_force": [0.12, -0.12], "error_amplitude": ERROR,
         "error_phase": PHASE, "frequency": 0.7, "half_backlash": 0.2,
     }  # fmt: skip
@@ -259,7 +262,7 @@ def test_free_train_is_the_oscillator_of_its_mesh():
     assert orbit.multipliers[:2] == pytest.approx(other.multipliers, abs=1e-12)
     assert orbit.multipliers[2:] == pytest.approx(np.zeros(2), abs=1e-15)
     assert len(dynamics.lyapunov_exponents(free, 40, transient=0).exponents) == 2
-    turned = orbit.state + (1.0, 1.0, 0.5, 0.5)
+    turned = orbit.state + np.array([1.0, 1.0, 0.5, 0.5])
     assert period_map(free, turned).state == pytest.approx(orbit.state, abs=1e-12)
 
 
@@ -294,3 +297,58 @@ def test_parameters_by_name():
     with pytest.raises(InputError, match="must be one of frequency, error_amplitude"):
         drive.get("mass")
     assert dataclasses.replace(drive, frequency=0.5).frequency == 0.5
+
+
+def test_orbits_sweeps_and_exponents_are_those_of_one_freedom():
+    """What is made of the map: the same orbit, multipliers, labels, exponents and basins."""
+    gear = GEARS[0]
+    drive = same_as(gear)
+    shift = np.ravel(drive.error_motion(np.zeros(1)))
+    ours, theirs = find_orbit(drive, shift + START), find_orbit(gear, START)
+    assert ours.converged
+    assert ours.label == theirs.label
+    assert ours.state - shift == pytest.approx(theirs.state, abs=1e-13)
+    assert ours.multipliers == pytest.approx(theirs.multipliers, abs=1e-13)
+    for value in (0.5, 0.7):
+        here = drive.with_parameter("frequency", value)
+        moved = np.ravel(here.error_motion(np.zeros(1)))
+        options = {"transient": 100, "keep": 8, "max_period": 4}
+        mine = dynamics.sweep(drive, "frequency", [value], initial=moved + START, **options)
+        other = dynamics.sweep(gear, "frequency", [value], initial=START, **options)
+        assert mine.labels == other.labels
+        assert mine.states[0] - moved == pytest.approx(other.states[0], abs=1e-9)
+    grown, other = (dynamics.lyapunov_exponents(osc, 40, transient=20) for osc in (drive, gear))
+    assert grown.exponents == pytest.approx(other.exponents, abs=1e-11)
+    field, other = (
+        dynamics.basins(osc, x=(-0.9, 0.9, 4), v=(-0.9, 0.9, 4), limit=60, **more)
+        for osc, more in ((drive, {"through": shift}), (gear, {}))
+    )
+    assert np.array_equal(field.labels, other.labels)
+    assert [a.label for a in field.attractors] == [a.label for a in other.attractors]
+
+
+def test_exponents_add_up_to_all_damping():
+    drive = chain()
+    found = dynamics.lyapunov_scan(drive, "frequency", [0.8, 1.1], 40, transient=10)
+    assert found.exponents.shape == (2, 8)
+    assert found.exponents.sum(axis=1) == pytest.approx(np.full(2, -drive.contraction), abs=1e-12)
+    assert found.defect < 1e-12
+
+
+def test_basins_on_a_plane_of_choice():
+    """Starts in the plane of the motor's motion; each comes to where it comes to when it is followed."""
+    drive = chain(mean_force=[0.02, 0.0, 0.0, 0.03], error_amplitude=0.5, error_phase=0.0)
+    plane, through = np.eye(8)[[0, 4]], drive.rest_state()
+    found = dynamics.basins(
+        drive, x=(-2.0, 2.0, 3), v=(-2.0, 2.0, 3), plane=plane, through=through, limit=100
+    )
+    start = through + 2.0 * plane[0] - 2.0 * plane[1]
+    label = found.labels[2, 0]
+    assert label >= 0
+    orbit = found.attractors[label].orbit
+    end = period_map(drive, start, orbit.periods, 400 * orbit.periods - 1).states
+    assert np.min(np.max(np.abs(end - orbit.state), axis=1)) < 1e-4
+    with pytest.raises(InputError, match="must be two independent directions of 8 numbers"):
+        dynamics.basins(drive, x=(-1, 1, 2), v=(-1, 1, 2), plane=np.ones((2, 8)))
+    with pytest.raises(InputError, match="must be 8 finite numbers, 4 displacements"):
+        find_orbit(drive, (0.1, 0.2))
