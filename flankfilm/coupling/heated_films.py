@@ -114,9 +114,9 @@ class HeatedFilms:
         rough = self.oil.roughness
         return None if rough is None else np.asarray(self.minimum_thickness / rough.deviation)
 
-    def every(self, step: int) -> HeatedFilms:
-        """Give every so many of them, the last as well."""
-        kept = thinned(len(self.films), step)
+    def some(self, most: int) -> HeatedFilms:
+        """Give so many of them at most, the first and the last as well."""
+        kept = thinned(len(self.films), most)
         return replace(
             self,
             rho1=self.rho1[kept],
@@ -196,9 +196,9 @@ def _none_at(rho1: float, why: str) -> SolverError:
     return SolverError(f"no film with heat at rho1 = {1e3 * rho1:.3f} mm: {why}")
 
 
-def thinned(count: int, step: int) -> Integers:
-    """Numbers of every so many of some, the last as well."""
-    return np.unique(np.append(np.arange(0, count, step), count - 1))
+def thinned(count: int, most: int) -> Integers:
+    """Numbers of so many of some at most, evenly, the first and the last as well."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
 
 
 def _taken(values: tuple[T, ...], kept: Integers) -> tuple[T, ...]:

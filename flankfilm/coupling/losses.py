@@ -24,10 +24,10 @@ POSITIONS = 40
 """Positions of a base pitch at which films are solved."""
 
 FINER = 8
-"""Times as many positions show what those leave out."""
+"""Times as many positions that means are taken over, friction and rolling being carried between the films."""
 
-FEW = 8
-"""Of so many films one is solved where a part of them does: for first values, and at the ends of the band."""
+FEW = 9
+"""Films that first values are found from, and the losses at either end of the band."""
 
 BAND = (5e6, 10e6)
 """Eyring's stress of most oils [Pa]."""
@@ -225,17 +225,13 @@ class _Run:
         """Solve everything."""
         watch = Stopwatch()
         first = self._agree(FEW, FIRST_FRICTION, bulk)
-        agreed = self._agree(1, first.means.friction, first.bulk)
+        agreed = self._agree(None, first.means.friction, first.bulk)
         band = self._band(agreed)
-        finer = self._means(self._cycle(agreed.means.friction, FINER * self.positions), agreed.films)
-        left_out = (
-            abs(finer.sliding_loss / agreed.means.sliding_loss - 1.0) if agreed.means.sliding_loss else 0.0
-        )
         path, means = losses_along(self.teeth.pair, agreed.films, agreed.bulk), agreed.means
-        by_films = (
-            np.average(path.friction_error, weights=path.sliding_loss) if path.sliding_loss.any() else 0.0
-        )
-        nodes = max(film.cost.unknowns for film in agreed.films.films)
+        sampled = self._means(self._cycle(means.friction, self.positions), agreed.films)
+        left_out = abs(sampled.mesh_loss / means.mesh_loss - 1.0) if means.mesh_loss else 0.0
+        lost = path.sliding_loss
+        by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
         return MeshLosses(
             cycle=agreed.cycle,
             path=path,
@@ -255,7 +251,7 @@ class _Run:
             share_mismatch=agreed.shares,
             temperature_mismatch=agreed.warmer,
             error=float(by_films) + left_out + agreed.shares,
-            cost=Cost(watch.seconds, nodes, parts={}),
+            cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
         )
 
     @property
@@ -266,37 +262,37 @@ class _Run:
         flanks = replace(self.teeth.flanks, friction=friction)
         return replace(self.teeth, flanks=flanks).cycle(positions)
 
-    def _means(self, cycle: MeshCycle, films: HeatedFilms, carried: Carried | None = None) -> Means:
-        return means_of(self.teeth.pair, cycle, self.speed, self._power, carried or Carried.of(films))
+    def _means(self, cycle: MeshCycle, films: HeatedFilms, ratios: Carried | None = None) -> Means:
+        return means_of(self.teeth.pair, cycle, self.speed, self._power, Carried.of(films, ratios))
 
-    def _agree(self, step: int, friction: float, bulk: tuple[float, float]) -> _Agreed:
-        """Iterate films, load share and temperatures, with every so many of the films."""
-        shares, warmer, rounds = np.inf, np.inf, 0
-        cycle, films = self._cycle(friction, self.positions), None
-        balance = _Balance()
-        while shares > self.agreement or warmer > WARMER:
+    def _agree(self, most: int | None, friction: float, bulk: tuple[float, float]) -> _Agreed:
+        """Iterate films, load share and temperatures, with so many films at most."""
+        balance, films, rounds = _Balance(), None, 0
+        cycle = self._cycle(friction, self.positions)
+        while True:
+            rounds += 1
+            films = self._films(cycle, most, bulk, films)
+            means = self._means(cycle, films)
+            before, cycle = cycle, self._cycle(means.friction, self.positions)
+            shares = float(np.nanmax(np.abs(cycle.load_share - before.load_share)))
+            finer = self._cycle(means.friction, FINER * self.positions)
+            means = self._means(finer, films)
+            asked = bulk if self.transfer is None else self._balanced(means)
+            warmer = float(np.max(np.abs(np.subtract(asked, bulk))))
+            if shares <= self.agreement and warmer <= WARMER:
+                return _Agreed(films, finer, bulk, means, rounds, shares, warmer)
             if rounds == MOST_ROUNDS:
                 raise SolverError(
                     f"losses and bulk temperatures did not agree within {MOST_ROUNDS} rounds (temperatures still "
                     f"change by {warmer:.2g} K, forces by {shares:.1e} of the whole): give bulk_temperatures"
                 )
-            rounds += 1
-            films = self._films(cycle, step, bulk, films)
-            means = self._means(cycle, films)
-            before, cycle = cycle, self._cycle(means.friction, self.positions)
-            shares = float(np.nanmax(np.abs(cycle.load_share - before.load_share)))
-            means = self._means(cycle, films)
-            warm = bulk if self.transfer is None else balance.next(bulk, self._balanced(means))
-            warmer, used = float(np.max(np.abs(np.subtract(warm, bulk)))), bulk
-            bulk = warm
-        assert films is not None
-        return _Agreed(films, cycle, used if step == 1 else bulk, means, rounds, shares, warmer)
+            bulk = bulk if self.transfer is None else balance.next(bulk, asked)
 
     def _films(
-        self, cycle: MeshCycle, step: int, bulk: tuple[float, float], before: HeatedFilms | None
+        self, cycle: MeshCycle, most: int | None, bulk: tuple[float, float], before: HeatedFilms | None
     ) -> HeatedFilms:
         rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant)
-        kept = thinned(len(contacts), step)
+        kept = thinned(len(contacts), most or len(contacts))
         same = before is not None and before.rho1.size == kept.size
         return heated_films(
             rho1[kept], [contacts[k] for k in kept.tolist()], self.oil, bulk, before if same else None
@@ -315,18 +311,16 @@ class _Run:
 
     def _band(self, agreed: _Agreed) -> LossBand:
         """Losses at the ends of the band of Eyring's stress, by the ratios of some films."""
-        some = agreed.films.every(FEW)
+        some = agreed.films.some(FEW)
         found, off = [], [0.0]
         for stress in BAND:
             ratios = self._ratios(some, stress, agreed.bulk)
-            coarser = ratios.every(2)
-            values = [
-                self._means(agreed.cycle, agreed.films, Carried.of(agreed.films, one))
-                for one in (ratios, coarser)
-            ]
-            found.append(values[0])
-            if values[0].mesh_loss:
-                off.append(abs(values[1].mesh_loss / values[0].mesh_loss - 1.0))
+            means, coarser = (
+                self._means(agreed.cycle, agreed.films, one) for one in (ratios, ratios.some((FEW + 1) // 2))
+            )
+            found.append(means)
+            if means.mesh_loss:
+                off.append(abs(coarser.mesh_loss / means.mesh_loss - 1.0))
         return _band(found, max(off), self._power)
 
     def _ratios(self, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:

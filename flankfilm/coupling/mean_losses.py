@@ -61,9 +61,9 @@ class Carried:
             first_part=np.ones(self.rho1.size),
         )
 
-    def every(self, step: int) -> Carried:
-        """Give every so many places, the last as well."""
-        kept = thinned(self.rho1.size, step)
+    def some(self, most: int) -> Carried:
+        """Give so many places at most, the first and the last as well."""
+        kept = thinned(self.rho1.size, most)
         return Carried(self.rho1[kept], self.friction[kept], self.rolling[kept], self.first_part[kept])
 
     def at(self, rho1: Array) -> Carried:

@@ -93,9 +93,10 @@ def test_values_are_carried_along_the_path():
     assert given.over(given).friction == pytest.approx(1.0)
     nothing = Carried(rho1, np.zeros(5), np.zeros(5), np.full(5, 0.5))
     assert nothing.over(nothing).rolling == pytest.approx(1.0)
-    assert given.every(3).rho1 == pytest.approx([8e-3, 14e-3, 16e-3])
+    assert given.some(3).rho1 == pytest.approx([8e-3, 12e-3, 16e-3])
 
 
-def test_the_last_is_kept():
-    assert thinned(9, 4).tolist() == [0, 4, 8]
-    assert thinned(10, 4).tolist() == [0, 4, 8, 9]
+def test_the_first_and_the_last_are_kept():
+    assert thinned(9, 3).tolist() == [0, 4, 8]
+    assert thinned(10, 4).tolist() == [0, 3, 6, 9]
+    assert thinned(2, 9).tolist() == [0, 1]
