@@ -10,11 +10,12 @@ import numpy as np
 
 import ehl
 import gears
-from base import Array, Cost, Faults, Limit, SolverError, Stopwatch, unclocked
+from base import Array, Cost, Faults, SolverError, Stopwatch, unclocked
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
-from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth, TeethOptions
+from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.losses_along_path import losses_along
+from flankfilm.coupling.losses_faults import TEMPERATURE, check_bodies, check_numbers, check_temperatures
 from flankfilm.coupling.losses_record import LossBand, MeshLosses
 from flankfilm.coupling.mean_losses import Carried, Means, means_of
 from flankfilm.coupling.mesh_cycles import resolved
@@ -38,12 +39,6 @@ MOST_ROUNDS = 12
 
 WARMER = 0.5
 """Change of bulk temperatures that is left where they are balanced [K]."""
-
-BALANCE = Limit.above(
-    0.0, 1e6, "W/K", "heat transfer coefficient times area of a gear; 1 to 100 W/K are usual"
-)
-TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
-BOUNDARY = Limit(0.0, 0.5, remedy="0.08 to 0.15 is usual")
 
 
 def mesh_losses(
@@ -121,9 +116,10 @@ def mesh_losses(
     True
     """
     loaded = LoadedTeeth(pair, torque, **teeth)
-    given = _checked(loaded, lubricant, solids, bulk_temperatures, heat_transfer, ambient_temperature)
-    _check_numbers(given, boundary_friction, positions, roughness)
-    given.raise_if_any()
+    with Faults() as found:
+        check_bodies(found, loaded, lubricant, solids)
+        check_temperatures(found, bulk_temperatures, heat_transfer, ambient_temperature)
+        check_numbers(found, boundary_friction, positions, roughness)
     with warned_once():
         loaded, _ = resolved(loaded, tolerance, speed=speed)
         with unclocked():
@@ -140,59 +136,6 @@ def mesh_losses(
             at_rest if ambient_temperature is None else ambient_temperature,
         )
         return run.solved(bulk_temperatures or (at_rest, at_rest))
-
-
-def _checked(
-    teeth: LoadedTeeth,
-    lubricant: ehl.Lubricant,
-    solids: tuple[ehl.Solid, ehl.Solid],
-    bulk: tuple[float, float] | None,
-    transfer: tuple[float, float] | None,
-    ambient: float | None,
-) -> Faults:
-    """Note faults of what the oil and the bodies do with heat."""
-    found = Faults()
-    if lubricant.eyring_stress is None:
-        remedy = "5e6 to 1e7 Pa is usual: a Newtonian oil's friction and heat have no bound at the pressures of gears"
-        found.add("lubricant.eyring_stress", None, "must be given for losses", remedy)
-    for name, body, material in zip(("pinion", "wheel"), solids, teeth.pair.materials, strict=True):
-        if material.youngs_modulus < COMPLIANT and body is ehl.STEEL:
-            given = f"those of steel, of a {name} of {1e-9 * material.youngs_modulus:.3g} GPa"
-            found.add(
-                "solids",
-                given,
-                "must be the gear's own",
-                "give ehl.Solid(conductivity, density, heat_capacity)",
-            )
-    if teeth.flanks.friction:
-        found.add(
-            "flanks.friction", teeth.flanks.friction, "must be left out: it is found here", "leave it out"
-        )
-    if bulk is not None and transfer is not None:
-        remedy = "give one of them"
-        found.add("bulk_temperatures", bulk, "must be left out beside heat_transfer", remedy)
-    if transfer is None and ambient is not None:
-        found.add("ambient_temperature", ambient, "must be left out without heat_transfer", "give both")
-    if transfer is not None and ambient is None:
-        found.add(
-            "ambient_temperature", ambient, "must be given beside heat_transfer", "in K; 293.15 is 20 degC"
-        )
-    elif ambient is not None:
-        found.number("ambient_temperature", ambient, TEMPERATURE)
-    for where, two, limit in (("bulk_temperatures", bulk, TEMPERATURE), ("heat_transfer", transfer, BALANCE)):
-        if two is not None and np.shape(two) != (2,):
-            found.add(where, two, "must be two numbers", "give pinion and wheel")
-        elif two is not None:
-            for value in two:
-                found.number(where, value, limit)
-    return found
-
-
-def _check_numbers(found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None) -> None:
-    found.number("boundary_friction", boundary, BOUNDARY)
-    found.number("positions", positions, Limit(2, whole=True))
-    if roughness is not None and not isinstance(roughness, ehl.Roughness):
-        found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
 
 
 @dataclass(frozen=True)

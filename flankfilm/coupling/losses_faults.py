@@ -1,0 +1,67 @@
+"""Faults of what losses of a mesh are asked from."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import ehl
+from base import Faults, Limit
+from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth
+
+BALANCE = Limit.above(0.0, 1e6, "W/K", "heat transfer coefficient times area; 1 to 100 W/K are usual")
+TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
+BOUNDARY = Limit(0.0, 0.5, remedy="0.08 to 0.15 is usual")
+POSITIONS = Limit(2, whole=True)
+
+
+def check_bodies(
+    found: Faults, teeth: LoadedTeeth, lubricant: ehl.Lubricant, solids: tuple[ehl.Solid, ehl.Solid]
+) -> None:
+    """Note what is missing of the oil and the bodies, and friction that is given where it is sought."""
+    if lubricant.eyring_stress is None:
+        remedy = "5e6 to 1e7 Pa is usual: a Newtonian oil's friction and heat have no bound at the pressures of gears"
+        found.add("lubricant.eyring_stress", None, "must be given for losses", remedy)
+    if teeth.flanks.friction:
+        found.add("flanks.friction", teeth.flanks.friction, "must be 0: it is found here", "leave it out")
+    remedy = "give ehl.Solid(conductivity, density, heat_capacity) of pinion and wheel"
+    if len(solids) != 2 or not all(isinstance(one, ehl.Solid) for one in solids):
+        found.add("solids", solids, "must be two of ehl.Solid", remedy)
+        return
+    for name, body, material in zip(("pinion", "wheel"), solids, teeth.pair.materials, strict=True):
+        if material.youngs_modulus < COMPLIANT and body == ehl.STEEL:
+            given = f"steel, of a {name} of {1e-9 * material.youngs_modulus:.3g} GPa"
+            found.add("solids", given, "must be the gear's own", remedy)
+
+
+def check_temperatures(
+    found: Faults,
+    bulk: tuple[float, float] | None,
+    transfer: tuple[float, float] | None,
+    ambient: float | None,
+) -> None:
+    """Note temperatures and heat transfer that are out of bounds or do not go together."""
+    for where, two, limit in (("bulk_temperatures", bulk, TEMPERATURE), ("heat_transfer", transfer, BALANCE)):
+        if two is None:
+            continue
+        if np.shape(two) != (2,):
+            found.add(where, two, "must be two numbers", "give pinion and wheel")
+            continue
+        for value in two:
+            found.number(where, value, limit)
+    if ambient is not None:
+        found.number("ambient_temperature", ambient, TEMPERATURE)
+    if bulk is not None and transfer is not None:
+        found.add("bulk_temperatures", bulk, "must be left out beside heat_transfer", "give one of them")
+    if (ambient is None) != (transfer is None):
+        given, missing = "ambient_temperature", "heat_transfer"
+        if ambient is None:
+            given, missing = missing, given
+        found.add(missing, None, f"must be given beside {given}", "give both, or neither")
+
+
+def check_numbers(found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None) -> None:
+    """Note faults of the rest."""
+    found.number("boundary_friction", boundary, BOUNDARY)
+    found.number("positions", positions, POSITIONS)
+    if roughness is not None and not isinstance(roughness, ehl.Roughness):
+        found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
