@@ -37,3 +37,5 @@ from .supply import OilLayer as OilLayer
 from .thermal import Losses as Losses
 from .thermal import ThermalFilm as ThermalFilm
 from .thermal import solve_thermal as solve_thermal
+from .transient import TransientFilm as TransientFilm
+from .transient import solve_transient as solve_transient

@@ -223,11 +223,8 @@ class _Linear:
         scale = system[:-1, -1]
         storage = Storage.of(grid, groups, found.P, found.H)
         seconds = groups.length / level.contact.entrainment
-        rows = storage.by_gap[free, None] * influence[np.ix_(free, free)]
-        rows[np.arange(free.size), np.arange(free.size)] += storage.by_pressure[free]
         stored = np.zeros((free.size + 1, free.size + 1))
-        stored[:-1, :-1] = scale[:, None] * rows * seconds
-        stored[:-1, -1] = scale * storage.by_gap[free] * seconds
+        stored[:-1] = seconds * scale[:, None] * storage.rows(influence, free)
         after = level.groups.on(heavier, moved)
         content = Content.of(grid, groups, found.P, found.H0)
         swept = by_parameter(content, Content.of(moved, after, found.P, found.H0), STEP)

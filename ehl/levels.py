@@ -139,10 +139,10 @@ def _cold_start(contact: LineContact, grid: Grid, H_c: float) -> tuple[Array, fl
     P = np.sqrt(np.maximum(0.0, 1.0 - grid.nodes**2))
     P[0] = P[-1] = 0.0
     P *= 0.5 * math.pi / float(grid.weights @ P)
-    return P, _open(grid, groups, P, H_c / grid.ratio**2)
+    return P, open_gap(grid, groups, P, H_c / grid.ratio**2)
 
 
-def _open(grid: Grid, groups: Groups, P: Array, centre: float) -> float:
+def open_gap(grid: Grid, groups: Groups, P: Array, centre: float) -> float:
     """Rigid separation that leaves a gap at the centre, more of it where the gap would close elsewhere."""
     H0 = centre - centre_gap(grid, groups, P, 0.0)
     lowest = float(film_gap(grid, groups, P, H0).min())
@@ -166,7 +166,7 @@ def transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[
     growth = moes_central(contact) / moes_central(old.contact)
     if plan.fixed and old.plan.fixed and plan.domain != old.plan.domain:
         growth *= (plan.H_c / old.plan.H_c) / (growth * groups_old.gap / groups.gap)
-    return P, _open(grid, groups, P, centre * (groups_old.gap / groups.gap * growth))
+    return P, open_gap(grid, groups, P, centre * (groups_old.gap / groups.gap * growth))
 
 
 def cold(contact: LineContact, plan: Plan, grid: Grid, H_c: float) -> Level:

@@ -11,6 +11,7 @@ from scipy.linalg.lapack import dgesv, dgetrs
 from base import Array, Integers
 from ehl.discrete import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.grid import face_weights
+from ehl.squeeze import Squeeze
 
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
@@ -55,12 +56,12 @@ class Iteration:
     factors: Factors | None  # None where the last step could not be computed
 
 
-def _flux_error(flux: Array, free: Integers) -> tuple[float, float]:
-    """Mean flux through the faces of the film and its largest relative deviation."""
+def _flux_error(flux: Array, imbalance: Array, free: Integers) -> tuple[float, float]:
+    """Mean flux through the faces of the film and the largest net flux into a node over it."""
     inside = flux[free[0] - 1 : free[-1] + 1]
     mean = float(np.mean(inside[inside.size // 2 :]))
     with np.errstate(invalid="ignore"):  # steps that diverged leave infinite fluxes
-        return mean, float(np.max(np.abs(np.diff(flux)[free - 1])) / abs(mean))
+        return mean, float(np.max(np.abs(imbalance[free - 1])) / abs(mean))
 
 
 def newton(
@@ -75,6 +76,7 @@ def newton(
     max_iterations: int = 60,
     oil: Oil | None = None,
     done: float = _STEP_DONE,
+    squeeze: Squeeze | None = None,
 ) -> Iteration:
     """Solve Reynolds' equation, the gap and the load balance together.
 
@@ -101,6 +103,8 @@ def newton(
         part of the matrix, so that the last steps shrink by a factor each.
     done : float
         Step after which the stage ends.
+    squeeze : Squeeze, optional
+        What the film's change in time adds to the net fluxes; steady unless given.
     """
     from ehl.kernels import newton_matrix
 
@@ -123,11 +127,17 @@ def newton(
         fluid = None if oil is None else oil.at(P, H)
         flux, slopes = fluxes(grid, groups, P, H, faces, fluid)
         imbalance = np.diff(flux)
+        if squeeze is not None:
+            swept, by = squeeze.swept(P, H)
+            slopes = slopes + by
+            imbalance += np.diff(swept) - squeeze.stored(P, H)[1:-1]
         joins = ~inside[1:-1] & (imbalance > 0.0)
         inside[1:-1] |= joins
         free = np.flatnonzero(inside)
         system = newton_matrix(slopes, influence, grid.weights, free)
         scale = system[:-1, -1].copy()
+        if squeeze is not None:
+            system[:-1, :-1] -= scale[:, None] * squeeze.rows(P, H, influence, free)
         right = np.append(-scale * imbalance[free - 1], load - grid.weights @ P)
         lu, pivots, step, info = dgesv(system[:, :-1], right, overwrite_a=True, overwrite_b=True)
         if info != 0 or not np.isfinite(step).all():
@@ -158,7 +168,10 @@ def newton(
             H0 += closed
             H = H + closed
     flux, _ = fluxes(grid, groups, P, H, faces, None if oil is None else oil.at(P, H))
-    mean, flux_error = _flux_error(flux, np.flatnonzero(inside))
+    imbalance = np.diff(flux)
+    if squeeze is not None:
+        imbalance += np.diff(squeeze.swept(P, H)[0]) - squeeze.stored(P, H)[1:-1]
+    mean, flux_error = _flux_error(flux, imbalance, np.flatnonzero(inside))
     return Iteration(
         P=P,
         H=H,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from base import Array
+from base import Array, Integers
 from ehl.discrete import Grid, Groups, film_gap, inlet_pressure
 
 
@@ -56,3 +56,48 @@ class Storage:
         """Differentiate."""
         density, slope = groups.lubricant.density_ratio(groups.pressure * P)
         return cls(grid.weights * slope * groups.pressure * H, grid.weights * density)
+
+    def rows(self, influence: Array, free: Integers) -> Array:
+        """Derivatives of the free nodes' contents by the free pressures and H0 (k, k + 1)."""
+        out = np.empty((free.size, free.size + 1))
+        out[:, :-1] = self.by_gap[free, None] * influence[np.ix_(free, free)]
+        out[np.arange(free.size), np.arange(free.size)] += self.by_pressure[free]
+        out[:, -1] = self.by_gap[free]
+        return out
+
+
+@dataclass(frozen=True)
+class Squeeze:
+    """What the contents' change in one step of time adds to the net flux into each node's volume.
+
+    A formula backwards in time makes the change of a content (rate C - past)/(gap u) and that of the middles' places
+    their velocity, so that a film that stays as it is stays whole however the nodes move.
+    """
+
+    grid: Grid
+    groups: Groups
+    rate: float  # of the content now [1/s]
+    past: Array  # what former contents leave of the change, likewise (n,) [m2/s]
+    velocity: Array  # of the middles over u (n-1,)
+    speed: float  # u [m/s]
+
+    def swept(self, P: Array, H: Array) -> tuple[Array, Array]:
+        """Flux that moving middles sweep, and its derivatives by P and H of the nodes on either side (n-1, 6)."""
+        density, slope = self.groups.lubricant.density_ratio(self.groups.pressure * P)
+        film, half = density * H, 0.5 * self.velocity
+        by_pressure = slope * self.groups.pressure * H
+        slopes = np.zeros((half.size, 6))
+        slopes[:, 1], slopes[:, 2] = half * by_pressure[:-1], half * by_pressure[1:]
+        slopes[:, 4], slopes[:, 5] = half * density[:-1], half * density[1:]
+        return half * (film[:-1] + film[1:]), slopes
+
+    def stored(self, P: Array, H: Array) -> Array:
+        """Change of each content, as a net flux (n,)."""
+        content = Content.under(self.grid, self.groups, P, H).oil
+        change: Array = (self.rate * content - self.past) / (self.groups.gap * self.speed)
+        return change
+
+    def rows(self, P: Array, H: Array, influence: Array, free: Integers) -> Array:
+        """Derivatives of the free nodes' changes by the free pressures and H0 (k, k + 1)."""
+        by = Storage.of(self.grid, self.groups, P, H).rows(influence, free)
+        return self.rate * self.groups.length / self.speed * by
