@@ -27,6 +27,7 @@ _MOST_NODES = 513
 _ROUNDS = 6
 _TIME_SHARE = 0.4  # of the tolerance, for the steps of time
 _STEPS = 25.0  # of time in one transit, at first
+_FIRST_ALLOWED = 2e-5  # local error of a step at first, whatever the tolerance
 _LIMITS = {"tolerance": Limit.above(0.0, 0.2, remedy="0.01 is 1 %")}
 _NODES = (32, 4097, "129 is usual; leave it out to let the tolerance decide")
 _STEP = Limit.above(0.0, 1e6, "s", "leave it out to let the tolerance decide")
@@ -168,7 +169,7 @@ class _Run:
     ) -> None:
         self.contact_at, self.times, self.tolerance = contact_at, times, tolerance
         self.step, self.supply, self.watch = step, supply, watch
-        self.allowed = _TIME_SHARE * tolerance / _STEPS
+        self.allowed = max(_TIME_SHARE * tolerance / _STEPS, _FIRST_ALLOWED)
         self.iterations = self.nodes = self.rejected = 0
 
     def solved(self, nodes: int | None) -> TransientFilm:
@@ -184,15 +185,15 @@ class _Run:
                 reason = pair
                 continue
             grid, steps = _grid_error(*pair) + first.errors.inlet, pair[0].error
-            reason = f"error {grid + steps:.2g} left on {n} nodes"
+            reason = f"error {grid + steps:.2g} left on {n} nodes with {len(pair[0].shots) - 1} steps of time"
             if nodes is not None or self.step is not None or grid + steps <= self.tolerance:
                 return self.film(pair, grid, steps)
             if steps > _TIME_SHARE * self.tolerance:
                 self.allowed *= 0.7 * (_TIME_SHARE * self.tolerance / steps) ** 1.5
-            if grid > (1.0 - _TIME_SHARE) * self.tolerance:
-                if 2 * n - 1 > _MOST_NODES:
-                    break
-                n = 2 * n - 1
+            while grid > (1.0 - _TIME_SHARE) * self.tolerance and n <= _MOST_NODES:
+                n, grid = 2 * n - 1, 0.3 * grid  # of second order, with a margin
+            if n > _MOST_NODES:
+                break
         return self.failed(first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly")
 
     def pair(self, first: Film) -> tuple[Course, Course] | str:
