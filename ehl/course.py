@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,19 +14,21 @@ from ehl.levels import Figures, Level
 from ehl.stepping import Laying, Moment, advance, extrapolated, steady
 
 FIRST = 1e-3
-"""First step, and the shortest [b/u]."""
+"""First step, and the shortest, in the time in which oil goes the film's scale."""
 
 LONGEST = 0.5
-"""Longest step [b/u]."""
+"""Longest step, likewise."""
 
 JUMP = 0.2
 """Change of ln(load) in a shortest step that is no ramp but a jump."""
 
 MOST_STEPS = 20000
 
+BREAKS = "under a load that falls faster than the bodies part the oil breaks, which is not computed"
+
 _GROWTH = 1.6
 _SAFETY = 0.85
-_TRANSIT = 2.0  # b/u after which what a step did wrong has left the contact
+_TRANSIT = 2.0  # times it, after which what a step did wrong has left the contact
 
 
 class JumpError(Exception):
@@ -38,6 +40,7 @@ class Shot:
     """What is kept of one moment."""
 
     time: float
+    unit: float  # time in which oil goes once the film's scale [s]
     contact: LineContact
     figures: Figures
     x: Array
@@ -51,7 +54,8 @@ class Shot:
         level = moment.level
         x = level.grid.nodes * level.groups.length
         found = level.found
-        return cls(moment.time, level.contact, moment.figures, x, moment.pressure, moment.film, found.flux_error)
+        curves = (x, moment.pressure, moment.film)
+        return cls(moment.time, moment.unit, level.contact, moment.figures, *curves, found.flux_error)
 
 
 @dataclass
@@ -82,16 +86,17 @@ class Course:
     message: str = ""
 
     @classmethod
-    def begin(cls, time: float, level: Level, contact_at: Callable[[float], LineContact], laying: Laying) -> Course:
+    def begin(
+        cls, time: float, level: Level, contact_at: Callable[[float], LineContact], laying: Laying
+    ) -> Course:
         """Begin with the steady film of a level."""
         first = steady(time, level)
         return cls(contact_at, laying, [first], [Shot.of(first)], [0.0])
 
     @property
     def unit(self) -> float:
-        """b/u now [s]."""
-        contact = self.moments[-1].level.contact
-        return contact.half_width / contact.entrainment
+        """Time in which oil goes once the film's scale, b of loaded contacts, now [s]."""
+        return self.moments[-1].unit
 
     def try_step(self, time: float) -> Moment | None:
         """Solve the film at a later time."""
@@ -101,9 +106,7 @@ class Course:
 
     def take(self, moment: Moment, error: float) -> None:
         """Go on from a moment."""
-        last = self.moments[-1]
         self.moments = [*self.moments[-2:], moment]
-        del last
         self.shots.append(Shot.of(moment))
         self.errors.append(error)
 
@@ -112,7 +115,7 @@ class Course:
         for time in instants.tolist():
             found = self.try_step(time)
             if found is None:
-                self.message = f"no film was found at t = {time:.6g} s"
+                self.message = f"no film was found at t = {time:.6g} s ({BREAKS})"
                 return False
             self.take(found, self.local_error(found))
         return True
@@ -153,7 +156,9 @@ class Course:
                 factor = 0.4
             self.rejected += 1
             if found is None and not jump and shortest:
-                self.message = f"no film was found at t = {time:.6g} s, {step:.2g} s after the one before"
+                self.message = (
+                    f"no film was found at t = {time:.6g} s, {step:.2g} s after the one before ({BREAKS})"
+                )
                 return 0.0
             if len(self.shots) + self.rejected > MOST_STEPS:
                 self.message = f"more than {MOST_STEPS} steps of time"
@@ -172,15 +177,13 @@ class Course:
         guess = extrapolated(three, new.time, [np.log(one.film) for one in three])
         level = new.level
         at = np.abs(level.grid.nodes) * level.grid.ratio <= 1.0
-        if not at.any():
-            at = level.found.P >= 0.1 * level.found.P.max()
         weights = np.where(at, level.grid.weights, 0.0)
         miss = np.log(new.film) - guess
         lowest = int(np.argmin(level.found.H))
         middle = int(np.argmin(np.abs(level.grid.nodes)))
         profile = math.sqrt(float(weights @ miss**2 / weights.sum()))
         worst = max(profile, abs(float(miss[lowest])), abs(float(miss[middle])))
-        s, s1, s2 = np.diff([*(one.time for one in three), new.time])[::-1].tolist()
+        s, s1, s2 = (float(one) for one in np.diff([*(one.time for one in three), new.time])[::-1])
         r = s / s1
         own = s**3 * (1.0 + r) ** 2 / (6.0 * r * (1.0 + 2.0 * r))
         return worst * own / (own + s * (s + s1) * (s + s1 + s2) / 6.0)
@@ -190,7 +193,7 @@ class Course:
         """Local errors added over the time that oil takes through the contact, at most."""
         times = np.array([one.time for one in self.shots])
         sums = np.cumsum(self.errors)
-        transits = np.array([_TRANSIT * one.contact.half_width / one.contact.entrainment for one in self.shots])
+        transits = _TRANSIT * np.array([one.unit for one in self.shots])
         before = np.interp(times - transits, times, sums, left=0.0)
         return float(np.max(sums - before))
 
@@ -198,7 +201,3 @@ class Course:
     def times(self) -> Array:
         """All instants [s]."""
         return np.array([one.time for one in self.shots])
-
-    def bare(self) -> Course:
-        """Return the course without matrices."""
-        return replace(self, moments=[])

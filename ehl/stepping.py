@@ -34,6 +34,11 @@ class Moment:
         return figures(self.level)
 
     @property
+    def unit(self) -> float:
+        """Time in which oil goes once the film's scale [s]."""
+        return self.level.groups.length / self.level.contact.entrainment
+
+    @property
     def film(self) -> Array:
         """Gap at the nodes [m]."""
         return self.level.found.H * self.level.groups.gap
@@ -123,9 +128,7 @@ def advance(moments: list[Moment], time: float, contact: LineContact, laying: La
         speed=contact.entrainment,
     )
     P, H0 = _start(moments, time, grid, groups)
-    found = newton(
-        grid, groups, P, H0, squeeze=squeeze, max_iterations=_MOST_ITERATIONS, done=_DONE
-    )
+    found = newton(grid, groups, P, H0, squeeze=squeeze, max_iterations=_MOST_ITERATIONS, done=_DONE)
     if not found.converged:
         return None
     level = Level(contact, plan, grid, replace(found, factors=None))
@@ -147,13 +150,13 @@ def _contents(level: Level, squeeze: Squeeze) -> Array | None:
     """Contents at the end of a step: full in the film; behind it what the flow brings less what it takes along.
 
     In the cavity oil goes with u, from the node upstream of a middle that is slower, downstream of one that is faster.
+    Where bodies part so fast that pressure ahead of the film falls to ambient, the bath keeps the gap full.
     """
     found: Iteration = level.found
     grid, groups = level.grid, level.groups
-    inside = np.flatnonzero(found.P > 0.0)
-    end = int(inside[-1])
-    if inside[-1] - inside[0] + 1 != inside.size:
-        return None  # the film breaks ahead of its end
+    end = int(np.flatnonzero(found.P > 0.0)[-1])
+    if not (found.P[int(np.argmax(found.P)) : end] > 0.0).all():
+        return None  # the film breaks behind its greatest pressure
     full = Content.under(grid, groups, found.P, found.H).oil
     flux = fluxes(grid, groups, found.P, found.H, grid.quick)[0] + squeeze.swept(found.P, found.H)[0]
     scale = groups.gap * squeeze.speed

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Cost, Faults, InputError, Limit, Stopwatch, described, part, quantity, record, unclocked
+from base import (
+    Array,
+    Cost,
+    Stopwatch,
+    described,
+    part,
+    quantity,
+    record,
+    unclocked,
+)
 from base.results import ITSELF
-from ehl.contact import LIMITS, LineContact
-from ehl.course import FIRST, Course, JumpError, Shot
+from ehl.contact import LineContact
+from ehl.course import Course, JumpError, Shot
 from ehl.film import Film, unsolved
 from ehl.outcome import GRID_FACTOR
+from ehl.over_time import OverTime, at_time, checked, jump_fault
 from ehl.solver import solve
 from ehl.stepping import Laying
 from ehl.supply import Meniscus
-
-OverTime = Callable[[float], float] | ArrayLike
-"""A quantity over time: a function of seconds, or values at the times, between which it is linear."""
 
 _FIRST_NODES = 129
 _MOST_NODES = 513
@@ -28,9 +34,6 @@ _ROUNDS = 6
 _TIME_SHARE = 0.4  # of the tolerance, for the steps of time
 _STEPS = 25.0  # of time in one transit, at first
 _FIRST_ALLOWED = 2e-5  # local error of a step at first, whatever the tolerance
-_LIMITS = {"tolerance": Limit.above(0.0, 0.2, remedy="0.01 is 1 %")}
-_NODES = (32, 4097, "129 is usual; leave it out to let the tolerance decide")
-_STEP = Limit.above(0.0, 1e6, "s", "leave it out to let the tolerance decide")
 
 
 @record
@@ -40,14 +43,20 @@ class TransientFilm:
     headline = ("lowest", "lowest_time")
 
     contact: LineContact = part("the contact at the first time")
-    time: Array = quantity("s", "times", "time")
-    load: Array = quantity("N/m", "load", "time")
+    time: Array = quantity("s", "time", "time")
+    load: Array = quantity("N/m", "load", "time", shown="N/mm")
     least: Array = quantity("m", "least film thickness", "time", shown="um", error="error")
     central: Array = quantity("m", "film thickness at x = 0", "time", shown="um", error="error")
     separation: Array = quantity(
-        "m", "film separation: approach of the dry contact less that with the film", "time", shown="um", error="error"
+        "m",
+        "film separation: approach of the dry contact less that with the film",
+        "time",
+        shown="um",
+        error="error",
     )
-    greatest_pressure: Array = quantity("Pa", "greatest pressure", "time", shown="GPa", error="pressure_error")
+    greatest_pressure: Array = quantity(
+        "Pa", "greatest pressure", "time", shown="GPa", error="pressure_error"
+    )
     x: Array = quantity("m", "places, which follow the contact", "time node", shown="um")
     pressure: Array = quantity("Pa", "pressure", "time node", shown="GPa")
     thickness: Array = quantity("m", "film thickness", "time node", shown="um")
@@ -61,11 +70,17 @@ class TransientFilm:
         "1", "greatest change of central and least film and separation between two grids", no_error=ITSELF
     )
     time_error: float = unsolved(
-        "1", "local errors of the steps of time, added over the time that oil takes through the contact", no_error=ITSELF
+        "1",
+        "local errors of the steps of time, added over the time that oil takes through the contact",
+        no_error=ITSELF,
     )
-    pressure_error: float = unsolved("1", "greatest change of the greatest pressure between two grids", no_error=ITSELF)
+    pressure_error: float = unsolved(
+        "1", "greatest change of the greatest pressure between two grids", no_error=ITSELF
+    )
     balance: float = unsolved(
-        "1", "greatest net flux into a node, its change of content counted, over the flux, of all steps", no_error=ITSELF
+        "1",
+        "greatest net flux into a node, its change of content counted, over the flux, of all steps",
+        no_error=ITSELF,
     )
 
     @described("1", no_error=ITSELF)
@@ -138,21 +153,21 @@ def solve_transient(
     >>> unit = contact.half_width / contact.entrainment
     >>> film = solve_transient(contact, lambda t: 1e5 * (1 + 0.2 * min(t / unit, 1)), [0, unit, 4 * unit], nodes=65)
     >>> film.converged, [f"{1e6 * h:.2f}" for h in film.least]
-    []
+    (True, ['0.45', '0.44', '0.44'])
     """
-    functions, times = _checked(contact, load, time, entrainment, radius, tolerance, nodes, step, supply)
+    functions, times = checked(contact, load, time, entrainment, radius, tolerance, nodes, step, supply)
     with unclocked():
         import ehl.kernels  # noqa: F401  numba
     watch = Stopwatch()
 
     def contact_at(at: float) -> LineContact:
-        return _at(contact, functions, at)
+        return at_time(contact, functions, at)
 
     run = _Run(contact_at, times, tolerance, step, supply, watch)
     try:
         return run.solved(nodes)
     except JumpError as jump:
-        raise _jumps(contact_at, float(jump.args[0])) from None
+        raise jump_fault(contact_at, float(jump.args[0])) from None
 
 
 class _Run:
@@ -194,7 +209,9 @@ class _Run:
                 n, grid = 2 * n - 1, 0.3 * grid  # of second order, with a margin
             if n > _MOST_NODES:
                 break
-        return self.failed(first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly")
+        return self.failed(
+            first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly"
+        )
 
     def pair(self, first: Film) -> tuple[Course, Course] | str:
         """Follow the film on the coarser grid, and on the finer one through the same instants."""
@@ -230,7 +247,7 @@ class _Run:
 
     def film(self, pair: tuple[Course, Course], grid: float, steps: float) -> TransientFilm:
         """Return the film in SI."""
-        coarse, fine = pair
+        fine = pair[1]
         shown = [_shot(fine, at) for at in self.times.tolist()]
         lowest = min(fine.shots, key=lambda shot: shot.figures.minimum_thickness)
         tops = [np.array([shot.pressure.max() for shot in one.shots]) for one in pair]
@@ -262,7 +279,19 @@ class _Run:
         curves = np.full((self.times.size, first.x.size), math.nan)
         load = np.array([self.contact_at(at).load for at in self.times.tolist()])
         return TransientFilm(
-            first.contact, self.times, load, *4 * [blank], *3 * [curves], self.cost(0), False, reason
+            contact=first.contact,
+            time=self.times,
+            load=load,
+            least=blank,
+            central=blank,
+            separation=blank,
+            greatest_pressure=blank,
+            x=curves,
+            pressure=curves,
+            thickness=curves,
+            cost=self.cost(0),
+            converged=False,
+            message=reason,
         )
 
 
@@ -279,98 +308,3 @@ def _grid_error(coarse: Course, fine: Course) -> float:
 def _shot(course: Course, time: float) -> Shot:
     """Shot of one of the times."""
     return course.shots[int(np.argmin(np.abs(course.times - time)))]
-
-
-Functions = dict[str, Callable[[float], float]]
-
-
-def _at(contact: LineContact, functions: Functions, time: float) -> LineContact:
-    """Contact at a time; faults name the time."""
-    values = {name: float(function(time)) for name, function in functions.items()}
-    try:
-        return replace(contact, **values)
-    except InputError as fault:
-        faults = [replace(one, where=f"{one.where} at t = {time:.6g} s") for one in fault.faults]
-        raise InputError(faults) from None
-
-
-def _checked(
-    contact: object,
-    load: object,
-    time: object,
-    entrainment: object,
-    radius: object,
-    tolerance: object,
-    nodes: object,
-    step: object,
-    supply: object,
-) -> tuple[Functions, Array]:
-    """Raise every fault of the arguments; return the functions of time and the times."""
-    functions: Functions = {}
-    with Faults() as found:
-        if not isinstance(contact, LineContact):
-            found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
-        found.number("tolerance", tolerance, _LIMITS["tolerance"])
-        if nodes is not None:
-            found.whole("nodes", nodes, *_NODES)
-        if step is not None:
-            found.number("step", step, _STEP)
-        if supply is not None and not isinstance(supply, Meniscus):
-            allowed = "must be None (flooded) or ehl.Meniscus"
-            found.add("supply", supply, allowed, "behind a layer the meniscus moves and stores oil: not computed")
-        times = _times(time, found)
-        given = {"load": load, "entrainment": entrainment, "radius": radius}
-        for name, value in given.items():
-            if value is not None or name == "load":
-                _check_function(name, value, times, functions, found)
-    return functions, times
-
-
-def _times(time: object, found: Faults) -> Array:
-    """Times as an array; two of them where they are faulty."""
-    try:
-        times = np.asarray(time, dtype=float)
-    except (TypeError, ValueError):
-        times = np.zeros(0)
-    if times.ndim == 1 and times.size > 1 and np.isfinite(times).all() and (np.diff(times) > 0.0).all():
-        return times
-    found.add("time", time, "must be two or more increasing times", "give them in s, the first with the steady film")
-    return np.array([0.0, 1.0])
-
-
-def _check_function(name: str, value: object, times: Array, functions: Functions, found: Faults) -> None:
-    """Add the faults of a quantity over time, or its function."""
-    if callable(value):
-        functions[name] = value
-    else:
-        try:
-            values = np.asarray(value, dtype=float)
-        except (TypeError, ValueError):
-            values = np.zeros(0)
-        if values.shape != times.shape:
-            found.add(name, value, "must be a function of time, or one value for each time", "lambda t: 1e5, say")
-            return
-        functions[name] = lambda at: float(np.interp(at, times, values))
-    own = [float(functions[name](at)) for at in times.tolist()]
-    if name == "entrainment" and min(own) <= 0.0 < max(own):
-        allowed = "must stay positive: where it turns round, inlet and outlet change places"
-        found.add(name, min(own), allowed, "solve the time before and the time after by themselves")
-        return
-    for at, one in zip(times.tolist(), own, strict=True):
-        before = len(found.found)
-        found.number(f"{name} at t = {at:.6g} s", one, LIMITS[name])
-        if len(found.found) > before:
-            return
-
-
-def _jumps(contact_at: Callable[[float], LineContact], time: float) -> InputError:
-    """Fault of a load that jumps."""
-    contact = contact_at(time)
-    unit = contact.half_width / contact.entrainment
-    return InputError.at(
-        "load",
-        f"{contact.load:.6g} N/m at t = {time:.6g} s",
-        f"must not jump, as it does within the next {FIRST * unit:.2g} s: in no time no oil leaves the gap, and what would "
-        "carry the jump is a flat punch as wide as the oil reaches",
-        f"ramp it over the time in which load sharing shifts it, b/u = {unit:.2g} s or some tenths of it",
-    )

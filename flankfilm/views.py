@@ -16,6 +16,7 @@ PICTURES: Mapping[str, str] = {
     "ehl.film:Film": "curves",
     "ehl.mixed:MixedFilm": "mixed_film",
     "ehl.frequency:FilmResponse": "film_response",
+    "ehl.transient:TransientFilm": "curves",
     "dynamics.motions:Trajectory": "portrait",
     "dynamics.shooting:Orbit": "orbit",
     "dynamics.branch:Branch": "branch",

@@ -12,7 +12,7 @@ from flankfilm.bench.examples import DOMAIN, contacts_along_path, pitch_point
 from flankfilm.bench.work_cases import work_film
 
 if TYPE_CHECKING:
-    from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer
+    from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer, TransientFilm
 
 
 THICKNESS, STIFFNESS = "central and least film", "film stiffness (approach)"
@@ -50,6 +50,7 @@ def films(quick: bool) -> tuple[Case, ...]:
         film_starved("layer", "layer of half the flooded film", OilLayer(half)),
         film_mixed(),
         film_path(),
+        film_over_time(),
         film_relaxed("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
         film_relaxed("pitch", "pitch point", pitch),
         work_film(),
@@ -202,3 +203,30 @@ def film_path() -> Levels:
 
     series = over((0.02, 0.005, 0.001), percent, along, all_of, name="tolerances")
     return Levels((series,), level("0.05 %", along, all_of, 5e-4))
+
+
+@case("Film under a falling load", "nodes")
+def film_over_time() -> Levels:
+    """Film over time by its tolerance.
+
+    Flooded line contact at the pitch point whose load falls to half along half a cosine within 4 b/u: central and least
+    film at seven times, by steps of time and grids that the tolerance chooses.
+    """
+    from ehl import solve_transient
+
+    contact = pitch_point()
+    unit = contact.half_width / contact.entrainment
+    times = np.linspace(0.0, 12.0, 7) * unit
+
+    def load(time: float) -> float:
+        return contact.load * (0.75 + 0.25 * float(np.cos(np.pi * min(time / (4.0 * unit), 1.0))))
+
+    def followed(tolerance: float) -> TransientFilm:
+        return solve_transient(contact, load, times, tolerance=tolerance)
+
+    def both(found: TransientFilm) -> Answer:
+        values = {"central and least films": value([*found.central, *found.least], found.error)}
+        return answer(found.x.shape[1], values, found)
+
+    series = over((0.02, 0.01, 0.005), percent, followed, both, name="tolerances")
+    return Levels((series,), level("0.25 %", followed, both, 2.5e-3))

@@ -41,6 +41,7 @@ CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
     "TorqueCurves": ("torque", (("secant_stiffness", "stiffness"), ("transmission_error",))),
     "FilmAlongPath": ("rho1", (("central_thickness", "minimum_thickness"), ("hertz_pressure",))),
     "Film": ("x", (("pressure",), ("thickness",))),
+    "TransientFilm": ("time", (("load",), ("central", "least"), ("greatest_pressure",))),
     "PathOfContact": ("rho1", (("rho1", "rho2", "radius"),)),
 }
 """Class of a record to the figure along the axis, and those of each panel."""
@@ -52,6 +53,8 @@ WORDS = {
     "stiffness": "tangent stiffness",
     "rho1": "radius of the pinion's flank",
     "rho2": "radius of the wheel's flank",
+    "central": "central film",
+    "least": "least film",
 }
 """Names of curves that are not their field's."""
 

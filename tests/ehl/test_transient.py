@@ -65,7 +65,9 @@ def test_speed_and_radius_may_change_too():
         nodes=65,
     )
     new = quiet(later, nodes=65)
-    assert film.least[-1] == pytest.approx(new.minimum_thickness, rel=1e-3)  # its plan was laid for another film
+    assert film.least[-1] == pytest.approx(
+        new.minimum_thickness, rel=1e-3
+    )  # its plan was laid for another film
     assert film.central[-1] == pytest.approx(new.central_thickness, rel=1e-3)
 
 
