@@ -12,10 +12,9 @@ from base import Array, Cost, InputError, Stopwatch
 from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, MapPoint, Steps
 from dynamics.crossings import find_crossings
-from dynamics.shooting import floquet_multipliers, is_stable, motion_label
+from dynamics.shooting import is_stable, motion_label
 from dynamics.tracing import Tracer, both_ways, joined
 
-FLAT = np.array([0.0, 0.0, 1.0])  # across which the parameter is held
 LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
 ENDLESS = 1e4  # times its first size: a motion that grows without bound
 
@@ -35,12 +34,12 @@ def follow(
         If Newton's method does not arrive at the start.
     """
     watch = Stopwatch()
-    start = problem.correct(problem.unknowns(state, value), FLAT)
+    start = problem.correct(problem.unknowns(state, value), problem.flat)
     if start is None:
         raise InputError.at(
             "orbit", value, "must be an orbit that can be continued", "at a fold, start beside it"
         )
-    walkers = both_ways(lambda sign: _Walker(problem, start, sign * FLAT, steps, progress))
+    walkers = both_ways(lambda sign: _Walker(problem, start, sign * problem.flat, steps, progress))
     return _joined(walkers, watch)
 
 
@@ -64,9 +63,9 @@ class _Walker(Tracer):
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
         self.progress, self.size = progress, problem.scale
-        self.states = [start.u[:2] * problem.scale]
+        self.states = [start.u[: start.size] * problem.scale]
         self.special: list[SpecialPoint] = []
-        self.tangent, self.bend = start.tangent(along), np.zeros(3)
+        self.tangent, self.bend = start.tangent(along), np.zeros(len(along))
         self.half = self._half(start)
         self.refused = ""
         self.missed: list[float] = []
@@ -74,7 +73,7 @@ class _Walker(Tracer):
 
     def attempt(self, last: MapPoint) -> _Step | None:
         """Next point with what lies before it; at a bound, the point on it."""
-        size = float(np.max(np.abs(last.u[:2])))
+        size = float(np.max(np.abs(last.u[: last.size])))
         if size * self.problem.scale > ENDLESS * self.size:
             self.ended = UNBOUNDED
             return None
@@ -107,19 +106,19 @@ class _Walker(Tracer):
     def _half(self, point: MapPoint) -> Array:
         """From the state to the state half the orbit's period later; 0 if n is odd."""
         if self.problem.periods % 2:
-            return np.zeros(2)
-        return np.asarray(self.problem.half_way(point) - point.u[:2])
+            return np.zeros(point.size)
+        return np.asarray(self.problem.half_way(point) - point.u[: point.size])
 
     def _magnified(self, last: MapPoint, factor: float) -> MapPoint:
         """The point measured by its new size, of which steps and tolerances are shares, if it is found again."""
         larger = self.problem.magnified(factor)
-        again: MapPoint | None = larger.correct(larger.unknowns(self.states[-1], last.value), FLAT)
+        again: MapPoint | None = larger.correct(larger.unknowns(self.states[-1], last.value), larger.flat)
         if again is None:
             return last
         self.problem, self.points[-1] = larger, again
-        shrink = np.array([1.0 / factor, 1.0 / factor, 1.0])
+        shrink = np.append(np.full(last.size, 1.0 / factor), 1.0)
         self.phases = (np.array(self.phases) * shrink).tolist()
-        self.bend = np.zeros(3)
+        self.bend = np.zeros(len(shrink))
         self.half = self.half / factor
         self.tangent = again.tangent(self.tangent * shrink)
         return again
@@ -151,10 +150,10 @@ class _Walker(Tracer):
             self.missed.append(new.value)
         self.special += found.special
         self.points.append(new)
-        self.states.append(new.u[:2] * self.problem.scale)
+        self.states.append(new.u[: new.size] * self.problem.scale)
         self.iterations += new.iterations
         # half the curvature, for the predictor: none from so short a step that the difference is rounding
-        self.bend = 0.5 / length * (found.tangent - self.tangent) if length > 1e-5 else np.zeros(3)
+        self.bend = 0.5 / length * (found.tangent - self.tangent) if length > 1e-5 else 0.0 * found.tangent
         self.tangent, self.half = found.tangent, found.half
         if new.iterations <= 4:
             self.step = min(1.4 * self.step, self.steps.most)
@@ -170,7 +169,7 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
     )
     special = joined([w.special for w in walkers])
     ended = (walkers[0].ended, walkers[-1].ended)
-    pairs = [floquet_multipliers(p.trace, p.determinant) for p in points]
+    pairs = [p.multipliers for p in points]
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
     good = all(reason in GOOD_ENDS for reason in ended) and not missed
@@ -189,7 +188,7 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
         tuple(special),
         ended,
         max((p.error for p in special), default=0.0),
-        Cost(watch.seconds, 3, iterations, problem.maps * problem.periods * iterations),
+        Cost(watch.seconds, problem.size + 1, iterations, problem.maps * problem.periods * iterations),
         good,
         message,
     )

@@ -89,7 +89,7 @@ class Branch(AsArray):
     parameter: str = quantity("", "what was varied")
     periods: int = quantity("1", "period of the orbits, in excitation periods")
     values: Array = quantity("1", "parameter along the branch", "point")
-    states: Array = quantity("1", "X and V at tau = 0", "point coordinate")
+    states: Array = quantity("1", "X and V at tau = 0, or displacements and speeds", "point coordinate")
     multipliers: npt.NDArray[np.complex128] = quantity("1", "Floquet multipliers", "point multiplier")
     stable: Booleans = quantity("1", "stability", "point")
     labels: tuple[str, ...] = quantity("", "n-p-q or Un-p-q", "point")
@@ -109,7 +109,8 @@ class Branch(AsArray):
         Parameters
         ----------
         kind : str
-            "saddle-node", "period-doubling" or "grazing"; "neimark-sacker", which the exact flow never meets.
+            "saddle-node", "period-doubling", "grazing" or "neimark-sacker", which the exact flow in one freedom never
+            meets.
 
         Raises
         ------
@@ -119,7 +120,7 @@ class Branch(AsArray):
         return of_kind(self.points, kind, (*KINDS, "neimark-sacker"))
 
     def columns(self) -> Array:
-        """Columns parameter, X, V."""
+        """Columns parameter, then those of the state."""
         return np.column_stack([self.values, self.states])
 
 
@@ -196,7 +197,7 @@ def _between(branch: Branch, i: int) -> SpecialPoint | None:
     size = max(float(np.max(np.abs(branch.states))), 1e-300)
 
     def place(value: float, state: Array) -> Array:
-        return np.array([value / width, state[0] / size, state[1] / size])
+        return np.append(value / width, state / size)
 
     a, b = (place(float(branch.values[k]), branch.states[k]) for k in (i, i + 1))
     gaps = [float(np.linalg.norm(place(p.parameter, p.state) - 0.5 * (a + b))) for p in branch.points]

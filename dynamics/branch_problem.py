@@ -14,6 +14,7 @@ import numpy.typing as npt
 from base import Array, Faults
 from dynamics.branch import SpecialPoint
 from dynamics.limits import MAX_POINTS, STEP, ordered
+from dynamics.shooting import floquet_multipliers
 
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 
@@ -24,16 +25,16 @@ class MapPoint:
 
     Parameters
     ----------
-    u : ndarray, shape (2 + m,)
-        Unknowns: X and V over the scale, each parameter as a fraction of its range.
+    u : ndarray, shape (size + m,)
+        Unknowns: the state over the scale, each parameter as a fraction of its range.
     values : ndarray, shape (m,)
         The parameters.
     period : float
         Excitation period, in tau.
-    image : ndarray, shape (2,)
-        Image of X and V over the scale.
-    derivative : ndarray, shape (2, 2 + m)
-        Of the image with respect to the unknowns; its first two columns are the Jacobian.
+    image : ndarray, shape (size,)
+        Image of the state over the scale.
+    derivative : ndarray, shape (size, size + m)
+        Of the image with respect to the unknowns; its first columns are the Jacobian.
     determinant : float
         Of the Jacobian.
     counts : tuple of int
@@ -62,10 +63,30 @@ class MapPoint:
         """The first parameter."""
         return float(self.values[0])
 
+    @property
+    def size(self) -> int:
+        """Length of a state."""
+        return len(self.image)
+
+    @property
+    def jacobian(self) -> Array:
+        """Derivative of the map with respect to the state."""
+        return self.derivative[:, : self.size]
+
     @cached_property
     def trace(self) -> float:
         """Trace of the Jacobian."""
-        return float(self.derivative[0, 0] + self.derivative[1, 1])
+        return float(np.trace(self.derivative))
+
+    @property
+    def multipliers(self) -> npt.NDArray[np.complex128] | Array:
+        """Floquet multipliers."""
+        return floquet_multipliers(self.trace, self.determinant)
+
+    @property
+    def turning(self) -> bool:
+        """Whether the multipliers whose product is nearest to 1 are a pair."""
+        return abs(self.trace) < 2.0
 
     @property
     def fold(self) -> float:
@@ -137,9 +158,19 @@ class BranchProblem(ABC):
         """The first parameter."""
         return self.parameters[0]
 
+    @property
+    def size(self) -> int:
+        """Length of a state."""
+        return int(self.oscillator.dimension)
+
+    @property
+    def flat(self) -> Array:
+        """Row across which the one parameter is held."""
+        return np.append(np.zeros(self.size), 1.0)
+
     def values(self, u: Array) -> Array:
         """Parameters of the unknowns."""
-        return np.asarray(self.low + u[2:] * (self.high - self.low))
+        return np.asarray(self.low + u[self.size :] * (self.high - self.low))
 
     def at(self, u: Array) -> Any:
         """Oscillator of the unknowns.
@@ -165,16 +196,16 @@ class BranchProblem(ABC):
 
     @abstractmethod
     def states(self, point: Any) -> Array:
-        """X and V over the scale after 1, 2, .. n periods, shape (n, 2)."""
+        """States over the scale after 1, 2, .. n periods, shape (n, size)."""
 
     def phases(self, point: Any) -> list[list[float]]:
         """Unknowns of a point, its orbit taken from each excitation period on, one row each."""
-        rest = np.broadcast_to(point.u[2:], (self.periods, len(point.u) - 2))
+        rest = np.broadcast_to(point.u[self.size :], (self.periods, len(self.low)))
         rows: list[list[float]] = np.hstack([np.roll(self.states(point), 1, axis=0), rest]).tolist()
         return rows
 
     def half_way(self, point: Any) -> Array:
-        """X and V over the scale after half the orbit's period; n must be even."""
+        """State over the scale after half the orbit's period; n must be even."""
         return np.asarray(self.states(point)[self.periods // 2 - 1])
 
     def locate(self, last: Any, new: Any, crossing: Any) -> tuple[SpecialPoint | None, bool]:

@@ -11,6 +11,8 @@ from dynamics.arclength import follow
 from dynamics.branch import Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, Steps, checked_range
 from dynamics.crossings import ExactBranch
+from dynamics.drives.oscillator import DriveOscillator
+from dynamics.drives.problem import DriveProblem
 from dynamics.flows import flow_of, unserved
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Oscillator
@@ -68,7 +70,7 @@ def continue_branch(
     -------
     Branch
         Points, stability and special points: saddle nodes, period doublings, grazings; where damping depends on the
-        motion Neimark-Sacker points, too.
+        motion, and in several freedoms, Neimark-Sacker points, too.
 
     Raises
     ------
@@ -107,7 +109,7 @@ def orbits_over(
 
     Parameters
     ----------
-    oscillator : GearOscillator or SmoothOscillator
+    oscillator : GearOscillator, DriveOscillator or SmoothOscillator
         The oscillator.
     parameter : str
         One of its `parameters`.
@@ -123,6 +125,8 @@ def orbits_over(
     low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
     if isinstance(oscillator, GearOscillator):
         return ExactBranch(oscillator, (parameter,), periods, low, high, scale)
+    if isinstance(oscillator, DriveOscillator):
+        return DriveProblem(oscillator, (parameter,), periods, low, high, scale)
     if isinstance(oscillator, SmoothOscillator):
         given = TOLERANCE if tolerance is None else tolerance
         return FlowProblem(oscillator, (parameter,), periods, low, high, scale, given)
@@ -181,12 +185,12 @@ def doubled_orbit(
     origin = problem.unknowns(point.state, point.parameter)
     for amplitude in AMPLITUDES:
         found = problem.correct(origin + amplitude * along, along)
-        if found is None or not 0.0 <= found.u[2] <= 1.0 or abs(found.u[2] - origin[2]) > 0.1:
+        if found is None or not 0.0 <= found.u[-1] <= 1.0 or abs(found.u[-1] - origin[-1]) > 0.1:
             continue
-        if float(np.max(np.abs(problem.half_way(found) - found.u[:2]))) < 0.5 * amplitude:
+        if float(np.max(np.abs(problem.half_way(found) - found.u[:-1]))) < 0.5 * amplitude:
             continue  # the orbit of half the period
         there = oscillator.with_parameter(parameter, found.value)
-        orbit = find_orbit(there, found.u[:2] * scale, periods=2 * n, tolerance=tolerance)
+        orbit = find_orbit(there, found.u[:-1] * scale, periods=2 * n, tolerance=tolerance)
         if orbit.converged and orbit.periods == 2 * n:
             return orbit
     return None

@@ -42,11 +42,6 @@ class Point(MapPoint):
     residual: float
 
     @property
-    def jacobian(self) -> Array:
-        """Derivative of the map with respect to the state."""
-        return self.derivative[:, :2]
-
-    @property
     def trace_slope(self) -> Array:
         """Derivative of the trace with respect to the unknowns."""
         return self.second[:, 0, 0] + self.second[:, 1, 1]

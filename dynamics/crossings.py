@@ -14,7 +14,7 @@ from dynamics.branch_problem import BranchProblem, MapPoint, match_extrema
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.protocol import EPS
 from dynamics.roots import along_chord
-from dynamics.shooting import floquet_multipliers, is_stable, motion_label
+from dynamics.shooting import is_stable, motion_label
 from dynamics.special_orbits import PRODUCTS, Condition, special_orbit
 
 P = TypeVar("P", bound=MapPoint)
@@ -70,7 +70,7 @@ def special_point(
     problem: BranchProblem, point: MapPoint, condition: Condition, ends: Sequence[MapPoint], error: float
 ) -> SpecialPoint:
     """Record of a special orbit between neighbours; `error` is that of the parameter."""
-    multipliers = floquet_multipliers(point.trace, point.determinant)
+    multipliers = point.multipliers
     label = motion_label(problem.periods, point.counts)  # marginal: neither stable nor unstable
     touch: dict[str, float] = {}
     if condition.kind == "grazing":
@@ -79,7 +79,7 @@ def special_point(
         label = motion_label(problem.periods, min(p.counts for p in ends), is_stable(multipliers))
         touch = {"tau": float(phase) * problem.periods * point.period, "acceleration": float(acceleration)}
     return SpecialPoint(
-        condition.kind, point.value, point.u[:2] * problem.scale, multipliers, label,
+        condition.kind, point.value, point.u[: point.size] * problem.scale, multipliers, label,
         max(error / max(abs(point.value), 1e-300), EPS), problem.periods, condition.boundary, **touch,
     )  # fmt: skip
 

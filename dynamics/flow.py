@@ -63,10 +63,25 @@ class Tables(Flow):
         flag = int(iterate(self.arrays, at, skip, int(derivatives), jacobian, states, counts))
         if flag:
             states[:], jacobian[:] = np.nan, np.nan
-        # the damping is the same in every region
-        decay = -2.0 * self.packed[1] * (2.0 * math.pi / self.packed[4]) * (periods + skip)
+        decay = -self.damped(0.0, periods + skip)
         cost = Cost(watch.seconds, periods=periods + skip)
-        return MapResult(states, jacobian, float(decay), counts, REASONS.get(flag, ""), cost)
+        return MapResult(states, jacobian, decay, counts, REASONS.get(flag, ""), cost)
+
+    def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
+        """State after some cells, its derivative by the state before, time in contact (not looked at); `counts` grow.
+
+        All nan if the motion is lost.
+        """
+        from dynamics.kernels.flow import partial
+
+        end, factor = np.array(state, dtype=np.float64), np.eye(2)
+        if partial(self.arrays, first, number, end, factor, counts) != 0:
+            end[:] = np.nan
+        return end, factor, 0.0
+
+    def damped(self, contact: float, periods: int) -> float:
+        """Integral of the trace of all damping: it is the same in every region."""
+        return float(2.0 * self.packed[1] * (2.0 * math.pi / self.packed[4]) * periods)
 
     def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
         """Samples, extrema and impacts; repeated with more room if the last two did not fit."""

@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
+from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flows import flow_of
 from dynamics.limits import PERIODS, POINTS, TRANSIENT
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import Flow, MapResult, Oscillator
+from dynamics.protocol import Flow, MapResult, Oscillator, exact_only
 from dynamics.states import checked_state
 
 
@@ -190,12 +191,27 @@ class ForceRange:
     error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
-def mesh_force(oscillator: GearOscillator, motion: Trajectory) -> Array:
-    """Force k(tau) f(X) of the mesh at the samples of a motion, dimensionless like the mean force."""
-    stiffness = oscillator.stiffness(oscillator.frequency * motion.tau)
-    return np.asarray(stiffness * oscillator.deflection(motion.x))
+def mesh_force(oscillator: GearOscillator | DriveOscillator, motion: Trajectory) -> Array:
+    """Force k(tau) f(X) of the mesh at the samples of a motion, in the unit of the mean force.
+
+    Raises
+    ------
+    InputError
+        If the oscillator has a force that is not piecewise linear.
+    """
+    if not isinstance(oscillator, GearOscillator | DriveOscillator):
+        name, allowed = (
+            type(oscillator).__name__,
+            "must be a GearOscillator or a DriveOscillator in mesh_force",
+        )
+        raise InputError.at(
+            "oscillator", name, allowed, "restoring_force gives the force of a SmoothOscillator"
+        )
+    series = oscillator.stiffness if isinstance(oscillator, GearOscillator) else oscillator.mesh_stiffness
+    return np.asarray(series(oscillator.frequency * motion.tau) * oscillator.deflection(motion.x))
 
 
+@exact_only
 def force_range(
     oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
 ) -> ForceRange:

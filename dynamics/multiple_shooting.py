@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from base import Array, Integers
+from dynamics.drives.flow import DriveFlow
+from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import Tables
 from dynamics.oscillator import GearOscillator
 
+Parted: TypeAlias = Tables | DriveFlow
+"""Flows that follow parts of a period."""
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8
 MOST = 250  # stretches: the equations are solved as a dense matrix
@@ -23,12 +28,14 @@ class Chain:
 
     Parameters
     ----------
-    nodes : ndarray, shape (m, 2)
-        X and V at the starts of the stretches, the first at tau = 0.
-    factors : ndarray, shape (m, 2, 2)
+    nodes : ndarray, shape (m, size)
+        States at the starts of the stretches, the first at tau = 0.
+    factors : ndarray, shape (m, size, size)
         Jacobian of every stretch.
     counts : tuple of int
         Exits from X > D and entries into X < -D.
+    contact : float
+        Time in contact; 0 where damping does not ask for it.
     residual : float
         Largest gap between a stretch's end and the next node.
     iterations : int
@@ -40,6 +47,7 @@ class Chain:
     nodes: Array
     factors: Array
     counts: tuple[int, int]
+    contact: float
     residual: float
     iterations: int
     error: float = math.nan
@@ -47,14 +55,14 @@ class Chain:
     @property
     def jacobian(self) -> Array:
         """Derivative of the map over the whole orbit: the product of the factors."""
-        product = np.eye(2)
+        product = np.eye(self.nodes.shape[1])
         for factor in self.factors:
             product = factor @ product
         return product
 
 
 def shoot_in_stretches(
-    oscillator: GearOscillator, table: Tables, guess: Array, periods: int, limit: int
+    oscillator: GearOscillator | DriveOscillator, table: Parted, guess: Array, periods: int, limit: int
 ) -> Chain | None:
     """Newton's method with step halving on the states at the starts of all stretches; None if it does not arrive.
 
@@ -63,12 +71,12 @@ def shoot_in_stretches(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator.
-    table : Tables
+    table : Tables or DriveFlow
         Its tables.
-    guess : ndarray, shape (2,)
-        X and V at tau = 0.
+    guess : ndarray, shape (size,)
+        State at tau = 0.
     periods : int
         Period of the orbit, in excitation periods.
     limit : int
@@ -77,61 +85,59 @@ def shoot_in_stretches(
     firsts = stretch_starts(table, periods)
     tau = firsts[:-1] * (oscillator.period / table.cells)
     for nodes in (_followed(oscillator, table, guess, firsts), _balanced(oscillator, tau)):
-        chain = _newton(table, nodes, firsts, limit)
+        chain = _newton(table, nodes, firsts, limit, oscillator.floor)
         if chain is not None:
             return replace(chain, error=_error(table, chain, periods))
     return None
 
 
-def stretch_starts(table: Tables, periods: int) -> Integers:
+def stretch_starts(table: Parted, periods: int) -> Integers:
     """First cells of the stretches, and the cell after the last; every period begins with a stretch."""
     each = max(1, min(table.cells // CELLS_PER_STRETCH, MOST // periods))
     return np.round(np.linspace(0, table.cells * periods, each * periods + 1)).astype(np.int64)
 
 
-def _error(table: Tables, chain: Chain, periods: int) -> float:
+def _error(table: Parted, chain: Chain, periods: int) -> float:
     """Largest Newton step that tables with half the cell would still take, over the size of the motion."""
-    ends, factors, _ = stretches(table.finer(), chain.nodes, 2 * stretch_starts(table, periods))
+    ends, factors, _, _ = stretches(table.finer(), chain.nodes, 2 * stretch_starts(table, periods))
     step = newton_step(factors, ends - np.roll(chain.nodes, -1, axis=0))
     return float(np.max(np.abs(step))) / max(float(np.max(np.abs(chain.nodes))), 1e-300)
 
 
-def stretches(table: Tables, nodes: Array, firsts: Integers) -> tuple[Array, Array, tuple[int, int]]:
-    """Ends and Jacobians of all stretches; nan where the motion is lost."""
-    from dynamics.kernels.flow import partial
-
-    ends, factors = nodes.copy(), np.tile(np.eye(2), (len(nodes), 1, 1))
-    counts = np.zeros(2, dtype=np.int64)
+def stretches(table: Parted, nodes: Array, firsts: Integers) -> tuple[Array, Array, tuple[int, int], float]:
+    """Ends and Jacobians of all stretches, impacts and time in contact; nan where the motion is lost."""
+    size = nodes.shape[1]
+    ends, factors = np.empty_like(nodes), np.empty((len(nodes), size, size))
+    counts, contact = np.zeros(2, dtype=np.int64), 0.0
     lengths = np.diff(firsts)
-    for i in range(len(nodes)):
-        flag = partial(table.arrays, int(firsts[i]), int(lengths[i]), ends[i], factors[i], counts)
-        if flag != 0:
-            ends[i] = np.nan
-    return ends, factors, (int(counts[0]), int(counts[1]))
+    for i, node in enumerate(nodes):
+        ends[i], factors[i], pressed = table.part(int(firsts[i]), int(lengths[i]), node, counts)
+        contact += pressed
+    return ends, factors, (int(counts[0]), int(counts[1])), contact
 
 
 def newton_step(factors: Array, gap: Array) -> Array:
     """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic."""
-    m = len(gap)
-    matrix = np.zeros((2 * m, 2 * m))
+    m, size = gap.shape
+    matrix = np.zeros((m, size, m, size))
     for i in range(m):
-        j = (i + 1) % m
-        matrix[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] -= factors[i]
-        matrix[2 * i : 2 * i + 2, 2 * j : 2 * j + 2] += np.eye(2)
-    return np.asarray(np.linalg.solve(matrix, gap.ravel()).reshape(m, 2))
+        matrix[i, :, i] -= factors[i]
+        matrix[i, :, (i + 1) % m] += np.eye(size)
+    square = matrix.reshape(m * size, m * size)
+    return np.asarray(np.linalg.solve(square, gap.ravel()).reshape(m, size))
 
 
-def _newton(table: Tables, nodes: Array, firsts: Integers, limit: int) -> Chain | None:
-    scale = max(float(np.max(np.abs(nodes))), float(table.packed[6]), 1e-300)
+def _newton(table: Parted, nodes: Array, firsts: Integers, limit: int, floor: float) -> Chain | None:
+    scale = max(float(np.max(np.abs(nodes))), floor)
     best, kept, step, factor = math.inf, None, np.zeros_like(nodes), 1.0
     trial = nodes
     for iteration in range(4 * limit):
-        ends, factors, counts = stretches(table, trial, firsts)
+        ends, factors, counts, contact = stretches(table, trial, firsts)
         gap = ends - np.roll(trial, -1, axis=0)
         size = float(np.max(np.abs(gap)))
         if size < best:
             best, nodes, factor = size, trial, 1.0
-            kept = Chain(nodes, factors, counts, size, iteration)
+            kept = Chain(nodes, factors, counts, contact, size, iteration)
             try:
                 step = newton_step(factors, gap)
             except np.linalg.LinAlgError:
@@ -150,10 +156,10 @@ def _newton(table: Tables, nodes: Array, firsts: Integers, limit: int) -> Chain 
     return kept if best <= 1e-14 * 64.0 * stretch * scale else None
 
 
-def _followed(oscillator: GearOscillator, table: Tables, guess: Array, firsts: Integers) -> Array:
+def _followed(
+    oscillator: GearOscillator | DriveOscillator, table: Parted, guess: Array, firsts: Integers
+) -> Array:
     """Nodes on the motion from the guess; where it grows far beyond what drives it, the slow balance."""
-    from dynamics.kernels.flow import partial
-
     tau = firsts[:-1] * (oscillator.period / table.cells)
     nodes = _balanced(oscillator, tau)
     bound = 20.0 * max(float(np.max(np.abs(guess))), float(np.max(np.abs(nodes))), oscillator.half_backlash)
@@ -162,13 +168,14 @@ def _followed(oscillator: GearOscillator, table: Tables, guess: Array, firsts: I
         if not float(np.max(np.abs(state))) < bound:
             state = nodes[i].copy()
         nodes[i] = state
-        if partial(table.arrays, int(firsts[i]), int(length), state, np.eye(2), counts) != 0:
-            state = np.full(2, np.inf)
+        state = np.nan_to_num(table.part(int(firsts[i]), int(length), state, counts)[0], nan=np.inf)
     return nodes
 
 
-def _balanced(oscillator: GearOscillator, tau: npt.NDArray[np.floating]) -> Array:
+def _balanced(oscillator: GearOscillator | DriveOscillator, tau: npt.NDArray[np.floating]) -> Array:
     """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean."""
+    if isinstance(oscillator, DriveOscillator):
+        return oscillator.balanced(np.asarray(tau, dtype=np.float64))
     k = oscillator.stiffness(oscillator.frequency * tau)
     mean = abs(oscillator.stiffness.mean)
     force = oscillator.force(tau)

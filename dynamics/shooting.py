@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record
+from dynamics.drives.flow import DriveFlow
+from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import Tables
 from dynamics.flows import flow_of
 from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
@@ -60,7 +62,7 @@ class Orbit:
         "1", "residual of every iteration; empty after many shots", "iteration"
     )
     nodes: Array = quantity(
-        "1", "after multiple shooting: X and V at equal parts of the period; a motion from the state alone leaves so "
+        "1", "after multiple shooting: states at equal parts of the period; a motion from the state alone leaves so "
         "unstable an orbit within one period", "node coordinate",
     )  # fmt: skip
     tolerance: float | None = quantity("1", "of the flow, as asked for; None for its own", default=None)
@@ -214,9 +216,11 @@ def _in_stretches(
 ) -> Orbit | None:  # fmt: skip
     """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits.
 
-    Of the exact flow alone; tried where one shot is lost, or is not enough for a long orbit.
+    Of the exact flows alone; tried where one shot is lost, or is not enough for a long orbit.
     """
-    if not (isinstance(oscillator, GearOscillator) and isinstance(flow, Tables)):
+    if not (
+        isinstance(oscillator, GearOscillator | DriveOscillator) and isinstance(flow, Tables | DriveFlow)
+    ):
         return None
     if not lost and flow.cells * n <= LONG:
         return None
@@ -235,7 +239,7 @@ def _in_stretches(
         return _in_stretches(oscillator, flow, nodes[0], least, limit, size, True, watch, used)
     message = f"converged in {chain.iterations} iterations on {len(nodes)} stretches"
     cost = Cost(watch.seconds, nodes.size, chain.iterations, used + n * chain.iterations)
-    decay = -2.0 * oscillator.damping_ratio * oscillator.period * n
+    decay = -flow.damped(chain.contact, n)
     image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, decay, np.array([chain.counts]), "", cost)
     return make_orbit(
         oscillator, nodes[0].copy(), n, image, chain.residual, chain.error, cost, True, message, nodes=nodes

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Limit, Stopwatch, quantity, record
 from base.results import EXACT
 from dynamics.arrays import AsArray
+from dynamics.drives.oscillator import DriveOscillator
 from dynamics.limits import NUMBER
 from dynamics.motions import mesh_force, trajectory
 from dynamics.oscillator import GearOscillator
@@ -59,16 +60,20 @@ class Spectrum(AsArray):
 
 
 def motion_spectrum(
-    oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, *, highest: float = 10.0
+    oscillator: GearOscillator | DriveOscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    *,
+    highest: float = 10.0,
 ) -> Spectrum:
     r"""Spectrum of a settled motion.
 
     Parameters
     ----------
-    oscillator : GearOscillator
-        The oscillator.
-    state : array_like, shape (2,)
-        X and V at tau = 0 of the settled motion, such as the last of `sweep` or that of an orbit.
+    oscillator : GearOscillator or DriveOscillator
+        The oscillator; in several freedoms X is y, which the backlash limits.
+    state : array_like, shape (dimension,)
+        State at tau = 0 of the settled motion, such as the last of `sweep` or that of an orbit.
     periods : int
         Excitation periods after which it repeats; 0 for a motion that does not.
     highest : float

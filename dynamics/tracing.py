@@ -55,7 +55,7 @@ class Tracer(ABC):
             new = self.points[-1]
             if len(self.points) > 3 and passes(last.u, new.u, self.phases):  # however small the loop
                 self.ended = "closed"
-            elif np.any((new.u[2:] == 0.0) | (new.u[2:] == 1.0)):
+            elif np.any((new.u[new.size :] == 0.0) | (new.u[new.size :] == 1.0)):
                 self.ended = "bound"
 
     @abstractmethod
@@ -73,7 +73,7 @@ class Tracer(ABC):
     def aimed(self, last: MapPoint, guess: Array) -> tuple[Array, Array] | None:
         """A guess and the row across which it is corrected: at the end of a range that end; None if that is reached."""
         row = self.tangent
-        for k in range(2, len(guess)):
+        for k in range(last.size, len(guess)):
             bound = min(max(float(guess[k]), 0.0), 1.0)
             if guess[k] == bound:
                 continue

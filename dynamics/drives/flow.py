@@ -77,6 +77,24 @@ class DriveFlow(Flow):
             np.empty((self.oscillator.dimension, 0)),
         )
 
+    def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
+        """State after some cells, its derivative by the state before, time in contact; `counts` grow.
+
+        All nan if the motion is lost.
+        """
+        from dynamics.kernels.drives.carrying import iterate
+
+        osc, at = self.oscillator, self.oscillator.coordinates
+        tau = np.array([first, first + number]) * (osc.period / self.cells)
+        moved = osc.lowered(np.asarray(state, dtype=np.float64)[None], tau[:1])[0]
+        jacobian, clock = np.eye(len(moved)), np.zeros(1)
+        last, met = np.empty((1, len(moved))), np.zeros((1, 2), dtype=np.int64)
+        if iterate(self.arrays, first, number, moved, 0, 1, jacobian, last, met, clock):
+            last[:] = np.nan
+        counts += met[0]
+        factor = _blocks(at.up) @ jacobian @ _blocks(at.down)
+        return osc.lifted(last, tau[1:])[0], factor, float(clock[0])
+
     def damped(self, contact: float, periods: int) -> float:
         """Integral of the trace of all damping, by the time in contact."""
         at, (pressed, free) = self.oscillator.coordinates, self.oscillator.dampings

@@ -222,6 +222,10 @@ class DriveOscillator(Oscillator):
 
     def rest_state(self) -> Array:
         """State at tau = 0 with y at rest under the mean force: on the flanks that it presses together, or between."""
+        return np.asarray(self.balanced(np.zeros(1))[0])
+
+    def balanced(self, tau: Array) -> Array:
+        """States with y at rest at some times, shape (k, 2 n)."""
         at = self.coordinates
         for side in (1.0, -1.0, 0.0):
             stiff, force = at.stiffness.copy(), self.load.copy()
@@ -232,7 +236,7 @@ class DriveOscillator(Oscillator):
             w = np.linalg.lstsq(stiff, force, rcond=None)[0]
             if side * (w[0] - side * self.half_backlash) > 0.0 and not (side < 0.0 and self.one_sided):
                 break
-        return np.asarray(self.lifted(np.concatenate([w, np.zeros(len(w))])[None], np.zeros(1))[0])
+        return self.lifted(np.tile(np.concatenate([w, np.zeros(len(w))]), (len(tau), 1)), tau)
 
     def start_plane(self) -> tuple[Array, Array]:
         """Directions in which y and its rate move alone, by one each, and the state at rest."""
@@ -265,6 +269,12 @@ class DriveOscillator(Oscillator):
         w[:, 0] += error
         speed[:, 0] += rate
         return np.hstack([w @ up.T, speed @ up.T])
+
+    def deflection(self, y: npt.ArrayLike) -> Array:
+        """Deflection f(y) past the backlash, shape of `y`."""
+        at = np.asarray(y, dtype=np.float64)
+        lower = -np.inf if self.one_sided else -self.half_backlash
+        return np.asarray(at - np.clip(at, lower, self.half_backlash))
 
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
         """Contact coordinate y and its rate."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Faults, Integers
+from base import Array, Faults, InputError, Integers
 from dynamics.excitation import Harmonics, checked_error, error_names, largest
 from dynamics.laws.contacts import Law
 from dynamics.limits import NUMBER, OSCILLATOR
@@ -192,6 +192,10 @@ def restoring_force(
     array([0. , 0.3])
     """
     from dynamics.kernels.stepwise.carrying import probe
+
+    if not isinstance(oscillator, SmoothOscillator):
+        name, allowed = type(oscillator).__name__, "must be a SmoothOscillator in restoring_force"
+        raise InputError.at("oscillator", name, allowed, "any other has its force written in its equation")
 
     theta, place, speed = np.broadcast_arrays(angle, x, v)
     model = oscillator.model()

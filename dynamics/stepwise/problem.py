@@ -41,7 +41,7 @@ class PeriodMap(BranchProblem):
         if found is None:
             return None, False
         point, condition = found
-        if condition.kind == "neimark-sacker" and abs(point.trace) >= 2.0:
+        if condition.kind == "neimark-sacker" and not point.turning:
             return None, True
         finer, error = self.refined(), math.inf
         row = (new.u - last.u) / np.linalg.norm(new.u - last.u)
@@ -57,10 +57,10 @@ class PeriodMap(BranchProblem):
             point = self.evaluate(u)
             if point is None or not np.all(np.isfinite(point.derivative)):
                 return None
-            off = np.array([*(point.image - u[:2]), across @ (u - guess)])
-            stretch = max(1.0, float(np.max(np.abs(point.derivative[:, :2]))))
-            residual = float(np.max(np.abs(off[:2]))) / stretch
-            matrix = np.vstack([point.derivative - np.eye(2, 3), across])
+            off = np.array([*(point.image - u[: point.size]), across @ (u - guess)])
+            stretch = max(1.0, float(np.max(np.abs(point.jacobian))))
+            residual = float(np.max(np.abs(off[: point.size]))) / stretch
+            matrix = np.vstack([point.derivative - np.eye(point.size, len(u)), across])
             try:
                 step = np.linalg.solve(matrix, -off)
             except np.linalg.LinAlgError:
