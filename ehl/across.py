@@ -20,7 +20,7 @@ class Across(NamedTuple):
     zeta: Array  # (m,)
     weights: Array  # (m,)
     derive: Array  # (m, m)
-    derive_2: Array  # (m, m)
+    stiffness: Array  # (m, m): integral of products of the derivatives
     sum_up: Array  # (m, m): integral from -1/2 to each place
 
 
@@ -38,4 +38,5 @@ def lobatto(points: int = POINTS) -> Across:
     sums = np.array([legendre.legval(s, legendre.legint(row, lbnd=-1)) for row in unit]).T
     back = np.linalg.inv(values)
     derive = 2.0 * slopes @ back
-    return Across(0.5 * s, 0.5 * weights, derive, derive @ derive, 0.5 * sums @ back)
+    stiffness = derive.T @ (0.5 * weights[:, None] * derive)
+    return Across(0.5 * s, 0.5 * weights, derive, stiffness, 0.5 * sums @ back)

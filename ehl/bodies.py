@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from base import Array, Faults, Limit
+
+_LN_LEAST, _LN_STEP, _PLACES = math.log(1e-9), 0.02, 1900  # of the table of the line source, up to 3e7
 
 _LIMITS = {
     "conductivity": Limit.above(0.0, 1e5, "W/(m K)", "46 for steel"),
@@ -47,8 +50,8 @@ class Solid:
 STEEL = Solid(46.0, 7850.0, 470.0)
 
 
-def surface_heating(x: Array, speed: float, solid: Solid, depth: float) -> Array:
-    """Surface temperature at every node per heat flux into the surface around every node [K m2/W], (n, n).
+def surface_heating(edges: Array, speed: float, solid: Solid, depth: float) -> Array:
+    """Surface temperature in the middle of every cell per heat flux into the surface of every cell [K m2/W], (n, n).
 
     Jaeger's moving line source on a half-space, ``exp(u s/2 kappa) K0(|u s|/2 kappa)/(pi k)``, exact at any speed
     of the surface; far behind the source it is Blok's ``1/sqrt(pi k rho c u s)``. A surface slower than
@@ -63,16 +66,20 @@ def surface_heating(x: Array, speed: float, solid: Solid, depth: float) -> Array
     drift = 0.5 * speed * solid.density * solid.heat_capacity / solid.conductivity
     if abs(drift) * depth < 1.0:
         drift = float(np.copysign(1.0 / depth, drift))
-    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
-    found: Array = -np.diff(_source_integral(drift * (x[:, None] - edges)), axis=1)
+    from ehl.heat_kernels import source_differences
+
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    found: Array = source_differences(drift * middle, drift * edges, _source_table(), _LN_LEAST, _LN_STEP)
     return found / (drift * math.pi * solid.conductivity)
 
 
-def _source_integral(s: Array) -> Array:
-    """Integral of exp(y) K0(|y|) from 0 to s, of either sign."""
+@cache
+def _source_table() -> Array:
+    """Integral of exp(y) K0(|y|) from 0 to s over ln|s|, with its derivative by ln|s|: rows behind, ahead."""
     from scipy.special import k0e, k1e
 
-    y = np.maximum(np.abs(s), 1e-300)
+    y = np.exp(_LN_LEAST + _LN_STEP * np.arange(_PLACES))
+    fading = np.exp(-2.0 * y)
     behind = y * (k0e(y) + k1e(y)) - 1.0
-    ahead = -(y * np.exp(-2.0 * y) * (k0e(y) - k1e(y)) + 1.0)
-    return np.where(s == 0.0, 0.0, np.where(s > 0.0, behind, ahead))
+    ahead = -(y * fading * (k0e(y) - k1e(y)) + 1.0)
+    return np.array([behind, y * k0e(y), ahead, -y * fading * k0e(y)])

@@ -139,6 +139,10 @@ class Fluid(NamedTuple):
     viscosity_slope: Array
     density: Array  # rho/rho0
     density_slope: Array
+    shear: Array = np.empty((0, 5))  # (n-1, 5), of oil that thins: see ehl.kernels.reynolds
+    swelling: Array | None = (
+        None  # (n, n): change of H by P that has the effect of what heat does to the density
+    )
 
 
 class Oil(Protocol):
@@ -164,7 +168,7 @@ def fluxes(
     from ehl.kernels import reynolds
 
     state = plain_oil(groups, P) if fluid is None else fluid
-    found: tuple[Array, Array] = reynolds(grid.nodes, P, H, faces, *state, groups.lam, grid.upstream)
+    found: tuple[Array, Array] = reynolds(grid.nodes, P, H, faces, *state[:5], groups.lam, grid.upstream)
     return found
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,21 +14,33 @@ from ehl.bodies import Solid, surface_heating
 from ehl.contact import LineContact
 from ehl.discrete import Fluid, Grid, Groups, plain_oil
 
-_FOLLOWED = (
-    0.4  # share of a step that temperatures take: all of it goes round, by expansion and compression heat
-)
 _COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
-_INLET = 150.0  # gap over the central film ahead of which the oil has its undisturbed temperature
+_INLET = 150.0  # gap over the central film ahead of which heat stays with the oil that turns back there
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
 _LEAST_STRESS = 1e3  # of the limiting stress where hardly any pressure stands [Pa]
 
 
+class Sheared(NamedTuple):
+    """The oil of every cell in shear."""
+
+    gap: Array  # h [m] (n-1,)
+    density: Array  # rho [kg/m3] (n-1,)
+    cooling: Array  # ln(eta) over that at T0, both above the pole (n-1, m)
+    fall: Array  # -d ln(eta)/dT [1/K] (n-1, m)
+    viscosity: Array
+    flow: Array  # (n-1, 5) and the rest (n-1, m): see ehl.shear_kernels.flow_across
+    speed: Array
+    across: Array
+    rate: Array
+    yielding: Array
+
+
 @dataclass
 class Heated:
-    """State of the oil on one grid; follows the pressures and gaps that it is given.
+    """State of the oil in the cells of one grid; follows the pressures and gaps that it is given.
 
-    What the pressure moves through a node, by the oil's last state, is held while shear and temperature are sought:
+    What the pressure moves through a cell, by the oil's last state, is held while shear and temperature are sought:
     with the slope of the pressure held instead they run away at the spike and in the inlet.
     """
 
@@ -35,37 +49,37 @@ class Heated:
     groups: Groups
     solids: tuple[Solid, Solid] | None  # None: temperatures stay those of the bulk
     bulk: Array  # (2,) [K]
-    temperature: Array = field(init=False)  # (n, m) [K]
-    into: Array = field(init=False)  # (2, n) [W/m2]
-    sigma: Array = field(init=False)  # (n,)
-    bodies: Array = field(init=False)  # (2, n, n) [K m2/W]
+    temperature: Array = field(init=False)  # (n-1, m) [K]
+    into: Array = field(init=False)  # (2, n-1) [W/m2]
+    sigma: Array = field(init=False)  # (n-1,)
+    bodies: Array = field(init=False)  # (2, n-1, n-1) [K m2/W]
     across: Across = field(default_factory=lobatto)
-    last: int = 0
+    x: Array = field(init=False)  # nodes [m] (n,)
+    middles: Array = field(init=False)  # of the cells [m] (n-1,)
+    lengths: Array = field(init=False)  # of the cells [m] (n-1,)
+    left: Array = field(init=False)  # share of the left cell at the nodes between two (n-2,)
+    first: int = 0  # cell where heat begins to be followed
+    last: int = 0  # and where it ends
     unsettled: float = 0.0
     before: Fluid | None = None
-    moved: Array | None = None
-    gap: Array = field(init=False)
-    density: Array = field(init=False)
-    mean_stress: Array = field(init=False)
-    speed: Array = field(init=False)
-    heat: Array = field(init=False)
-    gradient: Array = field(init=False)
+    begun: Array | None = None  # (n-1, 5): of another grid or contact, see ehl.kernels.reynolds
+    shear: Sheared = field(init=False)
+    gradient: Array = field(init=False)  # p' [Pa/m] (n-1,)
+    response: Array | None = None  # (n-1, 2) of the mean temperature, see ehl.heat_kernels.heat_across
+    carried: Array = field(init=False)  # (n, m): c rho u h through every node [W/(m K)]
 
     def __post_init__(self) -> None:
         """Begin at the bulk temperatures."""
-        n = self.grid.nodes.size
-        self.temperature = np.tile(self.undisturbed, (n, 1))
-        self.into, self.sigma = np.zeros((2, n)), np.zeros(n)
+        cells = self.grid.nodes.size - 1
+        self.x = self.grid.nodes * self.groups.length
+        self.middles, self.lengths = 0.5 * (self.x[1:] + self.x[:-1]), np.diff(self.x)
+        self.left = self.lengths[1:] / (self.lengths[1:] + self.lengths[:-1])
+        self.temperature = np.tile(self.undisturbed, (cells, 1))
+        self.into, self.sigma = np.zeros((2, cells)), np.zeros(cells)
         if self.solids is not None:
-            speeds, x = self.contact.surface_speeds, self.x
+            both = zip(self.contact.surface_speeds, self.solids, strict=True)
             depth = self.contact.radius
-            both = zip(speeds, self.solids, strict=True)
-            self.bodies = np.array([surface_heating(x, u, solid, depth) for u, solid in both])
-
-    @property
-    def x(self) -> Array:
-        """Nodes [m]."""
-        return self.grid.nodes * self.groups.length
+            self.bodies = np.array([surface_heating(self.x, u, solid, depth) for u, solid in both])
 
     @property
     def undisturbed(self) -> Array:
@@ -75,117 +89,188 @@ class Heated:
 
     def start_from(self, old: Heated) -> None:
         """Take temperatures, fluxes and shear over from another grid."""
-        at = self.x
+        at, places = self.middles, old.middles
         for j in range(self.across.zeta.size):
-            self.temperature[:, j] = np.interp(at, old.x, old.temperature[:, j])
-        self.into = np.array([np.interp(at, old.x, row) for row in old.into])
-        self.sigma = np.interp(at, old.x, old.sigma)
+            self.temperature[:, j] = np.interp(at, places, old.temperature[:, j])
+        self.into = np.array([np.interp(at, places, row) for row in old.into])
+        self.sigma = np.interp(at, places, old.sigma)
+        if old.before is not None:
+            self.begun = np.array([np.interp(at, places, column) for column in old.before.shear.T]).T
+
+    def add(self, new: Heated, old: Heated) -> None:
+        """Add what has changed between two oils on one other grid."""
+        at, places = self.middles, old.middles
+        for j in range(self.across.zeta.size):
+            change = new.temperature[:, j] - old.temperature[:, j]
+            self.temperature[:, j] += np.interp(at, places, change)
+        for mine, change in zip(self.into, new.into - old.into, strict=True):
+            mine += np.interp(at, places, change)
 
     def at(self, P: Array, H: Array) -> Fluid:
         """Let flow, shear and heat follow pressures and gaps; give what the flux needs of them."""
-        from ehl.shear_kernels import flow_across
-
-        oil, contact, groups = self.contact.lubricant, self.contact, self.groups
-        p, self.gap = groups.pressure * P, groups.gap * H
+        oil, groups = self.contact.lubricant, self.groups
+        p, gap = groups.pressure * P, groups.gap * H
         self.last = int(np.flatnonzero(P > 0.0)[-1])
-        ln_ratio, _ = oil.hot_log_viscosity(p[:, None], self.temperature)
-        mean = self.temperature @ self.across.weights
-        _, slope = oil.hot_log_viscosity(p, mean)
-        thermal = 1.0 - oil.expansion * (mean - oil.temperature)
-        ratio, ratio_slope = oil.density_ratio(p)
-        self.density = oil.density * ratio * thermal
-        share = oil.limiting_shear_ratio
-        limit = np.full(p.size, _UNLIMITED) if share is None else np.maximum(share * p, _LEAST_STRESS)
-        stress = _NEWTONIAN if oil.eyring_stress is None else oil.eyring_stress
-        across = self.across
-        moved = self._moved(P, H) * oil.density * contact.entrainment * groups.gap / self.density
-        to = slice(0, self.last + 1)
-        found = flow_across(
-            np.exp(ln_ratio[to]) * oil.viscosity,
-            self.gap[to],
-            limit[to],
-            moved[to],
-            contact.entrainment,
-            -contact.sliding,
-            stress,
-            across.zeta,
-            across.weights,
-            across.sum_up,
-            self.sigma[to],
-        )
-        self.mean_stress, effective, carry, thinning, self.speed, self.heat = found
-        self.gradient = np.gradient(p, self.x, edge_order=1)[to]
+        ratio, slope = oil.log_viscosity(p)
+        packed, packed_slope = oil.density_ratio(p)
+        moved = self._moved(P, H)
         if self.solids is not None:
-            self._warm()
-        ln_viscosity, by_viscosity, carried = ln_ratio @ across.weights, np.ones(p.size), np.ones(p.size)
-        ln_viscosity[to] = np.log(effective * carry / oil.viscosity)
-        by_viscosity[to], carried[to] = thinning, carry
+            self.shear = self._sheared(p, gap, ratio, packed, moved)
+            self._warm(p)
+        shear = self.shear = self._sheared(p, gap, ratio, packed, moved)
+        _, effective, carry, steep, thinning = shear.flow.T
+        cells = self.across.weights @ shear.cooling.T
+        columns = np.empty((moved.size, 5))
+        columns[:, 0] = np.log(effective * carry / oil.viscosity)
+        columns[:, 1] = cells * thinning / steep
+        columns[:, 2], columns[:, 3] = moved, steep
+        columns[:, 4] = 1.0 + thinning - 2.0 * steep
+        thermal = 1.0 - oil.expansion * (
+            self.at_nodes(self.temperature @ self.across.weights) - oil.temperature
+        )
+        factor = thermal * self.at_nodes(carry)
         self.before = Fluid(
-            ln_viscosity,
-            slope * by_viscosity * groups.pressure,
-            ratio * thermal * carried,
-            ratio_slope * thermal * carried * groups.pressure,
+            ratio,
+            slope * groups.pressure,
+            packed * factor,
+            packed_slope * factor * groups.pressure,
+            columns,
+            self._swelling(thermal, H),
         )
         return self.before
 
+    def _swelling(self, thermal: Array, H: Array) -> Array | None:
+        """Change of the gap that acts as the density does when heat of compression expands the oil, by P (n, n)."""
+        from ehl.heat_kernels import compression_response
+
+        if self.response is None:
+            return None
+        by_pressure: Array = compression_response(self.grid.nodes, self.response)
+        factor = -self.contact.lubricant.expansion * self.groups.pressure * H / thermal
+        return factor[:, None] * by_pressure
+
+    def at_nodes(self, values: Array) -> Array:
+        """Take values of cells (n-1, ...) to the nodes, linearly."""
+        left = self.left if values.ndim == 1 else self.left[:, None]
+        found = np.empty((values.shape[0] + 1, *values.shape[1:]))
+        found[0], found[-1] = values[0], values[-1]
+        found[1:-1] = values[1:] + left * (values[:-1] - values[1:])
+        return found
+
     def _moved(self, P: Array, H: Array) -> Array:
-        """Mass flow over rho0 u a^2/R that the pressure moves through every node, by the oil's last state."""
-        state = plain_oil(self.groups, P) if self.before is None else self.before
-        h, ln = np.diff(self.grid.nodes), state.ln_viscosity
-        half = 0.5 * np.diff(ln)
-        small = np.abs(half) < 1e-4
-        mean = np.where(small, 1.0, np.sinh(half) / np.where(small, 1.0, half))
-        fluidity = np.exp(-0.5 * (ln[1:] + ln[:-1])) * mean
-        resistance = 1.0 / (state.density * H**3)
-        between = 8.0 / ((state.density[1:] + state.density[:-1]) * (0.5 * (H[1:] + H[:-1])) ** 3)
-        cells = 6.0 * fluidity * np.diff(P)
-        cells /= self.groups.lam * h * (resistance[1:] + between + resistance[:-1])
-        found = np.empty(P.size)
-        found[1:-1] = 0.5 * (cells[1:] + cells[:-1])
-        found[0], found[-1] = cells[0], cells[-1]
-        self.moved = found if self.moved is None else 0.5 * (self.moved + found)
-        return self.moved
+        """Mass flow over rho0 u a^2/R that the pressure moves upstream through every cell.
 
-    def _warm(self) -> None:
+        The last flow followed the tangent of the oil's thinning to the new pressures, never through zero.
+        """
+        from ehl.kernels import pressure_flow
+
+        grid, state = self.grid, self.before
+        if state is None:
+            state = plain_oil(self.groups, P)
+            if self.begun is not None:
+                state = state._replace(shear=self.begun)
+        found: Array = pressure_flow(
+            grid.nodes, P, H, grid.quick, state.ln_viscosity, state.density, state.shear, self.groups.lam
+        )
+        if self.before is None:
+            return found
+        held, steep = state.shear[:, 2], state.shear[:, 3]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = found / held
+            more = held * (1.0 + steep * (ratio - 1.0))
+            less = held / (1.0 + steep * (1.0 / ratio - 1.0))
+        moved: Array = np.where(ratio > 1.0, more, np.where(ratio > 0.0, less, found))
+        return moved
+
+    def _sheared(self, p: Array, gap: Array, ratio: Array, packed: Array, moved: Array) -> Sheared:
+        """Shear the oil of every cell at its temperatures and with what the pressure moves there."""
+        from ehl.shear_kernels import flow_across
+
+        oil, contact, across = self.contact.lubricant, self.contact, self.across
+        ln_ratio, cooling, fall = oil.warmed(0.5 * (ratio[1:] + ratio[:-1])[:, None], self.temperature)
+        thermal = 1.0 - oil.expansion * (self.temperature @ across.weights - oil.temperature)
+        density = 0.5 * oil.density * (packed[1:] + packed[:-1]) * thermal
+        middle, pressed = 0.5 * (gap[1:] + gap[:-1]), 0.5 * (p[1:] + p[:-1])
+        share = oil.limiting_shear_ratio
+        limit = (
+            np.full(middle.size, _UNLIMITED) if share is None else np.maximum(share * pressed, _LEAST_STRESS)
+        )
+        viscosity = np.exp(ln_ratio) * oil.viscosity
+        found = flow_across(
+            viscosity,
+            middle,
+            limit,
+            moved * oil.density * contact.entrainment * self.groups.gap / density,
+            contact.entrainment,
+            -contact.sliding,
+            _NEWTONIAN if oil.eyring_stress is None else oil.eyring_stress,
+            across.zeta,
+            across.weights,
+            across.sum_up,
+            self.sigma,
+        )
+        return Sheared(middle, density, cooling, fall, viscosity, *found)
+
+    def _warm(self, p: Array) -> None:
         """Sweep for the temperatures, against the flow too where some runs back."""
-        from ehl.shear_kernels import heat_across
+        from ehl.heat_kernels import heat_across
 
-        oil, across, to = self.contact.lubricant, self.across, slice(0, self.last + 1)
-        flow = oil.heat_capacity * (self.density[to] * self.gap[to])[:, None] * self.speed
-        expanding = oil.expansion * self.speed * self.gradient[:, None]
-        first = max(1, int(np.argmax(self.gap < _INLET * np.interp(0.0, self.x, self.gap))))
-        before, taken = self.temperature.copy(), self.into.copy()
-        for backward in (True, False) if flow.min() < 0.0 else (False,):
+        oil, across, shear = self.contact.lubricant, self.across, self.shear
+        through = (shear.density * shear.gap)[:, None] * shear.speed
+        mass = through @ across.weights
+        self.carried = oil.heat_capacity * self.at_nodes(through + (mass[self.last // 2] - mass)[:, None])
+        self.gradient = np.diff(p) / self.lengths
+        self.response = np.zeros((shear.gap.size, 2))
+        first = self.first = max(
+            1, int(np.argmax(shear.gap < _INLET * np.interp(0.0, self.middles, shear.gap)))
+        )
+        before = self.temperature.copy()
+        back = np.flatnonzero(self.carried.min(axis=1) < 0.0)
+        sweeps = [(self.last, False)]
+        if back.size > 0:  # some runs back
+            sweeps.insert(0, (min(int(back[-1]), self.last), True))
+        for to, backward in sweeps:
             heat_across(
                 self.x,
-                self.gap,
-                flow,
-                self.heat,
-                expanding,
+                shear.gap,
+                self.carried,
+                shear.viscosity,
+                shear.across,
+                shear.rate,
+                shear.fall,
+                shear.yielding,
+                shear.speed,
+                self.gradient,
+                oil.expansion,
                 oil.conductivity,
                 across.zeta,
+                across.weights,
                 across.derive,
-                across.derive_2,
+                across.stiffness,
                 across.sum_up,
                 self.bodies,
                 self.bulk,
                 first,
-                self.last,
+                to,
+                before,
                 self.temperature,
                 self.into,
                 backward,
+                self.response,
             )
         self.temperature[self.last + 1 :] = self.temperature[self.last]
         change, warm = self.temperature - before, self.temperature - self.undisturbed
         self.unsettled = float(np.abs(change).sum() / max(np.abs(warm).sum(), warm.size * _COLD))
-        self.temperature = before + _FOLLOWED * change
-        self.into = taken + _FOLLOWED * (self.into - taken)
 
     @property
     def traction(self) -> float:
         """Mean shear stress over the load, positive where the first surface is the faster."""
-        to = slice(0, self.last + 1)
-        return -float(np.trapezoid(self.mean_stress, self.x[to])) / self.contact.load
+        return -self._along(self.shear.flow[:, 0]) / self.contact.load
+
+    def _along(self, values: Array) -> float:
+        """Integrate values of cells along the film."""
+        to = self.last + 1
+        return float(values[:to] @ self.lengths[:to])
 
     def rises(self) -> tuple[float, float]:
         """Greatest rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
@@ -194,30 +279,32 @@ class Heated:
 
     def rolling(self, P: Array) -> float:
         """Integral of h p'/2 [N/m]."""
-        p = P * self.groups.pressure
-        return float(0.25 * np.sum((self.gap[1:] + self.gap[:-1]) * np.diff(p)))
+        return float(0.5 * np.sum(self.shear.gap * np.diff(P * self.groups.pressure)))
 
-    def stresses(self) -> Array:
+    def stresses(self, P: Array) -> Array:
         """Shear stress at both surfaces (n, 2) [Pa]; 0 behind the film."""
-        found, to = np.zeros((self.x.size, 2)), slice(0, self.last + 1)
-        tilt = 0.5 * self.gap[to] * self.gradient
-        found[to] = np.stack([self.mean_stress - tilt, self.mean_stress + tilt], axis=1)
-        return found
+        tilt = 0.5 * self.shear.gap * np.diff(P * self.groups.pressure) / self.lengths
+        mean = self.shear.flow[:, 0]
+        found = np.stack([mean - tilt, mean + tilt], axis=1)
+        found[self.last + 1 :] = 0.0
+        return self.at_nodes(found)
 
     def losses(self) -> dict[str, float]:
         """Where the power of one metre of face goes [W/m]."""
-        oil, to, weights = self.contact.lubricant, slice(0, self.last + 1), self.across.weights
-        x, gap = self.x[to], self.gap[to]
-        sheared = float(np.trapezoid(gap * (self.heat @ weights), x))
-        sliding = -float(np.trapezoid(self.mean_stress, x)) * self.contact.sliding
-        T = self.temperature[to]
-        squeezed = oil.expansion * gap * self.gradient * ((self.speed * T) @ weights)
-        carried = (
-            oil.heat_capacity * (self.density[to] * gap) * ((self.speed * (T - self.undisturbed)) @ weights)
+        shear, weights = self.shear, self.across.weights
+        made = shear.gap * ((shear.across * shear.rate) @ weights)
+        sheared = self._along(made)
+        sliding = -self._along(shear.flow[:, 0]) * self.contact.sliding
+        if self.solids is None:
+            held = dict.fromkeys(("compression", "first_body", "second_body", "oil", "closure"), math.nan)
+            return {"dissipation": sheared, "sliding": sliding, "rolling": sheared - sliding} | held
+        made[self.first :] = 0.0
+        compression = (
+            self._along(shear.gap * ((shear.speed * self.temperature) @ weights) * self.gradient)
+            * self.contact.lubricant.expansion
         )
-        compression = float(np.trapezoid(squeezed, x))
-        first, second = (float(np.trapezoid(row[to], x)) for row in self.into)
-        away = float(carried[-1] - carried[0])
+        first, second = (self._along(row) for row in self.into)
+        away = self._along(made) + self._carried_off()
         return {
             "dissipation": sheared,
             "sliding": sliding,
@@ -229,7 +316,10 @@ class Heated:
             "closure": (first + second + away) / (sheared + compression) - 1.0 if sheared > 0.0 else 0.0,
         }
 
-    def softer(self, share: float) -> Heated:
-        """Return the same oil on the same grid with a share of the sliding."""
-        contact = replace(self.contact, sliding=share * self.contact.sliding)
-        return Heated(contact, self.grid, self.groups, self.solids, self.bulk)
+    def _carried_off(self) -> float:
+        """Heat that leaves with the oil at both ends of the cells where it is followed [W/m]."""
+        k, T, weights = self.last, self.temperature, self.across.weights
+        near = self.lengths[k] / (self.lengths[k] + self.lengths[k - 1])
+        behind = T[k] + near * (T[k] - T[k - 1]) - self.undisturbed
+        ahead = np.minimum(self.carried[self.first], 0.0) * (T[self.first] - self.undisturbed)
+        return float((self.carried[k + 1] * behind - ahead) @ weights)

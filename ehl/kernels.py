@@ -62,6 +62,56 @@ def log_potential(nodes: Array, points: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
+def _opening(f: int, gap: Array, density: Array, faces: Array) -> tuple[float, float, float, float]:
+    """Give w = 1/(rho H^3) at both ends of a cell and four times in its middle, and rho H in its middle."""
+    ln_middle = 0.0
+    for k in range(3):
+        i = f - 1 + k
+        if i >= 0:
+            ln_middle += faces[f, k] * math.log(density[i] * gap[i])
+    middle = math.exp(ln_middle)
+    w_mid = 4.0 * (0.5 * (density[f] + density[f + 1])) ** 2 / middle**3
+    return 1.0 / (density[f] * gap[f] ** 3), w_mid, 1.0 / (density[f + 1] * gap[f + 1] ** 3), middle
+
+
+@njit(cache=True, error_model="numpy")
+def _fluidity(f: int, ln_viscosity: Array, shear: Array) -> tuple[float, float]:
+    """Mean of 1/eta over a cell, and how much more of it than half its first end decides."""
+    ln_mean = 0.5 * (ln_viscosity[f] + ln_viscosity[f + 1])
+    d = ln_viscosity[f] - ln_viscosity[f + 1]
+    if shear.shape[0] > 0:
+        ln_mean = shear[f, 0]
+        d *= shear[f, 1]
+    if abs(d) < 1e-3:
+        return math.exp(-ln_mean) * (1.0 + d * d / 24.0), d / 12.0
+    return math.exp(-ln_mean) * math.sinh(0.5 * d) / (0.5 * d), 0.5 / math.tanh(0.5 * d) - 1.0 / d
+
+
+@njit(cache=True, error_model="numpy")
+def pressure_flow(
+    nodes: Array,
+    pressure: Array,
+    gap: Array,
+    faces: Array,
+    ln_viscosity: Array,
+    density: Array,
+    shear: Array,
+    lam: float,
+) -> Array:
+    """Flow that the pressure moves upstream through each cell, (n-1,), at the viscosities as they are.
+
+    The first term of the flux of :func:`reynolds`, whose arguments these are.
+    """
+    flow = np.empty(nodes.size - 1)
+    for f in range(nodes.size - 1):
+        w_left, w_mid, w_right, _ = _opening(f, gap, density, faces)
+        fluidity, _ = _fluidity(f, ln_viscosity, shear)
+        h = nodes[f + 1] - nodes[f]
+        flow[f] = 6.0 * fluidity * (pressure[f + 1] - pressure[f]) / (lam * h * (w_left + w_mid + w_right))
+    return flow
+
+
+@njit(cache=True, error_model="numpy")
 def reynolds(
     nodes: Array,
     pressure: Array,
@@ -71,6 +121,7 @@ def reynolds(
     ln_viscosity_slope: Array,
     density: Array,
     density_slope: Array,
+    shear: Array,
     lam: float,
     upstream: Array,
 ) -> tuple[Array, Array]:
@@ -85,6 +136,9 @@ def reynolds(
     The share upstream[f] of the second is rho H carried on from the nodes f-1, f to the middle of the cell instead,
     see :func:`ehl.grid.upstream_share`.
 
+    Oil that thins under its shear moves more than in proportion to dP: the first term D is then linearised about
+    the flow M for which the viscosity was found, M + g (D - M).
+
     Parameters
     ----------
     nodes, pressure, gap : ndarray (n,)
@@ -93,6 +147,9 @@ def reynolds(
         From :func:`ehl.grid.face_weights`.
     ln_viscosity, ln_viscosity_slope, density, density_slope : ndarray (n,)
         ln(eta/eta0), rho/rho0 and their derivatives by P.
+    shear : ndarray (n-1, 5) or (0, 5)
+        Of oil that thins, in each cell: ln of its viscosity over eta0; the factor that takes differences and slopes
+        of ``ln_viscosity`` to it; M; g; and by how much the exponent of H in the first term exceeds 3 g.
     lam : float
         lambda.
     upstream : ndarray (n-1,)
@@ -110,29 +167,23 @@ def reynolds(
     slopes = np.zeros((n - 1, 6))
     for f in range(n - 1):
         h = nodes[f + 1] - nodes[f]
-        d = ln_viscosity[f] - ln_viscosity[f + 1]
-        if abs(d) < 1e-3:
-            ratio = 1.0 + d * d / 24.0
-            tilt = d / 12.0
-        else:
-            ratio = math.sinh(0.5 * d) / (0.5 * d)
-            tilt = 0.5 / math.tanh(0.5 * d) - 1.0 / d
-        fluidity = math.exp(-0.5 * (ln_viscosity[f] + ln_viscosity[f + 1])) * ratio
-        ln_middle = 0.0
-        for k in range(3):
-            i = f - 1 + k
-            if i >= 0:
-                ln_middle += faces[f, k] * math.log(density[i] * gap[i])
-        middle = math.exp(ln_middle)
+        fluidity, tilt = _fluidity(f, ln_viscosity, shear)
+        w_left, w_mid, w_right, middle = _opening(f, gap, density, faces)
         density_sum = density[f] + density[f + 1]
-        w_mid = 4.0 * (0.5 * density_sum) ** 2 / middle**3
         v_mid = w_mid * middle
-        w_left = 1.0 / (density[f] * gap[f] ** 3)
-        w_right = 1.0 / (density[f + 1] * gap[f + 1] ** 3)
         w = w_left + w_mid + w_right
         mean = (1.0 / gap[f] ** 2 + v_mid + 1.0 / gap[f + 1] ** 2) / w
         mobility = 6.0 * fluidity / (lam * h * w)
         drive = mobility * (pressure[f + 1] - pressure[f])
+        moved = drive
+        by_pressure = 1.0
+        by_gap = 0.0
+        if shear.shape[0] > 0:
+            by_pressure = shear[f, 1]
+            mobility *= shear[f, 3]
+            moved = shear[f, 2] + shear[f, 3] * (drive - shear[f, 2])
+            drive *= shear[f, 3]
+            by_gap = 0.5 * shear[f, 4] * moved
         back = 0.5 * h / (nodes[f] - nodes[f - 1]) if f > 0 else 0.0
         ahead = max(f - 1, 0)
         extrapolation = (-back, 1.0 + back, 0.0)
@@ -141,18 +192,18 @@ def reynolds(
         )
         carried = upstream[f] * math.exp(ln_carried)
         kept = 1.0 - upstream[f]
-        flux[f] = drive - kept * mean - carried
+        flux[f] = moved - kept * mean - carried
         # d flux = drive d ln(fluidity) + mobility d(dP) - (drive dw + kept (dv - mean dw))/w - d(carried), v = rho H w
         both = (kept * mean - drive) / w
-        slopes[f, 1] = -mobility - drive * (0.5 - tilt) * ln_viscosity_slope[f]
-        slopes[f, 2] = mobility - drive * (0.5 + tilt) * ln_viscosity_slope[f + 1]
+        slopes[f, 1] = -mobility - drive * (0.5 - tilt) * by_pressure * ln_viscosity_slope[f]
+        slopes[f, 2] = mobility - drive * (0.5 + tilt) * by_pressure * ln_viscosity_slope[f + 1]
         for k in range(1, 3):
             i = f - 1 + k
             w_end = w_left if k == 1 else w_right
             by_density = density_slope[i] / density[i]
             slopes[f, k] -= both * w_end * by_density
             slopes[f, k] += 2.0 * density_slope[i] / density_sum * (both * w_mid - kept * v_mid / w)
-            slopes[f, 3 + k] += (-3.0 * both * w_end + 2.0 * kept / (gap[i] ** 2 * w)) / gap[i]
+            slopes[f, 3 + k] += (-3.0 * both * w_end + 2.0 * kept / (gap[i] ** 2 * w) + by_gap) / gap[i]
         by_ln_middle = -3.0 * both * w_mid + 2.0 * kept * v_mid / w
         for k in range(3):
             i = f - 1 + k

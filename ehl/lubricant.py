@@ -201,10 +201,17 @@ class Lubricant:
         C. J. A. Roelands, thesis, Delft (1966).
         """
         ratio, slope = self.law.log_ratio(p)
+        hot, cooling, _ = self.warmed(ratio, T)
+        return hot, slope * cooling
+
+    def warmed(self, ratio: ArrayLike, T: ArrayLike) -> tuple[Array, Array, Array]:
+        """Take ln(eta/eta0) at T0 to temperatures [K]; also its derivative by itself and -d ln(eta)/dT [1/K]."""
         above = math.log(self.viscosity) - ROELANDS_LN_VISCOSITY
         exponent = self.viscosity_slope * (self.temperature - _POLE) / above
-        cooling = ((np.asarray(T, dtype=float) - _POLE) / (self.temperature - _POLE)) ** -exponent
-        return (above + ratio) * cooling - above, slope * cooling
+        from_pole = np.asarray(T, dtype=float) - _POLE
+        cooling = (from_pole / (self.temperature - _POLE)) ** -exponent
+        left = (above + np.asarray(ratio, dtype=float)) * cooling
+        return left - above, cooling, exponent * left / from_pole
 
     def at_temperature(self, T: float) -> Lubricant:
         """Return the same oil by its numbers at another temperature [K].

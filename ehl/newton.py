@@ -134,7 +134,9 @@ def newton(
         joins = ~inside[1:-1] & (imbalance > 0.0)
         inside[1:-1] |= joins
         free = np.flatnonzero(inside)
-        system = newton_matrix(slopes, influence, grid.weights, free)
+        swelling = None if fluid is None else fluid.swelling
+        by_pressure = influence if swelling is None else influence + swelling
+        system = newton_matrix(slopes, by_pressure, grid.weights, free)
         scale = system[:-1, -1].copy()
         if squeeze is not None:
             system[:-1, :-1] -= scale[:, None] * squeeze.rows(P, H, influence, free)

@@ -56,6 +56,11 @@ class Plan:
             H_c = starved_film(H_flooded, max(distance, _NEAREST_INLET))
         return cls(kind, H_c, (-1.0 - distance, default_domain(H_c)[1]), fixed=True)
 
+    @property
+    def inlet_error(self) -> float:
+        """Share of the film lost to the finite inlet; 0 where the domain was given."""
+        return 0.0 if self.fixed else (math.sqrt(self.H_c) / (-1.0 - self.domain[0])) ** 3
+
     def serves(self, other: Plan) -> bool:
         """Whether grids of this plan are good enough for the other."""
         if self.kind != other.kind or self.fixed != other.fixed:

@@ -20,7 +20,7 @@ _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257
 _MOST_NODES = 2049
-_REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
+REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 
 
@@ -137,7 +137,7 @@ def solve_checked(contact: LineContact, options: Options, start: State | None) -
     """Solve with arguments that were checked."""
     if options.supply is not None:
         return _starved(contact, options, options.supply, start)
-    reach = max(_REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
+    reach = max(REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
     flooded = Plan.of(contact, options.grid, options.domain, reach)
     return _solve(Run(contact, flooded, None, whole_spike=options.spike is not None), options, start)
 
@@ -202,7 +202,7 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
     A grid that fails is passed over: the next one is compared with the last that gave in.
     """
     given = options.nodes is not None
-    inlet = 0.0 if run.plan.fixed else (math.sqrt(run.plan.H_c) / (-1.0 - run.plan.domain[0])) ** 3
+    inlet = run.plan.inlet_error
     if options.sharp and coarse.found.converged and fine.found.converged:
         if not given and film_error(coarse, fine) + inlet <= options.tolerance and options.spike is None:
             return film_of(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)

@@ -37,7 +37,8 @@ def at(rho1, load, oil=OIL):
 SLIDING = at(9.745e-3, 2.08e5)
 
 
-# the greatest oil temperature of the third stands in the inlet or at the spike, by the grid: 6.5 K in the middle
+# the greatest oil temperature of the third stands at the spike and grows with the grid: 6.5 K in the middle; its heat
+# closes its mechanical balance to 1 % here and to 3.5 % there
 @pytest.mark.parametrize(
     ("contact", "h_cen", "h_min", "mu", "rise", "surface", "heat", "rise_off"),
     [
@@ -54,9 +55,12 @@ def test_cases_of_an_independent_solver(contact, h_cen, h_min, mu, rise, surface
     assert abs(film.traction_coefficient) == pytest.approx(mu, rel=0.02)
     assert math.copysign(1.0, film.traction_coefficient) == math.copysign(1.0, contact.sliding)
     assert film.oil_temperature_rise == pytest.approx(rise, rel=rise_off)
-    assert film.surface_temperature_rise == pytest.approx(surface, rel=0.03)
-    assert film.dissipation == pytest.approx(heat, rel=0.02)
-    assert abs(film.losses.closure) < 0.05
+    assert film.surface_temperature_rise == pytest.approx(surface, rel=0.03)  # 1 % of theirs and ours
+    assert film.dissipation == pytest.approx(heat, rel=0.03)
+    assert abs(film.losses.closure) < 0.002
+    # what the surfaces put in: sliding against the mean stress, and rolling of both against the pressure
+    rolled = 2.0 * contact.entrainment * film.rolling_friction
+    assert film.dissipation == pytest.approx(film.losses.sliding + rolled, rel=0.012)
 
 
 def sound_enough(film):

@@ -1,0 +1,202 @@
+"""Contacts with heat on one grid after another: starts, neighbours, refinement and what two grids differ by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from base import Array, Cost
+from ehl.bodies import Solid
+from ehl.contact import LineContact
+from ehl.discrete import Groups
+from ehl.heated import Heated
+from ehl.levels import Level, State, transfer
+from ehl.newton import newton
+from ehl.options import Options
+from ehl.outcome import GRID_FACTOR, film_error
+from ehl.plan import Plan
+from ehl.solver import REACH, solve_checked
+
+_DONE = 0.05  # last step of the pressure over the tolerance; steps shrink by three and more each
+_MOST_STEPS = 60
+_FIRST_NODES = 65
+_MOST_NODES = 513
+_SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
+
+Solved = tuple[Level, Heated]
+
+
+def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
+    """Return the contact with the oil as it is at the mean bulk temperature, isothermal and Newtonian."""
+    oil, mean = contact.lubricant, 0.5 * (bulk[0] + bulk[1])
+    if oil.viscosity_law is not None or mean == oil.temperature:
+        return contact
+    ratio, slope = (float(v) for v in oil.hot_log_viscosity(0.0, mean))
+    warm = replace(oil, viscosity=oil.viscosity * math.exp(ratio), pressure_viscosity=slope, temperature=mean)
+    return replace(contact, lubricant=warm)
+
+
+class Compared:
+    """Two levels with heat: the figures of the finer and their changes."""
+
+    def __init__(self, before: Solved, last: Solved, inlet: float) -> None:
+        (self.coarse, self.before), (self.fine, self.oil) = before, last
+        (mu_0, rise_0), (mu, rise) = ((o.traction, o.rises()[0]) for o in (self.before, self.oil))
+        self.inlet = inlet
+        self.traction_error = abs(mu_0 - mu) / max(abs(mu), 1e-4)
+        self.temperature_error = abs(rise_0 - rise) / max(rise, 1.0)
+        warmer = self.oil.contact.lubricant.viscosity_slope * abs(rise_0 - rise)
+        worst = max(
+            film_error(self.coarse, self.fine), GRID_FACTOR * self.traction_error, GRID_FACTOR * warmer
+        )
+        self.error = worst + inlet
+
+    @property
+    def state(self) -> State:
+        """What a next film starts from."""
+        return State(self.coarse.bare(), self.fine.bare())
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """Both levels of a similar contact: what is found on the coarser moves the start on the finer along."""
+
+    coarse: Solved
+    fine: Solved
+
+    def carry(self, solved: Solved, level: Level, oil: Heated) -> Level:
+        """Start the finer level and its oil from the old one and from what has changed on the coarser."""
+        (old, old_oil), (new, new_oil) = self.coarse, solved
+        at, places = level.grid.nodes, old.grid.nodes
+        P = self.fine[0].found.P + np.interp(at, places, new.found.P - old.found.P)
+        H0 = self.fine[0].found.H0 + new.found.H0 - old.found.H0
+        oil.start_from(self.fine[1])
+        oil.add(new_oil, old_oil)
+        last = int(np.flatnonzero(new.found.P > 0.0)[-1])
+        P[at > places[last]] = 0.0
+        return replace(level, found=replace(level.found, P=np.maximum(P, 0.0), H0=H0))
+
+
+class Search:
+    """Solves levels with heat; counts what it does."""
+
+    def __init__(
+        self,
+        contact: LineContact,
+        solids: tuple[Solid, Solid] | None,
+        bulk: tuple[float, float],
+        tolerance: float,
+    ) -> None:
+        self.contact, self.solids, self.bulk, self.tolerance = contact, solids, np.array(bulk), tolerance
+        self.isothermal = at_bulk(contact, bulk)
+        self.reach = max(REACH, (10.0 / tolerance) ** (1.0 / 3.0))
+        self.iterations, self.restarts, self.nodes, self.left = 0, 0, 0, ""
+
+    def from_nothing(self, nodes: int | None) -> Compared | None:
+        """Start from the isothermal, Newtonian film."""
+        tolerance = max(self.tolerance, 0.01)
+        for n in (_FIRST_NODES, None) if nodes is None else (nodes,):
+            film = solve_checked(self.isothermal, Options(tolerance, n), None)
+            self.iterations += film.cost.iterations
+            if film.converged and film.state is not None:
+                base = film.state.fine if n == _FIRST_NODES else film.state.coarse
+                return self._refine(base, None, nodes)
+        self.left = f"without heat and shear: {film.message}"
+        return None
+
+    def from_neighbour(self, old: State, oils: tuple[Heated, Heated], nodes: int | None) -> Compared | None:
+        """Start from both levels of a similar contact and their oils."""
+        plan = Plan.of(self.isothermal, "graded", None, self.reach)
+        if old.plan.serves(plan):
+            both = Neighbour((old.coarse, oils[0]), (old.fine, oils[1]))
+            return self._refine(old.coarse, both, nodes)
+        moved = replace(old.fine, plan=plan, grid=plan.grid(old.fine.grid.nodes.size))
+        P, H0 = transfer(old.fine, self.contact, plan, moved.grid)
+        return self._refine(replace(moved, found=replace(old.fine.found, P=P, H0=H0)), None, nodes)
+
+    def _refine(self, base: Level, old: Neighbour | None, nodes: int | None) -> Compared | None:
+        """Double the grid until the estimate meets what is asked; a grid that fails is passed over."""
+        n = 2 * _FIRST_NODES - 1 if nodes is None else nodes
+        known = None if old is None else old.coarse[1]
+        before = self._on(self._level(base, (n + 1) // 2), known)
+        while True:
+            level, oil = (base, known) if before is None else before
+            fine = self._level(level, n)
+            last = self._on(fine, oil, old if before is not None else None, before)
+            if before is not None and last is not None:
+                found = Compared(before, last, base.plan.inlet_error)
+                if nodes is not None or found.error <= self.tolerance:
+                    return found
+                self.left = f"error {found.error:.2g} left on {n} nodes"
+            if last is None:
+                self.left = "Newton's method did not converge"
+            n = 2 * n - 1
+            if nodes is not None or n > _MOST_NODES:
+                return None
+            before, old = last or before, None
+
+    def _level(self, base: Level, n: int) -> Level:
+        """Carry pressures to a grid of n nodes, as a start."""
+        same = base.grid.nodes.size == n
+        grid = base.grid if same else base.plan.grid(n)
+        P, H0 = transfer(base, self.contact, base.plan, grid)
+        return Level(self.contact, base.plan, grid, replace(base.found, P=P, H0=H0))
+
+    def _on(
+        self, level: Level, known: Heated | None, old: Neighbour | None = None, found: Solved | None = None
+    ) -> Solved | None:
+        """Solve on a level's grid from its pressures and from another solution's temperatures."""
+        self.nodes = max(self.nodes, level.grid.nodes.size)
+        oil = self._oil(level, 1.0, known)
+        if old is not None and found is not None and old.fine[0].grid.nodes.size == level.grid.nodes.size:
+            level = old.carry(found, replace(level, grid=old.fine[0].grid), oil)
+        solved = self._newton(level, oil)
+        if solved is not None:
+            return solved
+        self.restarts += 1
+        partly: Solved | None = None
+        for share in _SHARES:
+            oil = self._oil(level, share, None if partly is None else partly[1])
+            partly = self._newton(level if partly is None else partly[0], oil)
+            if partly is None:
+                return None
+        return partly
+
+    def _oil(self, level: Level, share: float, known: Heated | None) -> Heated:
+        """Oil on a level's grid, with a share of the sliding."""
+        contact = replace(self.contact, sliding=share * self.contact.sliding)
+        oil = Heated(contact, level.grid, Groups.on(contact, level.grid), self.solids, self.bulk)
+        if known is not None:
+            oil.start_from(known)
+        return oil
+
+    def _newton(self, level: Level, oil: Heated) -> Solved | None:
+        found = level.found
+        try:
+            with np.errstate(all="ignore"):
+                solved = newton(
+                    level.grid,
+                    oil.groups,
+                    found.P,
+                    found.H0,
+                    oil=oil,
+                    done=_DONE * self.tolerance,
+                    max_iterations=_MOST_STEPS,
+                )
+        except np.linalg.LinAlgError:  # temperatures of a trial that diverged
+            return None
+        self.iterations += solved.iterations
+        if not solved.converged or not np.isfinite(oil.temperature).all():
+            return None
+        return replace(level, contact=self.contact, found=solved), oil
+
+    def cost(self, seconds: float) -> Cost:
+        """What it took."""
+        counts = {"restarts": self.restarts}
+        return Cost(seconds, unknowns=self.nodes - 1, iterations=self.iterations, counts=counts)
+
+    def places(self) -> Array:
+        """Nodes of a film that was not found [m]."""
+        return np.array([-1.0, 1.0]) * self.contact.half_width
