@@ -59,6 +59,25 @@ class RingOfLinks:
             self._influences[j] = forth + power(self.back, self.links - j) @ self.back_start
         return self._influences[j]
 
+    def at_ends(self, force: Array, link: int) -> Array:
+        """Displacements of both ends of a link when forces act on both ends of link 0.
+
+        Parameters
+        ----------
+        force : (2n, loads) array
+            Right end first.
+        link : int
+
+        Returns
+        -------
+        (2n, loads) array
+            Right end first.
+        """
+        half = len(force) // 2
+        behind, here, ahead = (self.influence(link + step) for step in (-1, 0, 1))
+        right, left = force[:half], force[half:]
+        return np.concatenate([here @ right + behind @ left, ahead @ right + here @ left])
+
     @cached_property
     def _influences(self) -> dict[int, Array]:
         return {}

@@ -19,7 +19,7 @@ import numpy as np
 
 from base import Array, Integers, record, unclocked
 
-__all__ = ["Condensation", "condensation"]
+__all__ = ["Condensation", "condensation", "unknowns_of"]
 
 FEW = 32
 """Elements of a group that is not halved."""
@@ -125,7 +125,7 @@ class _Group:
 
 
 def condensation(
-    points: Array, triangles: Integers, elements: Array, cut: Integers, hub: Integers
+    points: Array, triangles: Integers, elements: Array, cut: Integers, hub: Integers, components: int = 2
 ) -> Condensation:
     """Condense a sector onto its cuts.
 
@@ -134,10 +134,12 @@ def condensation(
     points : (n, 2) array
         Nodes.
     triangles : (m, 6) array
-    elements : (m, 12, 12) array
-        Stiffness matrices of the triangles, unknown 2 i + component of their node i.
+    elements : (m, 6 components, 6 components) array
+        Stiffness matrices of the triangles, unknown ``components`` i + component of their node i.
     cut, hub : index arrays
         Nodes on the cuts, in the order that is wanted, and held ones.
+    components : int
+        Displacements of a node.
     """
     users = np.bincount(triangles.ravel(), minlength=len(points))
     users[cut] += 1  # never all in one group
@@ -152,8 +154,8 @@ def condensation(
         order, ends = _order(users[nodes], times[nodes])
         nodes = nodes[order]
         number[nodes] = np.arange(len(nodes))
-        unknown = _unknowns(number[triangles[some].ravel()]).reshape(len(some), -1)
-        size = 2 * len(nodes)
+        unknown = unknowns_of(number[triangles[some].ravel()], components).reshape(len(some), -1)
+        size = components * len(nodes)
         place = (unknown[:, :, None] * size + unknown[:, None, :]).ravel()
         summed = np.bincount(place, elements[some].ravel(), size * size)
         matrix = np.asarray(summed, dtype=float).reshape(size, size)
@@ -167,9 +169,9 @@ def condensation(
         order, ends = _order(users[nodes], times[nodes])
         nodes = nodes[order]
         number[nodes] = np.arange(len(nodes))
-        matrix = np.zeros((2 * len(nodes), 2 * len(nodes)))
+        matrix = np.zeros((components * len(nodes), components * len(nodes)))
         for one in (first, second):
-            unknown = _unknowns(number[one.nodes])
+            unknown = unknowns_of(number[one.nodes], components)
             # columns, then whole rows: twice as fast as both at once
             rows = np.zeros((len(unknown), len(matrix)))
             rows[:, unknown] = one.stiffness
@@ -177,11 +179,13 @@ def condensation(
         return eliminated(nodes, times[nodes], matrix, ends)
 
     def eliminated(nodes: Integers, used: Integers, matrix: Array, ends: tuple[int, int]) -> _Group:
-        done, left = slice(2 * ends[0]), slice(2 * ends[0], 2 * ends[1])
+        first, last = (components * end for end in ends)
+        done, left = slice(first), slice(first, last)
         inverse = _inverse_of_factor(matrix[done, done])
         coupling = inverse @ matrix[done, left]
         kept = nodes[ends[0] : ends[1]]
-        fronts.append(_Front(_unknowns(nodes[: ends[0]]), _unknowns(kept), inverse, coupling))
+        own, shared = (unknowns_of(some, components) for some in (nodes[: ends[0]], kept))
+        fronts.append(_Front(own, shared, inverse, coupling))
         return _Group(kept, used[ends[0] : ends[1]], matrix[left, left] - coupling.T @ coupling)
 
     def group(some: Integers) -> _Group:
@@ -194,8 +198,9 @@ def condensation(
 
     whole = group(np.arange(len(triangles)))
     number[whole.nodes] = np.arange(len(whole.nodes))
-    place = _unknowns(number[cut])
-    return Condensation(tuple(fronts), _unknowns(cut), whole.stiffness[np.ix_(place, place)])
+    place = unknowns_of(number[cut], components)
+    stiffness = whole.stiffness[np.ix_(place, place)]
+    return Condensation(tuple(fronts), unknowns_of(cut, components), stiffness)
 
 
 def _order(users: Integers, used: Integers) -> tuple[Integers, tuple[int, int]]:
@@ -218,6 +223,7 @@ def _inverse_of_factor(matrix: Array) -> Array:
     return np.asarray(inverse.T)
 
 
-def _unknowns(nodes: Integers) -> Integers:
-    unknowns: Integers = (2 * nodes[:, None] + np.arange(2)).ravel()
+def unknowns_of(nodes: Integers, components: int = 2) -> Integers:
+    """Unknowns of nodes, one after the other (components n,)."""
+    unknowns: Integers = (components * nodes[:, None] + np.arange(components)).ravel()
     return unknowns

@@ -19,7 +19,7 @@ import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, record, unclocked
 from fem.chain import RingOfLinks, ring_of_links
-from fem.condensation import Condensation, condensation
+from fem.condensation import Condensation, condensation, unknowns_of
 from fem.elasticity import PlaneElasticity, element_matrices
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import SectorMesh, Sizes
 
-__all__ = ["Ring", "mesh_and_factor", "ring_of"]
+__all__ = ["Ring", "held_and_cut", "mesh_and_factor", "polar_components", "ring_of"]
 
 
 @record
@@ -104,10 +104,7 @@ class Ring:
         (cut, loads) array
             Polar components, right cut first.
         """
-        half = len(self.cut) // 2
-        behind, here, ahead = (self.links.influence(sector + step) for step in (-1, 0, 1))
-        right, left = force[:half], force[half:]
-        return np.concatenate([here @ right + behind @ left, ahead @ right + here @ left])
+        return self.links.at_ends(force, sector)
 
     def all_interfaces(self, force: Array) -> Array:
         """As ``interfaces`` for every sector 0..z-1 and one load (cut,): (z, cut)."""
@@ -125,28 +122,15 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     mesh : SectorMesh
     law : PlaneElasticity
     """
-    with unclocked():
-        from scipy.sparse import csc_array
-
     watch = Stopwatch()
     elements = element_matrices(mesh.points, mesh.triangles, law) * mesh.thickness[:, None, None]
     assembled = watch.seconds
-    hub_nodes = np.unique(mesh.facets["bore"])
-    right = np.setdiff1d(mesh.side_nodes("right"), hub_nodes, assume_unique=True)
-    left = np.setdiff1d(mesh.side_nodes("left"), hub_nodes, assume_unique=True)
-    by_radius = [side[np.argsort(np.linalg.norm(mesh.points[side], axis=1))] for side in (right, left)]
-    cut_nodes = np.concatenate(by_radius)
-    cut, hub = _unknowns(cut_nodes), _unknowns(hub_nodes)
+    cut_nodes, hub_nodes = held_and_cut(mesh)
+    cut, hub = unknowns_of(cut_nodes), unknowns_of(hub_nodes)
     inner = np.setdiff1d(np.arange(mesh.unknowns), np.concatenate([cut, hub]))
     condensed = condensation(mesh.points, mesh.triangles, elements, cut_nodes, hub_nodes)
     factored = watch.seconds
-    outward = mesh.points[cut_nodes]
-    outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
-    turns = np.stack([outward, np.stack([-outward[:, 1], outward[:, 0]], axis=1)], axis=2)
-    # one 2 x 2 block for each node, column by column
-    blocks = np.swapaxes(turns, 1, 2).ravel()
-    rows = np.repeat(np.arange(len(cut)).reshape(-1, 2), 2, axis=0).ravel()
-    polar = csc_array((blocks, rows, np.arange(0, 2 * len(cut) + 1, 2)), shape=(len(cut), len(cut)))
+    polar = polar_components(mesh.points[cut_nodes])
     schur = polar.T @ (polar.T @ condensed.stiffness).T
     schur = 0.5 * (schur + schur.T)
     links = ring_of_links(schur, mesh.teeth)
@@ -170,6 +154,30 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     )
 
 
+def held_and_cut(mesh: SectorMesh) -> tuple[Integers, Integers]:
+    """Nodes on the cuts, right ones first and each side by radius, and held ones on the bore."""
+    hub = np.unique(mesh.facets["bore"])
+    sides = [np.setdiff1d(mesh.side_nodes(side), hub, assume_unique=True) for side in ("right", "left")]
+    by_radius = [side[np.argsort(np.linalg.norm(mesh.points[side], axis=1))] for side in sides]
+    return np.concatenate(by_radius), hub
+
+
+def polar_components(points: Array, components: int = 2) -> csc_array:
+    """Matrix from polar to Cartesian components at points (n, 2); a third component stays what it is."""
+    with unclocked():
+        from scipy.sparse import csc_array
+
+    outward = points / np.linalg.norm(points, axis=1, keepdims=True)
+    turns = np.zeros((len(points), components, components))
+    turns[:, 2:, 2:] = 1.0
+    turns[:, :2, 0] = outward
+    turns[:, 0, 1], turns[:, 1, 1] = -outward[:, 1], outward[:, 0]
+    # one block for each node, column by column
+    blocks, size = np.swapaxes(turns, 1, 2).ravel(), components * len(points)
+    rows = np.repeat(np.arange(size).reshape(-1, components), components, axis=0).ravel()
+    return csc_array((blocks, rows, np.arange(0, components * size + 1, components)), shape=(size, size))
+
+
 def _columns(mesh: SectorMesh, elements: Array, some: Integers) -> csc_array:
     """Columns of the sector's stiffness matrix for some unknowns, from the elements that have them."""
     from scipy.sparse import coo_array
@@ -184,11 +192,6 @@ def _columns(mesh: SectorMesh, elements: Array, some: Integers) -> csc_array:
     return coo_array(
         (values.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.unknowns, len(some))
     ).tocsc()
-
-
-def _unknowns(nodes: Integers) -> Integers:
-    unknowns: Integers = (2 * nodes[:, None] + np.arange(2)).ravel()
-    return unknowns
 
 
 def mesh_and_factor(

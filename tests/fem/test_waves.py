@@ -1,0 +1,99 @@
+"""Waves of load along the face: energy by three-dimensional strains, plane strain without a wave, limits."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+from fem.elasticity import PlaneElasticity, physical_gradients
+from fem.line_load import FlankPoints, flank_points
+from fem.waves import WaveElements, wave_answer, wave_elements
+from gears import Gear, GearPair
+from meshes import SectorMesh, Sizes, mesh_sector
+from meshes.sector import refined
+from meshes.triangle import shape
+
+LAW = PlaneElasticity("strain", 206e9, 0.3)
+
+
+class _Case(NamedTuple):
+    mesh: SectorMesh
+    elements: WaveElements
+    at: FlankPoints
+
+
+@pytest.fixture(scope="module")
+def case() -> _Case:
+    pair = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=40e-3)
+    profile = pair.teeth_profiles[0]
+    mesh = mesh_sector(profile, Sizes(), 1)
+    low, high = profile.flank_rho
+    at = flank_points(mesh, low + np.array([0.2, 0.5, 0.9]) * (high - low))
+    return _Case(mesh, wave_elements(mesh, LAW), at)
+
+
+def test_energy_is_that_of_the_strains_in_space(case: _Case) -> None:
+    """One element's energy over a wave length by Hooke's law in three dimensions, strains at points of a volume."""
+    rng = np.random.default_rng(3)
+    k, lam, mu = 700.0, *LAW.lame
+    one = case.mesh.triangles[:1]
+    unknown = rng.normal(size=(6, 3))
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefTri
+
+    (xi, eta), weight = get_quadrature(RefTri, 6)
+    gradient, determinant = physical_gradients(case.mesh.points, one, xi, eta)
+    values = shape(xi, eta)
+    turns, share = legendre.leggauss(12)
+    energy = 0.0
+    for z, part in zip(np.pi * (turns + 1) / k, np.pi * share / k, strict=True):
+        wave = np.array([np.cos(k * z), np.cos(k * z), np.sin(k * z)])
+        slope = np.array([-k * np.sin(k * z), -k * np.sin(k * z), k * np.cos(k * z)])
+        by_plane = np.einsum("qic,ia->qac", gradient[0], unknown) * wave[:, None]
+        by_face = (values @ unknown) * slope
+        strain = np.concatenate([by_plane, by_face[..., None]], axis=2)
+        strain = 0.5 * (strain + np.swapaxes(strain, 1, 2))
+        density = 0.5 * lam * np.trace(strain, axis1=1, axis2=2) ** 2 + mu * np.sum(strain**2, axis=(1, 2))
+        energy += part * float(np.sum(density * determinant[0] * weight))
+    matrix = case.elements.of(k)[0]
+    flat = unknown.ravel()
+    # the mean of cos^2 over a wave length is a half
+    assert 0.5 * flat @ matrix @ flat * np.pi / k == pytest.approx(energy, rel=1e-9)
+
+
+def test_a_wave_as_long_as_can_be_is_plane_strain(case: _Case) -> None:
+    plane, long = (wave_answer(*case[:2], k, case.at, 1) for k in (0.0, 1e-6))
+    for one, other in zip(plane, long, strict=True):
+        assert np.abs(one - other).max() < 1e-11 * np.abs(one).max()
+
+
+def test_answer_is_symmetric_and_shorter_waves_yield_less(case: _Case) -> None:
+    """Maxwell and Betti between teeth; energy falls as the wave's shear and pressure along z come in."""
+    owns = []
+    for k in (0.0, 50.0, 400.0, 3000.0):
+        own, _ = wave_answer(*case[:2], k, case.at, 0)
+        owns.append(own)
+    assert (np.diff(np.array(owns), axis=0) < 0.0).all()
+    mirrored = flank_points(case.mesh, case.at.rho, "right")
+    forth = wave_answer(*case[:2], 400.0, case.at, 1)
+    back = wave_answer(*case[:2], 400.0, mirrored, case.mesh.teeth - 1)
+    # the same tooth mirrored, with neighbours counted the other way round
+    assert np.allclose(forth[0], back[0], rtol=1e-4)
+    assert np.allclose(forth[1][0], back[1][-1], rtol=1e-4)
+
+
+def test_short_waves_grow_as_the_half_space_does(case: _Case) -> None:
+    """Far below the tooth's thickness, and above the elements' length, u falls as 2 ln k/(pi E*)."""
+    mesh = refined(case.mesh)
+    elements, at = wave_elements(mesh, LAW), flank_points(mesh, case.at.rho[:2])
+    own = [wave_answer(mesh, elements, k, at, 0)[0] for k in (1500.0, 3000.0)]
+    fall = (own[0] - own[1]) * np.pi * LAW.plane_modulus / (2 * np.log(2.0))
+    assert np.allclose(fall, 1.0, atol=0.02)
+
+
+def test_neighbours_do_not_feel_short_waves(case: _Case) -> None:
+    plane, short = (wave_answer(*case[:2], k, case.at, 1)[1] for k in (0.0, 3000.0))
+    assert np.abs(short).max() < 1e-3 * np.abs(plane).max()
