@@ -15,14 +15,16 @@ u_d = L^-T (z - W u_r).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from base import Array, Integers, record, unclocked
 
 __all__ = ["Condensation", "condensation", "unknowns_of"]
 
-FEW = 32
-"""Elements of a group that is not halved."""
+FEW, LEAST = 32, 4
+"""Elements of a group that is not halved, of two unknowns at a node, and the least of them with more unknowns."""
 
 
 @record
@@ -125,7 +127,12 @@ class _Group:
 
 
 def condensation(
-    points: Array, triangles: Integers, elements: Array, cut: Integers, hub: Integers, components: int = 2
+    points: Array,
+    triangles: Integers,
+    elements: Array | Callable[[Integers], Array],
+    cut: Integers,
+    hub: Integers,
+    components: int = 2,
 ) -> Condensation:
     """Condense a sector onto its cuts.
 
@@ -134,8 +141,9 @@ def condensation(
     points : (n, 2) array
         Nodes.
     triangles : (m, 6) array
-    elements : (m, 6 components, 6 components) array
-        Stiffness matrices of the triangles, unknown ``components`` i + component of their node i.
+    elements : (m, 6 components, 6 components) array, or callable
+        Stiffness matrices of the triangles, unknown ``components`` i + component of their node i; or what gives
+        those of some triangles.
     cut, hub : index arrays
         Nodes on the cuts, in the order that is wanted, and held ones.
     components : int
@@ -157,7 +165,8 @@ def condensation(
         unknown = unknowns_of(number[triangles[some].ravel()], components).reshape(len(some), -1)
         size = components * len(nodes)
         place = (unknown[:, :, None] * size + unknown[:, None, :]).ravel()
-        summed = np.bincount(place, elements[some].ravel(), size * size)
+        given = elements(some) if callable(elements) else elements[some]
+        summed = np.bincount(place, given.ravel(), size * size)
         matrix = np.asarray(summed, dtype=float).reshape(size, size)
         return eliminated(nodes, times[nodes], matrix, ends)
 
@@ -189,7 +198,7 @@ def condensation(
         return _Group(kept, used[ends[0] : ends[1]], matrix[left, left] - coupling.T @ coupling)
 
     def group(some: Integers) -> _Group:
-        if len(some) <= FEW:
+        if len(some) <= max(LEAST, 2 * FEW // components):
             return few(some)
         place = middles[some]
         along = place[:, int(np.argmax(np.ptp(place, axis=0)))]

@@ -162,16 +162,27 @@ def held_and_cut(mesh: SectorMesh) -> tuple[Integers, Integers]:
     return np.concatenate(by_radius), hub
 
 
-def polar_components(points: Array, components: int = 2) -> csc_array:
-    """Matrix from polar to Cartesian components at points (n, 2); a third component stays what it is."""
+def polar_components(points: Array, pairs: int = 1, others: int = 0) -> csc_array:
+    """Matrix from polar to Cartesian components at points (n, 2).
+
+    Parameters
+    ----------
+    points : (n, 2) array
+    pairs : int
+        Pairs of components in the plane at every point.
+    others : int
+        Further components, which stay what they are.
+    """
     with unclocked():
         from scipy.sparse import csc_array
 
     outward = points / np.linalg.norm(points, axis=1, keepdims=True)
+    components = 2 * pairs + others
     turns = np.zeros((len(points), components, components))
-    turns[:, 2:, 2:] = 1.0
-    turns[:, :2, 0] = outward
-    turns[:, 0, 1], turns[:, 1, 1] = -outward[:, 1], outward[:, 0]
+    turns[:, 2 * pairs :, 2 * pairs :] = np.eye(others)
+    for one in range(0, 2 * pairs, 2):
+        turns[:, one : one + 2, one] = outward
+        turns[:, one, one + 1], turns[:, one + 1, one + 1] = -outward[:, 1], outward[:, 0]
     # one block for each node, column by column
     blocks, size = np.swapaxes(turns, 1, 2).ravel(), components * len(points)
     rows = np.repeat(np.arange(size).reshape(-1, components), components, axis=0).ravel()

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 
+from base import Array
 from fem.elasticity import PlaneElasticity, physical_gradients
 from fem.line_load import FlankPoints, flank_points
-from fem.waves import WaveElements, wave_answer, wave_elements
+from fem.prism import Face, Section, prism, section
 from gears import Gear, GearPair
 from meshes import SectorMesh, Sizes, mesh_sector
 from meshes.sector import refined
@@ -21,7 +22,7 @@ LAW = PlaneElasticity("strain", 206e9, 0.3)
 
 class _Case(NamedTuple):
     mesh: SectorMesh
-    elements: WaveElements
+    over: Section
     at: FlankPoints
 
 
@@ -32,7 +33,12 @@ def case() -> _Case:
     mesh = mesh_sector(profile, Sizes(), 1)
     low, high = profile.flank_rho
     at = flank_points(mesh, low + np.array([0.2, 0.5, 0.9]) * (high - low))
-    return _Case(mesh, wave_elements(mesh, LAW), at)
+    return _Case(mesh, section(mesh, LAW), at)
+
+
+def _answer(over: Section, wavenumber: float, at: FlankPoints, reach: int) -> tuple[Array, Array]:
+    own, cross = prism(over, Face.wave(wavenumber)).influence(at, reach)
+    return own[:, 0, 0], cross[:, :, 0, :, 0]
 
 
 def test_energy_is_that_of_the_strains_in_space(case: _Case) -> None:
@@ -58,14 +64,14 @@ def test_energy_is_that_of_the_strains_in_space(case: _Case) -> None:
         strain = 0.5 * (strain + np.swapaxes(strain, 1, 2))
         density = 0.5 * lam * np.trace(strain, axis1=1, axis2=2) ** 2 + mu * np.sum(strain**2, axis=(1, 2))
         energy += part * float(np.sum(density * determinant[0] * weight))
-    matrix = case.elements.of(k)[0]
+    matrix = case.over.elements(Face.wave(k), np.array([0]))[0]
     flat = unknown.ravel()
     # the mean of cos^2 over a wave length is a half
     assert 0.5 * flat @ matrix @ flat * np.pi / k == pytest.approx(energy, rel=1e-9)
 
 
 def test_a_wave_as_long_as_can_be_is_plane_strain(case: _Case) -> None:
-    plane, long = (wave_answer(*case[:2], k, case.at, 1) for k in (0.0, 1e-6))
+    plane, long = (_answer(case.over, k, case.at, 1) for k in (0.0, 1e-6))
     for one, other in zip(plane, long, strict=True):
         assert np.abs(one - other).max() < 1e-11 * np.abs(one).max()
 
@@ -74,12 +80,12 @@ def test_answer_is_symmetric_and_shorter_waves_yield_less(case: _Case) -> None:
     """Maxwell and Betti between teeth; energy falls as the wave's shear and pressure along z come in."""
     owns = []
     for k in (0.0, 50.0, 400.0, 3000.0):
-        own, _ = wave_answer(*case[:2], k, case.at, 0)
+        own, _ = _answer(case.over, k, case.at, 0)
         owns.append(own)
     assert (np.diff(np.array(owns), axis=0) < 0.0).all()
     mirrored = flank_points(case.mesh, case.at.rho, "right")
-    forth = wave_answer(*case[:2], 400.0, case.at, 1)
-    back = wave_answer(*case[:2], 400.0, mirrored, case.mesh.teeth - 1)
+    forth = _answer(case.over, 400.0, case.at, 1)
+    back = _answer(case.over, 400.0, mirrored, case.mesh.teeth - 1)
     # the same tooth mirrored, with neighbours counted the other way round
     assert np.allclose(forth[0], back[0], rtol=1e-4)
     assert np.allclose(forth[1][0], back[1][-1], rtol=1e-4)
@@ -88,12 +94,12 @@ def test_answer_is_symmetric_and_shorter_waves_yield_less(case: _Case) -> None:
 def test_short_waves_grow_as_the_half_space_does(case: _Case) -> None:
     """Far below the tooth's thickness, and above the elements' length, u falls as 2 ln k/(pi E*)."""
     mesh = refined(case.mesh)
-    elements, at = wave_elements(mesh, LAW), flank_points(mesh, case.at.rho[:2])
-    own = [wave_answer(mesh, elements, k, at, 0)[0] for k in (1500.0, 3000.0)]
+    over, at = section(mesh, LAW), flank_points(mesh, case.at.rho[:2])
+    own = [_answer(over, k, at, 0)[0] for k in (1500.0, 3000.0)]
     fall = (own[0] - own[1]) * np.pi * LAW.plane_modulus / (2 * np.log(2.0))
     assert np.allclose(fall, 1.0, atol=0.02)
 
 
 def test_neighbours_do_not_feel_short_waves(case: _Case) -> None:
-    plane, short = (wave_answer(*case[:2], k, case.at, 1)[1] for k in (0.0, 3000.0))
+    plane, short = (_answer(case.over, k, case.at, 1)[1] for k in (0.0, 3000.0))
     assert np.abs(short).max() < 1e-3 * np.abs(plane).max()

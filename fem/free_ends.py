@@ -1,0 +1,179 @@
+"""What free ends add to a gear between frictionless walls: one prism with functions over the face, solved with both.
+
+Waves along the face (``fem.prism``) hold the ends against frictionless walls, w = 0. Without walls sigma_zz vanishes
+there, and the gear yields more, most at its ends. The difference does not know the load's own neighbourhood, unless
+that is at the end: it is smooth, so that a coarse section and a few functions over the face give it, by
+
+    E = C(free) - C(walls)
+
+on the same mesh with the same functions, which leaves out what both lack. Mid-face is a plane of symmetry: loads that
+are equal on both sides of it and such that are opposite are solved apart, on half the face.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from base import Array, record
+from fem.line_load import FlankPoints
+from fem.prism import Face, Section, prism
+
+__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face"]
+
+ORDER = 3
+"""Of the polynomials of one piece of the face."""
+
+LAST, GROWTH = 0.75, 2.0
+"""Length of the piece at the end [modules], and of each piece over the one nearer to the end."""
+
+
+@record
+class HalfFace:
+    """Continuous piecewise polynomials over half a face, by their values at nodes from mid-face to the end.
+
+    Attributes
+    ----------
+    ends : (pieces + 1,) array
+        Where pieces end [m], from 0.
+    mass, stiffness, mixed : (n, n) arrays
+        <f g>, <f' g'>, <f g'>.
+    """
+
+    ends: Array
+    mass: Array
+    stiffness: Array
+    mixed: Array
+
+    def face(self, even: bool, free: bool) -> Face:
+        """Products for displacements that are equal (even) or opposite on the other half, with free ends or walls."""
+        n = len(self.mass)
+        psi = slice(0 if even else 1, n)
+        phi = slice(1 if even else 0, n if free else n - 1)
+        return Face(
+            (self.mass[psi, psi], self.mass[phi, phi]),
+            (self.stiffness[psi, psi], self.stiffness[phi, phi]),
+            self.mixed[psi, phi],
+            self.mixed.T[psi, phi],
+        )
+
+    def means(self, edges: Array) -> Array:
+        """Mean of every function over cells between edges (k + 1,) [m]: (n, k)."""
+        s, weight = legendre.leggauss(ORDER + 1)
+        found = np.zeros((len(self.mass), len(edges) - 1))
+        cuts = np.unique(np.concatenate([self.ends, edges]))
+        for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+            middle = 0.5 * (low + high)
+            piece = int(np.searchsorted(self.ends, middle)) - 1
+            cell = int(np.searchsorted(edges, middle)) - 1
+            start, stop = self.ends[piece], self.ends[piece + 1]
+            z = middle + 0.5 * (high - low) * s
+            values = _values(2 * (z - start) / (stop - start) - 1)
+            share = 0.5 * (high - low) / (edges[cell + 1] - edges[cell])
+            found[ORDER * piece : ORDER * piece + ORDER + 1, cell] += share * (weight @ values)
+        return found
+
+
+@cache
+def _nodes() -> Array:
+    """Gauss-Lobatto nodes of one piece (ORDER + 1,), -1 to 1."""
+    inner = legendre.legroots(legendre.legder(np.eye(ORDER + 1)[ORDER])).real
+    return np.concatenate([[-1.0], np.sort(inner), [1.0]])
+
+
+def _values(s: Array) -> Array:
+    """Values (k, ORDER + 1) of a piece's functions at places (k,)."""
+    return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
+
+
+def half_face(half_width: float, module: float, finer: float = 1.0) -> HalfFace:
+    """Divide half a face into pieces that shorten towards the end.
+
+    Parameters
+    ----------
+    half_width, module : float
+        [m]
+    finer : float
+        By how much all pieces are shorter.
+    """
+    lengths = [LAST * module / finer]
+    while sum(lengths) < half_width:
+        lengths.append(lengths[-1] * GROWTH ** (1 / finer))
+    ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
+    n = ORDER * len(lengths) + 1
+    s, weight = legendre.leggauss(ORDER + 1)
+    values, back = _values(s), np.linalg.inv(legendre.legvander(_nodes(), ORDER))
+    slopes = np.array([legendre.legval(s, legendre.legder(row)) for row in np.eye(ORDER + 1)]).T @ back
+    mass, stiffness, mixed = np.zeros((3, n, n))
+    for piece, length in enumerate(np.diff(ends)):
+        at = slice(ORDER * piece, ORDER * piece + ORDER + 1)
+        mass[at, at] += 0.5 * length * (values.T * weight) @ values
+        stiffness[at, at] += 2 / length * (slopes.T * weight) @ slopes
+        mixed[at, at] += (values.T * weight) @ slopes
+    return HalfFace(np.asarray(ends), mass, stiffness, mixed)
+
+
+@record
+class FreeEnds:
+    """What free ends add to the displacements by line loads, by functions over half a face.
+
+    Attributes
+    ----------
+    half : HalfFace
+    own : two arrays (loads, psi, psi)
+        At each load, of loads that are equal and opposite on both halves [m per N]: displacement by a load of unit
+        functional.
+    cross : two arrays (reach, loads, psi, points, psi)
+        On neighbours.
+    """
+
+    half: HalfFace
+    own: tuple[Array, Array]
+    cross: tuple[Array, Array]
+
+    def over(self, cells: int) -> tuple[Array, Array]:
+        """Means over equal cells of the whole face by a unit force on a cell: (loads, k, k), (reach, loads, points, k, k).
+
+        Parameters
+        ----------
+        cells : int
+            Even.
+        """
+        edges = np.linspace(0.0, self.half.ends[-1], cells // 2 + 1)
+        means = self.half.means(edges)
+        own, cross = [], []
+        for one, other, cut in zip(self.own, self.cross, (0, 1), strict=True):
+            at = means[cut:]
+            own.append(np.einsum("lpq,pc,qd->lcd", one, at, at, optimize=True))
+            cross.append(np.einsum("rlpmq,pc,qd->rlmcd", other, at, at, optimize=True))
+        return _both_halves(*own), _both_halves(*cross)
+
+
+def _both_halves(even: Array, odd: Array) -> Array:
+    """Influence between cells of the whole face, of those between cells of its half beyond mid-face."""
+    same, other = 0.5 * (even + odd), 0.5 * (even - odd)
+    far = np.concatenate([np.flip(same, (-2, -1)), np.flip(other, -2)], axis=-1)
+    near = np.concatenate([np.flip(other, -1), same], axis=-1)
+    return np.concatenate([far, near], axis=-2)
+
+
+def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> FreeEnds:
+    """Solve a gear with free ends and between walls.
+
+    Parameters
+    ----------
+    over : Section
+        Coarse: the difference is smooth.
+    half : HalfFace
+    at : FlankPoints
+    reach : int
+        Neighbours that are observed.
+    """
+    own, cross = [], []
+    for even in (True, False):
+        free, walls = (prism(over, half.face(even, ends)).influence(at, reach) for ends in (True, False))
+        own.append(free[0] - walls[0])
+        cross.append(free[1] - walls[1])
+    return FreeEnds(half, (own[0], own[1]), (cross[0], cross[1]))
