@@ -87,7 +87,8 @@ class Compliance:
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
-    def _meshed(self) -> tuple[MeshedShape, MeshedShape]:
+    def meshed(self) -> tuple[MeshedShape, MeshedShape]:
+        """Shapes of both gears in modules, and their meshes: what solved gears are kept by."""
         profiles = held_profiles(self.pair, self.supports)
         first, second = shapes(self.pair, profiles, self.plane)
         return (
@@ -132,7 +133,7 @@ class Compliance:
         """Tip edges of both gears from where solved gears are, or on the mesh before the last refinement."""
         first, second = (
             gears.tips(meshed, before).scaled(self.pair.module, flexible.law)
-            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
 
@@ -145,7 +146,7 @@ class Compliance:
         """How the flanks of both gears move, from where solved gears are."""
         first, second = (
             gears.motion(meshed).scaled(self.pair.module, flexible.law)
-            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
 
@@ -157,7 +158,7 @@ class Compliance:
         gears = Gears()
         first, second = (
             gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
-            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
 
@@ -170,7 +171,7 @@ class Compliance:
         gears = Gears()
         first, second = (
             gears.rings(meshed)[1].scaled(self.pair.module, flexible.law)
-            for meshed, flexible in zip(self._meshed, (self.pinion, self.wheel), strict=True)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
 

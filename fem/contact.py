@@ -17,6 +17,8 @@ from fem.cycle import MeshCycle
 from fem.edge_tables import EdgeTables
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
+from fem.face_loads import FaceLoads, face_load_factors
+from fem.face_setting import face_setting
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
 from fem.model_error import LoadedContacts
@@ -26,7 +28,7 @@ from fem.setting import Deviations, Setting
 from fem.sharing import Solution, solve
 
 if TYPE_CHECKING:
-    from gears import GearPair
+    from gears import Alignment, GearPair
 
 __all__ = ["MeshCycle", "mesh_cycle"]
 
@@ -37,6 +39,9 @@ LARGE_DEFLECTION = 0.03
 
 WIDE_CONTACT = 0.07
 """Part of the radius of relative curvature above which a contact's half-width is told."""
+
+ENDS_ERROR = 0.1
+"""Part of what free ends do that their coarse section leaves uncertain."""
 
 Options = ParamSpec("Options")
 
@@ -89,6 +94,9 @@ def mesh_cycle(
     reference: str = "bore",
     moving_contact: bool = False,
     base_pitch_difference: float = 0.0,
+    alignment: Alignment | None = None,
+    cells: int | None = None,
+    free_ends: bool = True,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -176,8 +184,9 @@ def mesh_cycle(
         friction,
         moving_contact=moving_contact,
         base_pitch_difference=base_pitch_difference,
+        face=face_setting(pair, alignment, cells, free_ends),
     )
-    _check(given, torque, compliance, reference)
+    _check(given, torque, compliance, reference, film, plane)
     watch = Stopwatch()
     bodies = (
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
@@ -222,8 +231,20 @@ def _solved(
     return found
 
 
-def _check(given: Setting, torque: Array, compliance: Compliance | None, reference: str) -> None:
+def _check(
+    given: Setting,
+    torque: Array,
+    compliance: Compliance | None,
+    reference: str,
+    film: Film | None,
+    plane: str,
+) -> None:
     found = Faults()
+    if given.face is not None:
+        if film is not None:
+            found.add("film", "given", "must be None where the face has cells", "leave cells and leads out")
+        if (plane if compliance is None else compliance.plane) != "strain":
+            found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     found.choice("reference", reference, REFERENCES)
     if not torque.size:
         found.add("torque", "none", "must be at least one", "give torques in N m")
@@ -311,12 +332,46 @@ def _result(
         friction=float(given.friction),
         supports=supports,
         reference=held,
-        loaded=None if refusal else LoadedContacts(given, bodies, where, turned, approach, force),
+        face=None if refusal else _over_face(contact, number, bodies, force, film, tables),
+        loaded=None
+        if refusal or given.face is not None
+        else LoadedContacts(given, bodies, where, turned, approach, force),
         problem=None
         if refusal
         else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
+    )
+
+
+def _over_face(
+    contact: Solution, number: int, bodies: Compliance, force: float, film: Film | None, tables: EdgeTables
+) -> FaceLoads | None:
+    """Line loads, with the error of the face-load factor by half as many cells, with free ends and without."""
+    given, over = tables.given, contact.face
+    if over is None or given.face is None:
+        return None
+    pair, cells = given.pair, given.face.cells
+    forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
+    factors = face_load_factors(forces)
+    few = 2 * (cells // 4)
+    greatest = []
+    for ends in (given.face.free_ends, False):
+        coarse = replace(given, face=replace(given.face, cells=few, free_ends=ends))
+        other = solve(coarse, bodies, np.array([abs(force)]), film, tables).face
+        greatest.append(np.nan if other is None else float(np.max(face_load_factors(other.forces))))
+    most = float(np.max(factors))
+    error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[1])
+    rho1, rho2 = contact.where.rho
+    return FaceLoads(
+        given.face.middles(pair.face_width),
+        forces * cells / pair.face_width,
+        factors,
+        given.face,
+        pair,
+        bodies.plane,
+        np.tile(rho1 * rho2 / (rho1 + rho2), (given.pitches, 1)),
+        error / most,
     )
 
 

@@ -138,7 +138,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     teeth, other = given.teeth(steps), given.opposite
     by_tooth = given.pitch_gap(teeth) + given.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
     rolling = given.rolling_gap(place)
-    gaps = gap + rolling + by_tooth
+    gaps = gap + rolling + by_tooth + (0.0 if given.face is None else given.face.least_gap(pair))
     least = float(np.min(by_tooth) + np.min(rolling))
     behind = other.pitch_gap(other.teeth(steps)) + given.rolling_gap(np.clip(other_place, start, end))
     back = np.where(touchable, behind, np.inf).min(axis=-1)

@@ -25,6 +25,7 @@ from base.results import EXACT, ITSELF
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
+from fem.face_loads import FaceLoads
 from fem.model_error import LoadedContacts
 from fem.opposite_flanks import OppositeFlanks
 from fem.references import check_reference, turns
@@ -150,6 +151,7 @@ class MeshCycle(MeshFigures):
         default="front",
     )
     opposite: OppositeFlanks | None = part("flanks on the other side, where they bear as well", default=None)
+    face: FaceLoads | None = part("line loads over the face; None where they are even", default=None)
     reference: str = quantity(
         "", 'what the deflection is measured against: "bore", "body" or "teeth"', default="bore"
     )
@@ -164,6 +166,21 @@ class MeshCycle(MeshFigures):
         "copies that were pickled",
         default=None,
     )
+
+    @property
+    def face_position(self) -> Array | None:
+        """Middles of the cells of the face (cells,) [m], 0 at mid-face; None where the face has none."""
+        return None if self.face is None else self.face.face_position
+
+    @property
+    def line_load(self) -> Array | None:
+        """Force per length of face (positions, pairs, cells) [N/m]; None where the face has no cells."""
+        return None if self.face is None else self.face.line_load
+
+    @property
+    def face_load_factor(self) -> Array | None:
+        """Greatest line load of the most loaded pair over that pair's mean (positions,); None without cells."""
+        return None if self.face is None else self.face.face_load_factor
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> MeshCycle:
         """Measure the deflection against something else; no force changes (``fem.references``).
@@ -398,6 +415,11 @@ def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
     )
     if known and not np.all(np.isfinite(cycle.forces[row])):
         found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
+    elif known and cycle.face is not None:
+        remedy = "leave cells, alignment and leads out"
+        found.add(
+            "cycle", "with cells of the face", "must be even along the face for fields and stresses", remedy
+        )
     elif known and cycle.opposite_force[row] > 0.0:
         allowed = "must have flanks that bear on one side of the teeth, where fields and stresses are wanted"
         found.add("cycle", f"row {row} with flanks that bear on both sides", allowed, "give more backlash")

@@ -13,6 +13,7 @@ are equal on both sides of it and such that are opposite are solved apart, on ha
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -21,7 +22,7 @@ from base import Array, record
 from fem.line_load import FlankPoints
 from fem.prism import Face, Section, prism
 
-__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face"]
+__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells"]
 
 ORDER = 3
 """Of the polynomials of one piece of the face."""
@@ -64,7 +65,7 @@ class HalfFace:
         s, weight = legendre.leggauss(ORDER + 1)
         found = np.zeros((len(self.mass), len(edges) - 1))
         cuts = np.unique(np.concatenate([self.ends, edges]))
-        for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+        for low, high in pairwise(cuts):
             middle = 0.5 * (low + high)
             piece = int(np.searchsorted(self.ends, middle)) - 1
             cell = int(np.searchsorted(edges, middle)) - 1
@@ -123,36 +124,29 @@ class FreeEnds:
     ----------
     half : HalfFace
     own : two arrays (loads, psi, psi)
-        At each load, of loads that are equal and opposite on both halves [m per N]: displacement by a load of unit
-        functional.
-    cross : two arrays (reach, loads, psi, points, psi)
-        On neighbours.
+        At each load, of loads that are equal and such that are opposite on both halves: [m per N] by a unit functional.
+    cross : two arrays (reach, loads, points, psi, psi)
+        On neighbours; the first function is the load's.
     """
 
     half: HalfFace
     own: tuple[Array, Array]
     cross: tuple[Array, Array]
 
-    def over(self, cells: int) -> tuple[Array, Array]:
-        """Means over equal cells of the whole face by a unit force on a cell: (loads, k, k), (reach, loads, points, k, k).
 
-        Parameters
-        ----------
-        cells : int
-            Even.
-        """
-        edges = np.linspace(0.0, self.half.ends[-1], cells // 2 + 1)
-        means = self.half.means(edges)
-        own, cross = [], []
-        for one, other, cut in zip(self.own, self.cross, (0, 1), strict=True):
-            at = means[cut:]
-            own.append(np.einsum("lpq,pc,qd->lcd", one, at, at, optimize=True))
-            cross.append(np.einsum("rlpmq,pc,qd->rlmcd", other, at, at, optimize=True))
-        return _both_halves(*own), _both_halves(*cross)
+def over_cells(half: HalfFace, even: Array, odd: Array, cells: int) -> Array:
+    """Means over equal cells of the whole face (..., cells, cells) by a unit force on a cell.
 
-
-def _both_halves(even: Array, odd: Array) -> Array:
-    """Influence between cells of the whole face, of those between cells of its half beyond mid-face."""
+    Parameters
+    ----------
+    half : HalfFace
+    even, odd : (..., psi, psi) arrays
+        By functions over half the face.
+    cells : int
+        Even.
+    """
+    means = half.means(np.linspace(0.0, float(half.ends[-1]), cells // 2 + 1))
+    even, odd = (at.T @ one @ at for one, at in ((even, means), (odd, means[1:])))
     same, other = 0.5 * (even + odd), 0.5 * (even - odd)
     far = np.concatenate([np.flip(same, (-2, -1)), np.flip(other, -2)], axis=-1)
     near = np.concatenate([np.flip(other, -1), same], axis=-1)
@@ -175,5 +169,5 @@ def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> Fre
     for even in (True, False):
         free, walls = (prism(over, half.face(even, ends)).influence(at, reach) for ends in (True, False))
         own.append(free[0] - walls[0])
-        cross.append(free[1] - walls[1])
+        cross.append(np.moveaxis(free[1] - walls[1], 2, 3))
     return FreeEnds(half, (own[0], own[1]), (cross[0], cross[1]))

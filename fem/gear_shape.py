@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem.elasticity import PlaneElasticity
 from gears import BasicRack, Blank, Gear
+from gears.face import STRAIGHT
 
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
@@ -32,8 +33,8 @@ class GearShape:
     Attributes
     ----------
     gear : gears.Gear
-        All lengths in modules, the bore where the gear is held, the web's thickness in face widths; without relief,
-        which no mesh shows.
+        All lengths in modules, the bore where the gear is held, the web's thickness in face widths; without relief
+        and lead, which no mesh shows.
     rack : gears.BasicRack
     poisson : float
         nu*, in which plane strain and plane stress are one.
@@ -121,6 +122,7 @@ def shapes(
                 thickness_allowance=modules(gear.thickness_allowance),
                 tip_chamfer=modules(gear.tip_chamfer),
                 tip_relief=None,
+                lead=STRAIGHT,
                 blank=scaled(gear.blank) if gear.blank is not None and profile.steps else None,
             ),
             pair.rack,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, Integers, Limit, rounded_down
+from fem.face_setting import FaceSetting
 from fem.tip_contact import Removed
 from fem.tip_geometry import TipRound, chamfer_length, tip_round
 
@@ -69,6 +70,7 @@ class Setting:
     base_pitch_difference: float = 0.0
     back: bool = False
     both: bool = False
+    face: FaceSetting | None = None
 
     def at(self, position: Array) -> Setting:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
@@ -113,6 +115,11 @@ class Setting:
         found.number("positions", self.positions, COUNT)
         found.number("pitches", self.pitches, COUNT)
         found.number("friction", self.friction, FRICTION)
+        if self.face is not None:
+            self.face.check(found, self.pair.face_width)
+            if self.moving_contact:
+                remedy = "leave moving_contact out"
+                found.add("moving_contact", True, "must be False where the face has cells", remedy)
         both = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
         if len(both) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in both):
             found.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")

@@ -13,6 +13,7 @@ from fem.bodies import Compliance
 from fem.clear_flanks import stays_clear
 from fem.contact_candidates import REACHES, ContactCandidates
 from fem.edge_tables import EdgeTables
+from fem.face_share import FaceShare, share_over_face
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.local_law import Film
 from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share
@@ -69,7 +70,7 @@ class Solution:
     kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
     closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear. With moving
     contacts that do not settle, share is the one of contacts that stay, and settled is False. opposite: the flanks on
-    the other side, where they were looked at.
+    the other side, where they were looked at. face: what the cells of the face bear.
     """
 
     where: ContactCandidates
@@ -83,6 +84,7 @@ class Solution:
     settled: bool
     opposite: OppositeShare | None = None
     moved: MovedShare | None = None
+    face: FaceShare | None = None
 
     @property
     def touch(self) -> Array:
@@ -221,7 +223,13 @@ def one_sided(
 
     where, matrix, laws, oil = flanks.where, flanks.matrix, flanks.laws, flanks.oil
     whole, gaps = force[:, None, None], where.gap - where.gap.min(axis=-1, keepdims=True)
-    share = share_load(whole, matrix, laws, gaps, oil, flanks.levers if given.friction else None)
+    arms, over = flanks.levers if given.friction else None, None
+    if given.face is None:
+        share = share_load(whole, matrix, laws, gaps, oil, arms)
+    else:
+        share, over = share_over_face(
+            given, bodies, whole, where, flanks.kappa, matrix, laws, gaps, oil, arms
+        )
     moves, settled, own, levers, kappa = None, True, None, flanks.levers, flanks.kappa
     if given.moving_contact:
         moves = contact_moves(bodies, where, given.beyond_path)
@@ -234,7 +242,7 @@ def one_sided(
         share = share if moved is None else moved
     propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
     bent = (matrix @ share.forces[..., None])[..., 0] + gaps
-    left = bent - propped - share.transmission_error[..., None]
+    left = bent - propped - share.transmission_error[..., None] if over is None else over.open
     if moves is not None:
         left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
     if own is not None:
@@ -243,7 +251,7 @@ def one_sided(
     moved_by = None if own is None else MovedShare(own, flanks, given)
     levers = levers if own is None else flanks.levers * flanks.kappa / kappa
     return Solution(
-        where, share, kappa, levers, flanks.largest, closing, left, moves, settled, moved=moved_by
+        where, share, kappa, levers, flanks.largest, closing, left, moves, settled, moved=moved_by, face=over
     )
 
 

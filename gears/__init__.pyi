@@ -5,6 +5,8 @@ from .deviations import PitchDeviations as PitchDeviations
 from .errors import GeometryError as GeometryError
 from .errors import GeometryWarning as GeometryWarning
 from .errors import LoadSharingError as LoadSharingError
+from .face import Alignment as Alignment
+from .face import Lead as Lead
 from .flank_curves import ProfileDeviation as ProfileDeviation
 from .flank_curves import WearDepth as WearDepth
 from .gear import Gear as Gear

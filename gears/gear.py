@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 
 from base import Fault, Faults, Limit, shorten
 from gears.blank import Blank
+from gears.face import STRAIGHT, Lead
 
 RELIEF_LIMITS = {
     "amount": Limit(0.0, 1.0, "m", "give the material removed at the tip in metres"),
@@ -78,6 +79,8 @@ class Gear:
         x_E [modules], at which the tool cuts flank and fillet where that is not `profile_shift`: a tooth thinner than
         nominal by 2 (x - x_E) m tan alpha at the reference circle, with a deeper root. The tip circle and the centre
         distance of no backlash stay those of `profile_shift`. None cuts at `profile_shift`.
+    lead : Lead
+        Crowning, slope and end relief along the face.
 
     Examples
     --------
@@ -94,6 +97,7 @@ class Gear:
     tip_chamfer: float = 0.0  # radial height, m
     blank: Blank | None = None
     generating_shift: float | None = None  # x_E, modules
+    lead: Lead = STRAIGHT
 
     @property
     def cut_shift(self) -> float:
@@ -116,6 +120,7 @@ class Gear:
         found = Faults.of(self, LIMITS, f"{where}.")
         if self.tip_relief is not None:
             found.extend(self.tip_relief.faults(f"{where}.tip_relief"))
+        found.extend(self.lead.faults(f"{where}.lead"))
         if self.blank is not None:
             found.extend(self.blank.faults(f"{where}.blank"))
         return tuple(found.found)

@@ -53,6 +53,7 @@ def share_load(
     gaps: ArrayLike,
     film: DeflectionLaw | None = None,
     levers: ArrayLike | None = None,
+    near: Array | None = None,
 ) -> LoadShare:
     """Share a force among coupled tooth pairs.
 
@@ -83,6 +84,8 @@ def share_load(
         dry.
     levers : (..., pairs) array or None
         l_i > 0, lever arms of the forces over that for which F is given; 1 unless friction tilts them.
+    near : (..., pairs) array or None
+        Forces to begin with, such as those of a similar load; one at least is above 0 everywhere.
 
     Returns
     -------
@@ -127,6 +130,11 @@ def share_load(
     active = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
     start = np.full(clear.shape, _START)
     loads, approach = np.where(active, each / arms, 0.0), at_zero.min(axis=-1)
+    if near is not None:
+        loads = near + nothing
+        active = loads > 0.0
+        _, deflection = _linearise(stiff, hertz, film, clear, loads)
+        approach = np.mean(deflection, axis=-1, where=active)
     for iteration in range(1, _ITERATIONS + 1):
         jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
         overlap = deflection - approach[..., None]

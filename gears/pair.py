@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from base import Faults, Limit, plot, view
 from gears.errors import GeometryError, GeometryWarning
+from gears.face import STRAIGHT
 from gears.gear import Gear
 from gears.guards import Findings, check_gear, check_mesh, unrounded_distance
 from gears.material import Material
@@ -123,6 +124,11 @@ class GearPair(PairGeometry):
             f"centre distance {1e3 * self.working_centre_distance:.7g} mm, "
             f"contact ratio {self.contact_ratio:.4g})"
         )
+
+    @property
+    def straight(self) -> bool:
+        """Whether the flanks of both gears are straight along the face, without crowning, slope and end relief."""
+        return self.pinion.lead == self.wheel.lead == STRAIGHT
 
     _repr_html_ = view
     plot = plot

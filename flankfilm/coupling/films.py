@@ -118,7 +118,16 @@ class PathFilms:
 def contacts_of(
     pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
 ) -> tuple[Array, tuple[ehl.LineContact, ...]]:
-    """Line contacts that the loaded pairs of a cycle make, with their places on the path [m]."""
+    """Line contacts that the loaded pairs of a cycle make, with their places on the path [m].
+
+    Raises
+    ------
+    InputError
+        For gears with leads, whose load varies along the face.
+    """
+    if not pair.straight:
+        remedy = "leave the leads out; fem.mesh_cycle knows them"
+        raise InputError.at("pair", "with leads", "must be straight along the face where films are", remedy)
     touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
     position, number = np.nonzero(touching)
     order = np.argsort(cycle.rho1[position, number], kind="stable")

@@ -1,0 +1,73 @@
+"""What the cells of the face bear in a mesh cycle: line loads, face-load factor, contact pattern."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, described, part, quantity, record
+from base.results import EXACT
+from fem.elasticity import reduced_modulus
+from fem.face_setting import FaceSetting
+from gears.hertz import peak_pressure
+
+if TYPE_CHECKING:
+    from gears import GearPair
+
+__all__ = ["FaceLoads"]
+
+
+@record
+class FaceLoads:
+    """Line loads over the face at the positions of a mesh cycle.
+
+    ``error`` is that of the greatest face-load factor: what twice as many cells would change, and a part of what free
+    ends do.
+    """
+
+    no_error = "not estimated cell by cell; the face-load factor has an error"
+    headline = ("greatest_face_load_factor", "greatest_line_load")
+
+    face_position: Array = quantity(
+        "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
+    )
+    line_load: Array = quantity(
+        "N/m", "force per length of face; zero where flanks stand clear", "position pair cell", shown="N/mm"
+    )
+    face_load_factor: Array = quantity(
+        "1", "greatest line load of the most loaded pair over that pair's mean", "position", error="error"
+    )
+    setting: FaceSetting = part("cells, alignment, leads and ends")
+    pair: GearPair = part("the gears")
+    plane: str = part('"strain" or "stress", as of the compliance')
+    curvature_radius: Array = quantity("m", "radius of relative curvature", "position pair", no_error=EXACT)
+    error: float = quantity("1", "estimated relative error of the greatest face-load factor")
+
+    @described("1", error="error")
+    def greatest_face_load_factor(self) -> float:
+        """Greatest of the face-load factors of all positions."""
+        return float(np.max(self.face_load_factor))
+
+    @described("N/m", shown="N/mm", error="error")
+    def greatest_line_load(self) -> float:
+        """Greatest line load of all positions, pairs and cells."""
+        return float(np.max(self.line_load))
+
+    @property
+    def hertz_pressure(self) -> Array:
+        """Hertz pressure in the middle of the contact of every cell (positions, pairs, cells) [Pa]."""
+        radius = self.curvature_radius[..., None]
+        return np.asarray(peak_pressure(self.line_load, radius, reduced_modulus(self.pair, self.plane)))
+
+    @described("1")
+    def contact_pattern(self) -> float:
+        """Part of the face that is touched at some position of the cycle."""
+        return float(np.mean(np.any(self.line_load > 0.0, axis=(0, 1))))
+
+
+def face_load_factors(forces: Array) -> Array:
+    """Greatest force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
+    most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
+    chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
+    return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))

@@ -1,0 +1,78 @@
+"""How the face is looked at: its cells, and gaps along it by leads and alignment."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Faults, Limit, record
+from gears.face import ALIGNED, STRAIGHT, Alignment, Lead
+
+if TYPE_CHECKING:
+    from gears import GearPair
+
+__all__ = ["FaceSetting", "face_setting"]
+
+USUAL = 64
+"""Cells of the face unless they are given."""
+
+CELLS = Limit(4, 512, remedy="64 resolve what a face does", whole=True)
+
+
+@record
+class FaceSetting:
+    """How the face is looked at.
+
+    Attributes
+    ----------
+    cells : int
+        Equal cells of the face, even.
+    alignment : Alignment
+    leads : (Lead, Lead)
+        Of pinion and wheel.
+    free_ends : bool
+        Whether the faces' ends are free, or frictionless walls.
+    """
+
+    cells: int
+    alignment: Alignment = ALIGNED
+    leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
+    free_ends: bool = True
+
+    def middles(self, face_width: float) -> Array:
+        """Middles of the cells (cells,) [m], 0 at mid-face."""
+        return np.asarray(((np.arange(self.cells) + 0.5) / self.cells - 0.5) * face_width)
+
+    def check(self, found: Faults, face_width: float) -> None:
+        """Note everything that is wrong."""
+        found.number("cells", self.cells, CELLS)
+        if self.cells % 2:
+            found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
+        found.extend(self.alignment.faults("alignment"))
+        for name, lead in zip(("pinion", "wheel"), self.leads, strict=True):
+            if lead.end_relief and lead.end_relief_length > 0.5 * face_width:
+                allowed = f"must be at most {0.5 * face_width:g} m, half the face"
+                found.add(
+                    f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
+                )
+
+    def least_gap(self, pair: GearPair) -> float:
+        """Least of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
+        return float(np.min(self.gaps(pair, np.array(np.inf))))
+
+    def gaps(self, pair: GearPair, radius: Array) -> Array:
+        """Gaps along the face (..., cells) [m], less those at mid-face of straight aligned gears."""
+        z = self.middles(pair.face_width)
+        removed = sum(lead.removed(z, pair.face_width) for lead in self.leads)
+        return np.asarray(self.alignment.gap(z, pair.face_width, radius[..., None]) + removed)
+
+
+def face_setting(
+    pair: GearPair, alignment: Alignment | None, cells: int | None, free_ends: bool
+) -> FaceSetting | None:
+    """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
+    leads = pair.pinion.lead, pair.wheel.lead
+    if alignment is None and cells is None and leads == (STRAIGHT, STRAIGHT):
+        return None
+    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, free_ends)

@@ -1,0 +1,100 @@
+"""Cells of the face: even loads, symmetry, balance, free ends, faults."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from base import InputError
+from fem import Compliance, compliance, mesh_cycle
+from fem.face_compliance import pair_ends, pair_waves
+from gears import Alignment, Gear, GearPair, Lead
+
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
+TORQUE = 100.0
+
+
+@pytest.fixture(scope="module")
+def bodies() -> Compliance:
+    return compliance(PAIR, tolerance=0.02)
+
+
+def _cycle(bodies, pair=PAIR, torque=TORQUE, cells=16, free_ends=False, **more):
+    own = bodies if pair == PAIR else replace(bodies, pair=pair)
+    return mesh_cycle(pair, torque, 8, own, cells=cells, free_ends=free_ends, **more)
+
+
+def test_even_load_between_walls_is_the_plane_s(bodies):
+    plane, cells = mesh_cycle(PAIR, TORQUE, 8, bodies), _cycle(bodies)
+    assert np.allclose(cells.face_load_factor, 1.0, atol=1e-9)
+    for name in ("transmission_error", "stiffness", "secant_stiffness", "forces", "pair_stiffness"):
+        np.testing.assert_allclose(getattr(cells, name), getattr(plane, name), rtol=1e-9, atol=1e-3)
+    assert plane.face is None
+    assert plane.line_load is None
+
+
+@pytest.mark.parametrize("free_ends", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_forces_add_up_and_nothing_pulls(bodies, free_ends):
+    found = _cycle(bodies, alignment=Alignment(30e-6), free_ends=free_ends)
+    width = PAIR.face_width / 16
+    assert (found.line_load >= 0.0).all()
+    np.testing.assert_allclose(found.line_load.sum(axis=-1) * width, found.forces, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(found.load_share.sum(axis=1), 1.0, rtol=1e-12)
+    factor = found.face_load_factor
+    assert factor.min() > 1.1
+    assert found.face.error < 0.15
+    # the end that the alignment closes bears most
+    assert found.face_position[found.line_load[3].sum(axis=0).argmax()] < 0.0
+
+
+@pytest.mark.parametrize("free_ends", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_alignment_turned_round_mirrors_the_face(bodies, free_ends):
+    one, other = (_cycle(bodies, alignment=Alignment(turn * 20e-6), free_ends=free_ends) for turn in (1, -1))
+    np.testing.assert_allclose(one.line_load, other.line_load[..., ::-1], rtol=1e-8, atol=1e-3)
+    np.testing.assert_allclose(one.transmission_error, other.transmission_error, rtol=1e-10)
+
+
+def test_a_slope_of_the_lead_undoes_an_alignment(bodies):
+    pair = replace(PAIR, pinion=replace(PAIR.pinion, lead=Lead(slope=20e-6)))
+    found = _cycle(bodies, pair, alignment=Alignment(-20e-6))
+    assert np.allclose(found.face_load_factor, 1.0, atol=1e-9)
+
+
+def test_crowning_loads_the_middle_and_is_symmetric(bodies):
+    pair = replace(PAIR, wheel=replace(PAIR.wheel, lead=Lead(crowning=15e-6)))
+    found = _cycle(bodies, pair)
+    np.testing.assert_allclose(found.line_load, found.line_load[..., ::-1], rtol=1e-8, atol=1e-3)
+    assert found.line_load[4].sum(axis=0).argmax() in (7, 8)
+
+
+def test_light_load_lifts_off_and_heavy_load_evens_out(bodies):
+    factors = [
+        float(_cycle(bodies, torque=torque, alignment=Alignment(30e-6)).face_load_factor.max())
+        for torque in (5.0, 50.0, 200.0)
+    ]
+    assert factors[0] > factors[1] > factors[2] > 1.0
+    light = _cycle(bodies, torque=5.0, alignment=Alignment(30e-6))
+    assert light.face.contact_pattern < 1.0
+
+
+@pytest.mark.slow
+def test_compliances_are_symmetric_and_free_ends_yield_more(bodies):
+    """Maxwell and Betti; taking walls away can but add to what a load yields."""
+    rho1 = np.array([[PAIR.points.A + 0.2 * PAIR.base_pitch, PAIR.points.A + 1.2 * PAIR.base_pitch]])
+    rho = np.stack([rho1, PAIR.line_of_action - rho1])
+    waves = pair_waves(bodies, rho, 12)[0]
+    np.testing.assert_array_equal(waves, np.swapaxes(waves, 0, 1))
+    ends = pair_ends(bodies, rho, 12)[0].reshape(24, 24)
+    np.testing.assert_allclose(ends, ends.T, atol=1e-12 * np.abs(ends).max())
+    assert np.linalg.eigvalsh(ends).min() > -1e-6 * np.abs(ends).max()
+
+
+def test_faults_are_named_together(bodies):
+    with pytest.raises(InputError) as told:
+        mesh_cycle(PAIR, TORQUE, 8, bodies, cells=7, alignment=Alignment(0.1), moving_contact=True)
+    text = str(told.value)
+    assert all(name in text for name in ("cells", "alignment.in_plane", "moving_contact"))
+    with pytest.raises(InputError, match="end_relief_length"):
+        replace(PAIR, pinion=Gear(teeth=20, lead=Lead(end_relief=1e-5)))

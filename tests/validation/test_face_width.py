@@ -1,0 +1,50 @@
+"""Face-load factor of a misaligned pair against three-dimensional finite elements.
+
+The article's pair (z 36/40, m 2, b 40 mm, bores 33.5 and 37.5 mm, E 206 GPa, nu 0.3), one pair at C under 443.4 N/mm,
+the axes 20 um out of parallel over the face: greatest over mean line load of 64 cells, 1.474 by tensor-product elements
+in three dimensions, 1.491 by waves between frictionless walls; at a tenth of the load 4.086 and 4.599. Computed apart
+from this project with other meshes; agreement is asked for to 2 % beyond the factor's own estimate.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fem import compliance, mesh_cycle
+from gears import Alignment, Gear, GearPair, Material
+
+STEEL = Material(206e9, 0.3, 7850.0)
+PAIR = GearPair(
+    Gear(teeth=36, bore_radius=0.5 * 0.0335),
+    Gear(teeth=40, bore_radius=0.5 * 0.0375),
+    module=2e-3,
+    face_width=40e-3,
+    material=STEEL,
+)
+FULL = 443.4e3 * PAIR.face_width * PAIR.base_radii[0]
+
+
+def _at_C(part: float, free_ends: bool) -> tuple[float, float]:
+    bodies = compliance(PAIR, 0.002)
+    found = mesh_cycle(
+        PAIR, part * FULL, 40, bodies, beyond_path=False, alignment=Alignment(20e-6), free_ends=free_ends
+    )
+    place = (PAIR.points.C - PAIR.points.A) / PAIR.base_pitch
+    row = int(np.argmin(np.abs(found.position - place)))
+    assert np.count_nonzero(found.forces[row]) == 1
+    assert found.face is not None
+    return float(found.face_load_factor[row]), found.face.error
+
+
+@pytest.mark.parametrize(("part", "factor"), [(1.0, 1.491), (0.1, 4.599)])
+def test_between_walls(part, factor):
+    assert _at_C(part, free_ends=False)[0] == pytest.approx(factor, rel=5e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("part", "factor"), [(1.0, 1.474), (0.1, 4.086)])
+def test_with_free_ends(part, factor):
+    found, error = _at_C(part, free_ends=True)
+    assert error < 0.025
+    assert found == pytest.approx(factor, rel=0.02 + error)
