@@ -50,6 +50,11 @@ class State:
 
     coarse: Level
     fine: Level
+    flooded: State | None = None  # of a starved film: the flooded one of this contact, or of one like it
+
+    def bare(self) -> State:
+        """Return the state without Newton matrices."""
+        return replace(self, coarse=self.coarse.bare(), fine=self.fine.bare())
 
     @property
     def plan(self) -> Plan:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 _FARTHEST = 1.5  # most that ln(distance) changes at once
 _NEAREST = 1e-6  # a change too small to help a start that fails
 _FLATTEST = 1e-3  # slope of ln(flow) over ln(distance) below which it says nothing
+_USUAL_SLOPE = 0.5
 _DONE = 1e-10  # relative difference of flow and layer
 _ROUNDED = 4.0 * sys.float_info.epsilon  # of the place of the meniscus, which is about one half-width
 
@@ -25,14 +26,14 @@ class MeniscusSearch:
     miss: float  # ln(flow/layer) there
     low: float = -math.inf  # nearer than the root
     high: float = math.inf  # farther
-    slope: float = 0.5
+    slope: float = _USUAL_SLOPE
     reach: float = _FARTHEST
     target: float = math.nan  # place to be tried
 
     @classmethod
-    def at(cls, distance: float, miss: float) -> MeniscusSearch:
+    def at(cls, distance: float, miss: float, slope: float = _USUAL_SLOPE) -> MeniscusSearch:
         """Begin at a solution, a distance [half-widths] ahead of the dry contact."""
-        search = cls(math.log(distance), miss)
+        search = cls(math.log(distance), miss, slope=slope)
         search._aim()
         return search
 
@@ -40,6 +41,11 @@ class MeniscusSearch:
     def distance(self) -> float:
         """Distance to be tried [half-widths]."""
         return math.exp(self.target)
+
+    @property
+    def step(self) -> float:
+        """Change of ln(distance) from the last solution to the place to be tried."""
+        return self.target - self.where
 
     @property
     def done(self) -> bool:
@@ -61,6 +67,11 @@ class MeniscusSearch:
         self.slope = (miss - self.miss) / (self.target - self.where)
         self.where, self.miss = self.target, miss
         self.reach = min(2.0 * self.reach, _FARTHEST)
+        self._aim()
+
+    def corrected(self, miss: float) -> None:
+        """Take a better solution at the place of the last."""
+        self.miss = miss
         self._aim()
 
     def _aim(self) -> None:

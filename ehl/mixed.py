@@ -9,20 +9,27 @@ pressure at it, and s is where that pressure is what the share asks for at the m
 from __future__ import annotations
 
 import math
-import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from typing import NamedTuple
 
-from base import Cost, InputError, RangeWarning, described, part, record, shorten
+from base import Cost, InputError, described, part, record, shorten
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film, unsolved
-from ehl.options import warn_of_range
-from ehl.solver import solve
+from ehl.levels import State, figures
+from ehl.options import Options, warn_of_range
+from ehl.outcome import Found
+from ehl.response import Response, by_share
+from ehl.solver import solve_checked
 from ehl.supply import Supply
 
 _LEAST_SHARE = 1e-10
-_LEAST_FILM_SHARE = 1e-6
-_ODDS_STEP = 0.02
+_NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none,
+_ALL = -math.log(1e-6)  # and of one that leaves a millionth to the film
+_BALANCED = 1e-7  # relative difference of the pressures that asperities carry and are asked for
+_REACH = 3.0  # largest step of the odds
+_TRIES = 60
+_VACUUM = 1e-300
 
 
 @record
@@ -125,7 +132,7 @@ def solve_mixed(
     roughness: Roughness,
     tolerance: float = 0.005,
     supply: Supply | None = None,
-    start: Film | None = None,
+    start: Film | MixedFilm | None = None,
 ) -> MixedFilm:
     """Share the load between film and asperities.
 
@@ -139,8 +146,8 @@ def solve_mixed(
         Wanted relative error of the film, as for :func:`ehl.solve`.
     supply : Meniscus or OilLayer, optional
         As for :func:`ehl.solve`.
-    start : Film, optional
-        A film to start from.
+    start : Film or MixedFilm, optional
+        A film to start from; one with asperities gives their share to start with as well.
 
     Returns
     -------
@@ -155,8 +162,9 @@ def solve_mixed(
 
     Notes
     -----
-    The share is sought in ln[s/(1-s)] by Brent's method: the asperities' pressure falls as their share
-    rises, since the film that carries less is thicker, and what the share asks for rises.
+    The share is sought in ln[s/(1-s)] by Newton's method between bounds: the asperities' pressure falls as their
+    share rises, since the film that carries less is thicker, and what the share asks for rises. The film's derivative
+    by the share comes from its own Newton matrix.
 
     References
     ----------
@@ -174,11 +182,10 @@ def solve_mixed(
         raise InputError.at(
             "roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness"
         )
-    search = _Search(contact, roughness, tolerance, supply, start)
+    options = Options(tolerance, supply=supply).checked(contact)
+    search = _Search(contact, roughness, options, start)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)  # trial shares leave films that nothing shows
-            found = search.solved()
+        found = search.solved()
     except _NoFilmError as reason:
         return search.failed(str(reason))
     warn_of_range(found.film.contact)
@@ -189,34 +196,45 @@ class _NoFilmError(Exception):
     """A trial film failed, or none is left to the load."""
 
 
-@dataclass
+class _Balance(NamedTuple):
+    """A film under the share of the load that its asperities leave to it."""
+
+    found: Found
+    odds: float
+    by: Response  # derivatives by the odds
+
+
 class _Search:
     """Films at trial shares, each started from the last."""
 
-    contact: LineContact
-    roughness: Roughness
-    tolerance: float
-    supply: Supply | None
-    start: Film | None
-    cost: Cost = field(default_factory=lambda: Cost(0.0))
-    last: Film = field(init=False)
+    def __init__(
+        self, contact: LineContact, roughness: Roughness, options: Options, start: Film | MixedFilm | None
+    ) -> None:
+        self.contact = contact
+        self.roughness = roughness
+        self.options = options
+        before = start.film if isinstance(start, MixedFilm) else start
+        self.state: State | None = None if before is None else before.state
+        share = start.asperity_share if isinstance(start, MixedFilm) and start.converged else 0.0
+        self.odds = math.log(share / (1.0 - share)) if share > 0.0 else -math.inf
+        self.cost = Cost(0.0)
 
-    def film_at(self, odds: float) -> Film:
+    def film_at(self, odds: float) -> Found:
         """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
         left = 1.0 - _share(odds)
         eased = replace(
             self.contact, load=left * self.contact.load, reduced_modulus=left * self.contact.reduced_modulus
         )
-        self.last = film = solve(eased, self.tolerance, start=self.start, supply=self.supply)
-        self.cost += film.cost + Cost(0.0, counts={"films": 1})
-        if not film.converged:
-            raise _NoFilmError(film.message)
-        self.start = film
-        return film
+        self.last = found = solve_checked(eased, self.options, self.state)
+        self.cost += found.run.cost() + Cost(0.0, counts={"films": 1})
+        if not found.converged:
+            raise _NoFilmError(found.film().message)
+        self.state = found.state.bare()
+        return found
 
-    def carried(self, film: Film) -> tuple[float, float]:
-        """Asperities' pressure at a film's central thickness [Pa] and its derivative by that [Pa/m]."""
-        pressure, slope = self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)
+    def carried(self, central: float) -> tuple[float, float]:
+        """Asperities' pressure at a central thickness [Pa] and its derivative by that [Pa/m]."""
+        pressure, slope = self.roughness.pressure(central, self.contact.reduced_modulus)
         return float(pressure), float(slope)
 
     def asked(self, odds: float, heavier: float = 1.0) -> float:
@@ -224,57 +242,74 @@ class _Search:
         contact = replace(self.contact, load=heavier * self.contact.load)
         return central_asperity_pressure(contact, self.roughness, _share(odds))
 
-    def excess(self, odds: float) -> float:
-        """Ln of the asperities' pressure over what their share asks for."""
-        carried = self.carried(self.film_at(odds))[0]
-        return math.log(max(carried, 1e-300) / self.asked(odds))
+    def asked_slopes(self, odds: float) -> tuple[float, float]:
+        """Derivatives of ln of that pressure by the odds and by ln of the load."""
+        step = 1e-6
+        by_odds = math.log(self.asked(odds + step)) - math.log(self.asked(odds - step))
+        by_load = math.log(self.asked(odds, 1 + step)) - math.log(self.asked(odds, 1 - step))
+        return by_odds / (2 * step), by_load / (2 * step)
 
     def solved(self) -> MixedFilm:
         """Share the load, with the asperities' stiffness at the contact's width and both derivatives."""
-        smooth = self.film_at(-math.inf)
-        alone = self.carried(smooth)[0] / self.contact.peak_pressure
-        if alone < _LEAST_SHARE:
-            return self.result(smooth, 0.0, 0.0, smooth.separation_slope, smooth.central_slope)
-        share = min(alone, 0.5)
-        odds = self.balance(math.log(share / (1.0 - share)))
-        film, share = self.film_at(odds), _share(odds)
-        pressure, slope = self.carried(film)
+        if math.isinf(self.odds):
+            smooth = self.film_at(-math.inf)
+            alone = self.carried(figures(smooth.fine).central_thickness)[0] / self.contact.peak_pressure
+            if alone < _LEAST_SHARE:
+                return self.smooth(smooth)
+            share = min(alone, 0.5)
+            self.odds = math.log(share / (1.0 - share))
+        balance = self.balance()
+        if balance is None:
+            return self.smooth(self.film_at(-math.inf))
+        film, share, by = balance.found.film(), _share(balance.odds), balance.by
+        pressure, slope = self.carried(film.central_thickness)
         stiffness = -share * self.contact.load * slope / pressure
-        return self.result(film, share, stiffness, *self.slopes(film, odds, slope / pressure))
+        # ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw
+        left, steep = 1.0 - share, slope / pressure
+        asked_by_odds, asked_by_load = self.asked_slopes(balance.odds)
+        separation_w, central_w = left * film.separation_slope, left * film.central_slope
+        follow = asked_by_load / self.contact.load - steep * central_w
+        follow /= steep * by.central - asked_by_odds
+        return self.result(
+            film, share, stiffness, separation_w + by.separation * follow, central_w + by.central * follow
+        )
 
-    def balance(self, odds: float) -> float:
-        """Odds at which the asperities carry what is asked: steps until the root is passed, then Brent's method."""
-        from scipy.optimize import brentq
+    def balance(self) -> _Balance | None:
+        """Share at which the asperities carry what is asked, by Newton's method in its odds between bounds.
 
-        at = self.excess(odds)
-        step, far, at_far = at, odds, at
-        while at * at_far > 0.0:
-            if far > -math.log(_LEAST_FILM_SHARE):
+        The asperities' pressure falls as their share rises, since the film that carries less is thicker, and what
+        the share asks for rises. None where they carry nothing.
+        """
+        odds, low, high = self.odds, -math.inf, math.inf
+        for _ in range(_TRIES):
+            found = self.film_at(odds)
+            excess, slope, by = self.excess(found, odds)
+            if abs(excess) < _BALANCED:
+                return _Balance(found, odds, by)
+            low, high = (odds, high) if excess > 0.0 else (low, odds)
+            if high <= _NOTHING:
+                return None
+            if low >= _ALL:
                 raise _NoFilmError(
                     "the asperities carry all but a millionth of the load: take the contact as dry"
                 )
-            odds, at = far, at_far
-            far += math.copysign(max(abs(step), 0.1), step)
-            at_far, step = self.excess(far), 2.0 * step
-        return float(brentq(self.excess, odds, far, xtol=1e-9, rtol=1e-12)) if at != 0.0 else odds
+            step = max(-_REACH, min(_REACH, -excess / slope))
+            target = max(_NOTHING, min(_ALL, odds + step))
+            odds = target if low < target < high else 0.5 * (low + high)
+        raise _NoFilmError("no share of the load on which film and asperities agree was found")
 
-    def slopes(self, film: Film, odds: float, steep: float) -> tuple[float, float]:
-        """Derivatives of separation and central film by the load, the share moving along.
+    def excess(self, found: Found, odds: float) -> tuple[float, float, Response]:
+        """Ln of the asperities' pressure over what their share asks for, its derivative and the film's by the odds."""
+        by = by_share(found.fine, found.run.supply).scaled(-_share(odds))  # ln(1 - s) falls by s
+        pressure, slope = self.carried(figures(found.fine).central_thickness)
+        excess = math.log(max(pressure, _VACUUM) / self.asked(odds))
+        steep = slope / pressure * by.central if pressure > _VACUUM else 0.0
+        return excess, steep - self.asked_slopes(odds)[0], by
 
-        ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw; the film's own derivatives by w are known, those by s are
-        differences of two films at neighbouring odds.
-        """
-        low, high = (self.film_at(odds + step) for step in (-_ODDS_STEP, _ODDS_STEP))
-        separation_s = (high.separation - low.separation) / (2.0 * _ODDS_STEP)
-        central_s = (high.central_thickness - low.central_thickness) / (2.0 * _ODDS_STEP)
-        left = 1.0 - _share(odds)
-        separation_w, central_w = left * film.separation_slope, left * film.central_slope
-        step = 1e-6
-        by_load = math.log(self.asked(odds, 1 + step)) - math.log(self.asked(odds, 1 - step))
-        by_load /= 2 * step * self.contact.load
-        by_odds = (math.log(self.asked(odds + step)) - math.log(self.asked(odds - step))) / (2 * step)
-        follow = (by_load - steep * central_w) / (steep * central_s - by_odds)
-        return separation_w + separation_s * follow, central_w + central_s * follow
+    def smooth(self, found: Found) -> MixedFilm:
+        """Return a film that carries all."""
+        film = found.film()
+        return self.result(film, 0.0, 0.0, film.separation_slope, film.central_slope)
 
     def result(self, film: Film, *figures: float) -> MixedFilm:
         """Return what was found: share and stiffness of the asperities, slopes of separation and central film."""
@@ -282,7 +317,7 @@ class _Search:
 
     def failed(self, reason: str) -> MixedFilm:
         """Return no figures."""
-        blank = replace(self.last, converged=False, central_thickness=math.nan)
+        blank = replace(self.last.film(), converged=False, central_thickness=math.nan)
         return MixedFilm(self.contact, self.roughness, blank, self.cost, False, reason)
 
 

@@ -13,9 +13,11 @@ from ehl.discrete import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, lo
 from ehl.grid import face_weights
 from ehl.squeeze import Squeeze
 
+STEP_DONE = 1e-6
+"""Newton converges quadratically: after such a step the error is near rounding."""
+
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
-_STEP_DONE = 1e-6  # Newton converges quadratically: after such a step the error is near rounding
 _OIL_DONE = 2e-3  # what an oil's own state may still change by, of itself
 _CALM_AFTER = 20  # steps after which an oil that keeps going round is followed more slowly,
 _CALM = 0.5  # by this share
@@ -75,7 +77,7 @@ def newton(
     spent: int = 0,
     max_iterations: int = 60,
     oil: Oil | None = None,
-    done: float = _STEP_DONE,
+    done: float = STEP_DONE,
     squeeze: Squeeze | None = None,
 ) -> Iteration:
     """Solve Reynolds' equation, the gap and the load balance together.

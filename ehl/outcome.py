@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ehl.levels import Level, State, figures, spike_of
 from ehl.plan import Plan
 from ehl.response import slopes
 from ehl.run import DRY, Run
-from ehl.supply import OilLayer
+from ehl.supply import OilLayer, Supply
 
 GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
@@ -65,6 +66,37 @@ def spike_error(coarse: Level, fine: Level) -> float:
     return abs(before.height / after.height - 1.0)
 
 
+@dataclass(frozen=True)
+class Found:
+    """What one call found: two grids within their tolerance, or the reason why there are none."""
+
+    run: Run
+    coarse: Level
+    fine: Level
+    error: float  # estimated, of central and minimum film
+    inlet: float  # share of it that is the finite inlet's
+    failure: str = ""
+    note: str = ""  # said of a solution
+    supply: Supply | None = None  # where it is not what holds the inlet
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance is met."""
+        return not self.failure
+
+    @property
+    def state(self) -> State:
+        """What a next solution starts from."""
+        return State(self.coarse, self.fine, self.run.flooded)
+
+    def film(self) -> Film:
+        """Return the film in SI, or one without figures."""
+        if self.failure:
+            return failed_film(self.run, self.fine, self.failure, self.error)
+        film = film_of(self.run, self.coarse, self.fine, self.error, self.inlet)
+        return replace(film, supply=self.supply, message=self.note) if self.note else film
+
+
 def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
     """Return the film in SI."""
     contact, found, supply = run.contact, fine.found, run.supply
@@ -103,7 +135,7 @@ def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) ->
         converged=True,
         message=message,
         spike=_spike(coarse, fine),
-        state=State(coarse.bare(), fine.bare()),
+        state=State(coarse, fine, run.flooded).bare(),
     )
 
 

@@ -46,7 +46,7 @@ class Plan:
 
     @classmethod
     def fed(cls, contact: LineContact, kind: str, supply: Supply, flooded: float) -> Plan:
-        """Lay the plan of a starved contact, whose flooded film would be ``flooded`` [m]."""
+        """Lay the plan of a starved contact, whose flooded film would be about ``flooded`` [m]."""
         H_flooded = contact.film_parameter(flooded)
         if isinstance(supply, OilLayer):
             H_c = contact.film_parameter(supply.thickness)
@@ -61,14 +61,20 @@ class Plan:
         """Share of the film lost to the finite inlet; 0 where the domain was given."""
         return 0.0 if self.fixed else (math.sqrt(self.H_c) / (-1.0 - self.domain[0])) ** 3
 
-    def serves(self, other: Plan) -> bool:
-        """Whether grids of this plan are good enough for the other."""
+    def serves(self, other: Plan, supply: Supply | None = None) -> bool:
+        """Whether grids of this plan are good enough for the other; the meniscus of a layer is sought in any case."""
         if self.kind != other.kind or self.fixed != other.fixed:
             return False
-        if self.fixed and self.domain != other.domain:
+        if not 1.0 / _REUSE < self.H_c / other.H_c < _REUSE:
             return False
+        if self.fixed and supply is not None:
+            return isinstance(supply, OilLayer) or self.domain[0] == other.domain[0]
         reach = self.domain[0] / other.domain[0]
-        return 1.0 / _REUSE < self.H_c / other.H_c < _REUSE and 1.0 / _REUSE < reach < _REUSE
+        return 1.0 / _REUSE < reach < _REUSE and not (self.fixed and self.domain != other.domain)
+
+    def alike(self, other: Plan) -> bool:
+        """Whether the other is the same but for its inlet."""
+        return self.with_inlet(other.domain[0]) == other
 
     def nodes(self, n: int, start: Array | None = None) -> Array:
         """Return n nodes [half-widths]; ``start`` are nodes close to them."""
@@ -102,9 +108,9 @@ class Plan:
         domain = (-1.0 + root * (left + 1.0), 1.0 + root * (right - 1.0))
         return replace(self, H_c=H_c, domain=domain, spike=spike)
 
-    def for_load(self, growth: float, load_ratio: float, supply: Supply | None) -> Plan:
-        """Return the plan of a slightly heavier load on the same supply."""
+    def moved_to(self, growth: float, wider: float, supply: Supply | None) -> Plan:
+        """Return the plan for a film grown and a dry contact widened by a factor each, on the same supply."""
         moved = self.moved(growth)
         if isinstance(supply, Meniscus):
-            return moved.with_inlet(self.domain[0] / math.sqrt(load_ratio))
+            return moved.with_inlet(self.domain[0] / wider)
         return moved

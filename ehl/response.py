@@ -34,12 +34,34 @@ class Slopes:
     )
 
 
-class _Response(NamedTuple):
-    """Derivatives by one parameter [m]."""
+class Response(NamedTuple):
+    """Derivatives by one parameter: figures [m], pressures at the nodes and rigid separation."""
 
     central: float
     separation: float
     flow: float  # NaN where it was not asked for
+    P: Array
+    H0: float
+
+    def scaled(self, factor: float) -> Response:
+        """Return the derivatives by another parameter, of which this one is a function of this slope."""
+        return Response(
+            factor * self.central,
+            factor * self.separation,
+            factor * self.flow,
+            factor * self.P,
+            factor * self.H0,
+        )
+
+    def less(self, part: float, other: Response) -> Response:
+        """Return the derivatives with another parameter following along by minus a part."""
+        return Response(
+            self.central - part * other.central,
+            self.separation - part * other.separation,
+            self.flow - part * other.flow,
+            self.P - part * other.P,
+            self.H0 - part * other.H0,
+        )
 
 
 def slopes(level: Level, supply: Supply | None) -> Slopes:
@@ -51,39 +73,53 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
-    before = Residual.of(level.grid, level.groups, level.found.P, level.found.H0)
+    before = _residual(level)
     heavier = replace(contact, load=contact.load * math.exp(STEP))
     growth = expected_film(heavier) / expected_film(contact)
-    moving = _along(level, before, heavier, growth, supply)
     if supply is None or not plan.fixed:
+        moving = _along(level, before, heavier, growth, supply)
         still = _differentiate(level, before, heavier, level.grid)
         return Slopes(still.central, moving.separation, abs(still.separation / moving.separation - 1.0))
-    still = _along(level, before, heavier, 1.0, supply)
+    farther = by_distance(level) if isinstance(supply, OilLayer) else None
+    moving, still = (_along(level, before, heavier, g, supply, farther) for g in (growth, 1.0))
     return Slopes(moving.central, moving.separation, abs(still.separation / moving.separation - 1.0))
 
 
-def _along(
-    level: Level, before: Residual, heavier: LineContact, growth: float, supply: Supply | None
-) -> _Response:
-    """Differentiate by ln w on nodes that follow a film growing by a factor, with the supply as it is.
-
-    A meniscus fed by a layer moves until the flow is that of the layer again.
-    """
+def by_distance(level: Level) -> Response:
+    """Differentiate by ln of the distance between the meniscus and the dry contact, at a fixed load."""
     plan = level.plan
-    moved = plan.for_load(growth, heavier.load / level.contact.load, supply)
-    fed = isinstance(supply, OilLayer) and plan.fixed
-    by_load = _respond(level, before, heavier, moved, flow=fed)
-    if not fed:
-        return by_load
     farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(STEP))
-    by_distance = _respond(level, before, level.contact, farther, flow=True)
-    follow = by_load.flow / by_distance.flow
-    return _Response(*(a - follow * b for a, b in zip(by_load, by_distance, strict=True)))
+    return _differentiate(level, _residual(level), level.contact, moved_grid(level, farther), flow=True)
 
 
-def _respond(level: Level, before: Residual, contact: LineContact, plan: Plan, *, flow: bool) -> _Response:
-    """Differentiate towards another contact on the nodes of another plan."""
-    return _differentiate(level, before, contact, moved_grid(level, plan), flow=flow)
+def by_share(level: Level, supply: Supply | None) -> Response:
+    """Differentiate by ln of the part of load and modulus that asperities leave to the film, at a fixed width."""
+    contact = level.contact
+    grown = math.exp(STEP)
+    more = replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
+    farther = by_distance(level) if isinstance(supply, OilLayer) and level.plan.fixed else None
+    return _along(level, _residual(level), more, expected_film(more) / expected_film(contact), supply, farther)
+
+
+def _residual(level: Level) -> Residual:
+    return Residual.of(level.grid, level.groups, level.found.P, level.found.H0)
+
+
+def _along(
+    level: Level,
+    before: Residual,
+    other: LineContact,
+    growth: float,
+    supply: Supply | None,
+    farther: Response | None = None,
+) -> Response:
+    """Differentiate towards another contact on nodes that follow a film growing by a factor, with the supply as it is.
+
+    A meniscus fed by a layer moves until the flow is that of the layer again; ``farther`` is what its distance does.
+    """
+    moved = moved_grid(level, level.plan.moved_to(growth, other.half_width / level.contact.half_width, supply))
+    direct = _differentiate(level, before, other, moved, flow=farther is not None)
+    return direct if farther is None else direct.less(direct.flow / farther.flow, farther)
 
 
 def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
@@ -91,18 +127,21 @@ def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, G
     contact = level.contact
     heavier = replace(contact, load=contact.load * math.exp(STEP))
     growth = expected_film(heavier) / expected_film(contact)
-    return heavier, moved_grid(level, level.plan.for_load(growth, heavier.load / contact.load, supply))
+    wider = heavier.half_width / contact.half_width
+    return heavier, moved_grid(level, level.plan.moved_to(growth, wider, supply))
 
 
 def moved_grid(level: Level, plan: Plan) -> Grid:
     """Return the level's grid with the nodes of another plan, on its scale."""
+    if plan == level.plan:
+        return level.grid
     ratio = level.grid.ratio
     return plan.over(plan.nodes(level.grid.nodes.size, level.grid.nodes * ratio), ratio)
 
 
 def _differentiate(
     level: Level, before: Residual, contact: LineContact, moved: Grid, *, flow: bool = False
-) -> _Response:
+) -> Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     found, grid, groups = level.found, level.grid, level.groups
     assert found.factors is not None, "only a converged level is differentiated"
@@ -110,10 +149,12 @@ def _differentiate(
     dP, dH0 = found.factors.solve(-own.net_flux, own.short, found.P.size)
     by_pressure = groups.compliance * float(grid.centre @ dP)
     carried = _flow_slope(level, before, own.flow, dP, dH0) if flow else math.nan
-    return _Response(
+    return Response(
         central=own.central + (dH0 - by_pressure) * groups.gap,
         separation=own.separation + dH0 * groups.gap,
         flow=carried,
+        P=dP,
+        H0=dH0,
     )
 
 

@@ -7,20 +7,23 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
+from base import Cost
 from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import Level, State
 from ehl.options import Options, warn_of_range
-from ehl.outcome import failed_film, film_error, film_of, spike_error
+from ehl.outcome import Found, film_error, spike_error
 from ehl.plan import Plan
+from ehl.regressions import moes_central
 from ehl.run import Run
-from ehl.supply import OilLayer, Supply
+from ehl.supply import Meniscus, OilLayer, Supply
 
 _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257
 _MOST_NODES = 2049
 REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
+_SURELY = 0.7  # share of the expected flooded flow below which a layer starves the contact for certain
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 
 
@@ -96,7 +99,7 @@ def solve(
     """
     options = Options(tolerance, nodes, domain, grid, supply, spike).checked(contact)
     warn_of_range(contact)
-    return solve_checked(contact, options, None if start is None else start.state)
+    return solve_checked(contact, options, None if start is None else start.state).film()
 
 
 def solve_path(
@@ -133,42 +136,68 @@ def solve_path(
     return tuple(films)
 
 
-def solve_checked(contact: LineContact, options: Options, start: State | None) -> Film:
-    """Solve with arguments that were checked."""
+def solve_checked(contact: LineContact, options: Options, start: State | None, spent: Cost | None = None) -> Found:
+    """Find the grids of a film, with arguments that were checked."""
     if options.supply is not None:
         return _starved(contact, options, options.supply, start)
     reach = max(REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
     flooded = Plan.of(contact, options.grid, options.domain, reach)
-    return _solve(Run(contact, flooded, None, whole_spike=options.spike is not None), options, start)
+    run = Run(contact, flooded, None, whole_spike=options.spike is not None, spent=spent)
+    return _solve(run, options, start)
 
 
-def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> Film:
-    """Solve with a supply: flooded first, since that decides how much of it the contact takes."""
+def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> Found:
+    """Solve with a supply: a layer may be thicker than what the contact takes, which the flooded one tells."""
     held = start if start is not None and start.plan.fixed else None
-    full = solve_checked(contact, replace(options, supply=None, spike=None), start if held is None else None)
-    if not full.converged:
-        return full
-    enough = full.flow * (1.0 - full.error)
-    if isinstance(supply, OilLayer) and supply.thickness >= enough:
+    full = start if held is None else held.flooded
+    if isinstance(supply, Meniscus):
+        return _held(contact, options, supply, moes_central(contact), held, full, None)
+    if held is not None and full is not None and supply.thickness < _SURELY * _expected_flow(contact, full):
+        found = _held(contact, options, supply, _expected_flow(contact, full), held, full, None)
+        if found.converged:
+            return found
+    flooded = solve_checked(contact, replace(options, supply=None, spike=None), full)
+    if not flooded.converged:
+        return flooded
+    if supply.thickness >= flooded.fine.flow * (1.0 - flooded.error):
         if options.spike is not None:
-            sharp = solve_checked(contact, replace(options, supply=None), full.state)
-            full = replace(sharp, cost=full.cost + sharp.cost)
-        message = "converged; the layer is thicker than what the inlet takes: flooded"
-        return replace(full, supply=supply, message=message) if full.converged else full
-    plan = Plan.fed(contact, options.grid, supply, full.flow)
-    if held is not None and isinstance(supply, OilLayer):
-        plan = plan.with_inlet(held.plan.domain[0])
-    film = _solve(Run(contact, plan, supply, whole_spike=options.spike is not None), options, held)
-    return replace(film, cost=full.cost + film.cost)
+            sharp = replace(options, supply=None)
+            flooded = solve_checked(contact, sharp, flooded.state, flooded.run.cost())
+        note = "converged; the layer is thicker than what the inlet takes: flooded"
+        return replace(flooded, supply=supply, note=note)
+    full = flooded.state.bare()
+    return _held(contact, options, supply, flooded.fine.flow, held, full, flooded.run.cost())
 
 
-def _solve(run: Run, options: Options, old: State | None) -> Film:
+def _expected_flow(contact: LineContact, flooded: State) -> float:
+    """Flow of a flooded contact [m], from that of another and Moes' formula for both."""
+    return flooded.fine.flow * moes_central(contact) / moes_central(flooded.fine.contact)
+
+
+def _held(
+    contact: LineContact,
+    options: Options,
+    supply: Supply,
+    flow: float,
+    held: State | None,
+    flooded: State | None,
+    spent: Cost | None,
+) -> Found:
+    """Solve a starved contact, whose flooded flow would be about ``flow`` [m]."""
+    plan = Plan.fed(contact, options.grid, supply, flow)
+    whole = options.spike is not None
+    run = Run(contact, plan, supply, whole_spike=whole, flooded=flooded, spent=spent)
+    return _solve(run, options, held)
+
+
+def _solve(run: Run, options: Options, old: State | None) -> Found:
     """Solve a first pair of grids, then refine.
 
     A start gives films on the first pair alone: on finer ones a film of another load is often too far off.
     """
-    if old is not None and old.plan.serves(run.plan):
+    if old is not None and old.plan.serves(run.plan, run.supply):
         run.plan = old.plan
+    fed = isinstance(run.supply, OilLayer)
     n = 2 * _FIRST_NODES - 1
     if options.nodes is not None:
         n = int(options.nodes)
@@ -176,8 +205,9 @@ def _solve(run: Run, options: Options, old: State | None) -> Film:
     if old is None:
         coarse, fine = run.pair(half, n)
     else:
-        same = old.plan is run.plan and old.coarse.plan is old.plan
-        coarse = run.warm(old.coarse if same else old.fine, _same(old.coarse, half, same), half)
+        same = old.plan is run.plan
+        coarse_same = same and (old.coarse.plan == old.plan or (fed and old.coarse.plan.alike(old.plan)))
+        coarse = run.warm(old.coarse if coarse_same else old.fine, _same(old.coarse, half, coarse_same), half)
         before = old.fine if same and old.fine.grid.nodes.size == n else coarse
         fine = run.warm(before, _same(old.fine, n, same), n)
     while (
@@ -196,7 +226,7 @@ def _same(level: Level, n: int, same: bool) -> Level | None:
     return level if same and level.grid.nodes.size == n else None
 
 
-def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
+def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Found:
     """Double the grid until the estimates meet what is asked, then report.
 
     A grid that fails is passed over: the next one is compared with the last that gave in.
@@ -205,7 +235,7 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
     inlet = run.plan.inlet_error
     if options.sharp and coarse.found.converged and fine.found.converged:
         if not given and film_error(coarse, fine) + inlet <= options.tolerance and options.spike is None:
-            return film_of(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
+            return Found(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
         n = fine.grid.nodes.size if given else _SHARP_NODES
         coarse = run.sharpened(fine, (n + 1) // 2)
         fine = run.sharpened(coarse, n)
@@ -217,14 +247,15 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Film:
                 fine = run.warm(coarse, None, n)
                 continue
             failed = fine if coarse.found.converged else coarse
-            return failed_film(run, fine, failed.found.message)
+            return Found(run, coarse, fine, math.nan, inlet, failed.found.message)
         worst = film_error(coarse, fine) + inlet
         before, off = off, spike_error(coarse, fine)
         if given or (worst <= options.tolerance and (options.spike is None or off <= options.spike)):
-            return film_of(run, coarse, fine, worst, inlet)
+            return Found(run, coarse, fine, worst, inlet)
         if options.spike is not None and max(before, off) < math.inf and off > _SETTLING * before:
-            return failed_film(run, fine, f"error {off:.2g} of the spike, which does not settle", worst)
+            unsettled = f"error {off:.2g} of the spike, which does not settle"
+            return Found(run, coarse, fine, worst, inlet, unsettled)
         if n > _MOST_NODES:
             left = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
-            return failed_film(run, fine, f"{left} left on {fine.grid.nodes.size} nodes", worst)
+            return Found(run, coarse, fine, worst, inlet, f"{left} left on {fine.grid.nodes.size} nodes")
         coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)

@@ -194,12 +194,13 @@ def _solved(
     found: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
         near = before[i] if before else found[-1] if found else None
-        start = None if near is None else film_inside(near)
         film: ehl.Film | ehl.MixedFilm
         if model.roughness is None:
+            start = None if near is None else film_inside(near)
             film = ehl.solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
         else:
-            film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, start)
+            assert not isinstance(near, ehl.FormulaFilm)  # rough flanks have solved films
+            film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, near)
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
         found.append(film)
