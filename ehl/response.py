@@ -98,7 +98,9 @@ def by_share(level: Level, supply: Supply | None) -> Response:
     grown = math.exp(STEP)
     more = replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
     farther = by_distance(level) if isinstance(supply, OilLayer) and level.plan.fixed else None
-    return _along(level, _residual(level), more, expected_film(more) / expected_film(contact), supply, farther)
+    return _along(
+        level, _residual(level), more, expected_film(more) / expected_film(contact), supply, farther
+    )
 
 
 def _residual(level: Level) -> Residual:
@@ -117,7 +119,9 @@ def _along(
 
     A meniscus fed by a layer moves until the flow is that of the layer again; ``farther`` is what its distance does.
     """
-    moved = moved_grid(level, level.plan.moved_to(growth, other.half_width / level.contact.half_width, supply))
+    moved = moved_grid(
+        level, level.plan.moved_to(growth, other.half_width / level.contact.half_width, supply)
+    )
     direct = _differentiate(level, before, other, moved, flow=farther is not None)
     return direct if farther is None else direct.less(direct.flow / farther.flow, farther)
 

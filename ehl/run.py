@@ -5,17 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from base import Cost, Stopwatch, unclocked
 from ehl.contact import LineContact
-from ehl.discrete import Groups
+from ehl.feed import Feed
 from ehl.grid import clusters
 from ehl.levels import Level, State, cold, spike_of, warm
-from ehl.meniscus import MeniscusSearch
-from ehl.newton import STEP_DONE, newton
 from ehl.plan import Plan
-from ehl.response import Response, by_distance, moved_grid
 from ehl.supply import OilLayer, Supply
 
 DRY = 1e-5
@@ -27,10 +22,6 @@ MOST_STEPS = 1200
 _STEP_NODES = 257
 
 _STARTS = (2.0, 8.0)  # films to start from, over the expected one
-_LAYER_TRIES = 40
-_NEAR = 0.3  # change of ln(distance) of a meniscus within which its slopes say what the film becomes
-_FOLLOWED = 0.1  # Newton step over the step of the meniscus after which the next place is tried
-_ROUGH = 3e-3  # largest such Newton step
 _MOST_COLD_NODES = 1025
 _MOST_COLD_NODES_DRY = 257  # a film that such a grid does not resolve is as good as none
 _SPIKE_ROUNDS = 5
@@ -155,55 +146,10 @@ class Run:
         """Move the meniscus until the film carries away what the layer brings; the plan is left at the one found."""
         if not (isinstance(self.supply, OilLayer) and self.plan.fixed and level.found.converged):
             return level
-        wanted = self.supply.thickness
-        lead = by_distance(level)
-        slope = lead.flow / level.flow
-        search = MeniscusSearch.at(-1.0 - level.plan.domain[0], math.log(level.flow / wanted), slope)
-        rough = False
-        for _ in range(_LAYER_TRIES):
-            if search.done and not rough:
-                self.plan = self.own = replace(level.plan, spike=self.plan.spike)
-                return level
-            if search.done or search.stuck:
-                if not rough:
-                    break
-                level, rough = self.count(warm(level, self.contact, level.plan, level.grid)), False
-                search.corrected(math.log(level.flow / wanted))
-                continue
-            if self.exhausted:
-                break
-            plan = level.plan.with_inlet(-1.0 - search.distance)
-            trial, rough = self.follow(level, plan, search.step, lead)
-            if not trial.found.converged:
-                self.restarts += 1
-                search.failed()
-                continue
-            lead = lead._replace(
-                P=(trial.found.P - level.found.P) / search.step,
-                H0=(trial.found.H0 - level.found.H0) / search.step,
-            )
-            search.solved(math.log(trial.flow / wanted))
-            level = trial
-        message = f"the meniscus that lets a layer of {wanted:.3g} m pass was not found"
-        return replace(level, found=replace(level.found, converged=False, message=message))
-
-    def follow(self, level: Level, plan: Plan, step: float, lead: Response) -> tuple[Level, bool]:
-        """Solve at another place of the meniscus, from what the step towards it is expected to change.
-
-        A small step leaves so good a start that one of Newton's follows it; the second value is whether the solution
-        is no better than the next step of the meniscus needs it.
-        """
-        done = min(max(_FOLLOWED * abs(step), STEP_DONE), _ROUGH)
-        if abs(step) < _NEAR:
-            grid = moved_grid(level, plan)
-            P = np.maximum(level.found.P + step * lead.P, 0.0)
-            P[-1] = 0.0
-            groups = Groups.on(self.contact, grid)
-            found = newton(grid, groups, P, level.found.H0 + step * lead.H0, done=done)
-            trial = self.count(Level(self.contact, plan, grid, found))
-            if found.converged:
-                return trial, done > STEP_DONE
-        return self.count(warm(level, self.contact, plan, plan.grid(level.grid.nodes.size))), False
+        found = Feed(self, level, self.supply.thickness).found()
+        if found.found.converged:
+            self.plan = self.own = replace(found.plan, spike=self.plan.spike)
+        return found
 
     def sharpened(self, level: Level, n: int) -> Level:
         """Lay the grid around the spike that was found, until its width no longer changes the grid."""

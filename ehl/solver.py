@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from base import Cost
 from ehl.contact import LineContact
 from ehl.film import Film
@@ -136,7 +138,9 @@ def solve_path(
     return tuple(films)
 
 
-def solve_checked(contact: LineContact, options: Options, start: State | None, spent: Cost | None = None) -> Found:
+def solve_checked(
+    contact: LineContact, options: Options, start: State | None, spent: Cost | None = None
+) -> Found:
     """Find the grids of a film, with arguments that were checked."""
     if options.supply is not None:
         return _starved(contact, options, options.supply, start)
@@ -151,11 +155,13 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
     held = start if start is not None and start.plan.fixed else None
     full = start if held is None else held.flooded
     if isinstance(supply, Meniscus):
-        return _held(contact, options, supply, moes_central(contact), held, full, None)
-    if held is not None and full is not None and supply.thickness < _SURELY * _expected_flow(contact, full):
-        found = _held(contact, options, supply, _expected_flow(contact, full), held, full, None)
-        if found.converged:
-            return found
+        return _held(contact, options, supply, _moes_flow(contact), held, full, None)
+    if held is not None and full is not None:
+        expected = full.fine.flow * _moes_flow(contact) / _moes_flow(full.fine.contact)
+        if supply.thickness < _SURELY * expected:
+            found = _held(contact, options, supply, expected, held, full, None)
+            if found.converged:
+                return found
     flooded = solve_checked(contact, replace(options, supply=None, spike=None), full)
     if not flooded.converged:
         return flooded
@@ -169,9 +175,10 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
     return _held(contact, options, supply, flooded.fine.flow, held, full, flooded.run.cost())
 
 
-def _expected_flow(contact: LineContact, flooded: State) -> float:
-    """Flow of a flooded contact [m], from that of another and Moes' formula for both."""
-    return flooded.fine.flow * moes_central(contact) / moes_central(flooded.fine.contact)
+def _moes_flow(contact: LineContact) -> float:
+    """Flow of a flooded contact by Moes' formula, at the density that the oil has under Hertz's pressure [m]."""
+    density = contact.lubricant.density_ratio(np.array([contact.peak_pressure]))[0]
+    return moes_central(contact) * float(density[0])
 
 
 def _held(

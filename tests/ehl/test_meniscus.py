@@ -66,3 +66,18 @@ def test_rounding_of_the_place_bounds_what_is_asked_of_the_flow():
     assert search.done
     assert not MeniscusSearch.at(1e-7, 1e-8).done
     assert not MeniscusSearch.at(1e-3, 2e-9).done
+
+
+def test_a_slope_that_is_known_leads_to_the_root_at_once():
+    search = MeniscusSearch.at(3e-5 * math.exp(-0.01), -0.012, slope=1.2)
+    assert search.target == pytest.approx(ROOT, abs=1e-12)
+    assert search.step == pytest.approx(0.01)
+
+
+def test_a_better_solution_at_the_same_place_aims_anew():
+    search = MeniscusSearch.at(1e-3, 0.1, slope=0.5)
+    search.solved(1e-12)
+    assert search.done
+    search.corrected(1e-6)
+    assert not search.done
+    assert search.step != 0.0

@@ -112,6 +112,30 @@ def test_a_path_with_a_supply():
             assert film.supply == supply
 
 
+def test_a_starved_neighbour_saves_the_flooded_film():
+    """The flooded film tells whether a layer is thick enough; where a neighbour's says so no other is solved."""
+    layer = OilLayer(0.3 * FLOODED.flow)
+    before = quiet(replace(PITCH, load=0.97 * PITCH.load), supply=layer)
+    near, alone = quiet(PITCH, supply=layer, start=before), quiet(PITCH, supply=layer)
+    assert near.cost.iterations < alone.cost.iterations - FLOODED.cost.iterations
+    assert near.flow == pytest.approx(layer.thickness, rel=1e-9)
+    assert near.central_thickness == pytest.approx(alone.central_thickness, rel=alone.error)
+    meniscus = Meniscus(-1.1 * B)
+    near = quiet(PITCH, supply=meniscus, start=quiet(PITCH, supply=Meniscus(-1.11 * B)))
+    assert near.cost.iterations < FLOODED.cost.iterations
+
+
+def test_a_layer_as_thick_as_wanted_is_flooded_whatever_the_start_was(monkeypatch):
+    before = quiet(PITCH, supply=OilLayer(0.3 * FLOODED.flow))
+    thick = OilLayer(1.02 * FLOODED.flow)
+    assert "flooded" in quiet(PITCH, supply=thick, start=before).message
+    # even where the flow expected from the neighbour's is far too large
+    monkeypatch.setattr("ehl.solver._SURELY", 2.0)
+    film = sound(quiet(PITCH, supply=thick, start=before))
+    assert "flooded" in film.message
+    assert film.central_thickness == pytest.approx(FLOODED.central_thickness, rel=2 * FLOODED.error)
+
+
 def test_fill():
     film = quiet(PITCH, supply=OilLayer(0.3e-6))
     assert (film.fill > 0).all()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from base import RangeWarning
-from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve
+from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
 from ehl.run import DRY
 from tests.ehl.films import sound
 from tests.hard.random_contacts import random_contact, refused
@@ -131,3 +131,38 @@ def test_a_few_random_supplies():
 @pytest.mark.slow
 def test_random_supplies():
     check_random_supplies(300)
+
+
+def check_random_neighbours(number):
+    """Starve and roughen random contacts, from one of .3 to 3 times the load and .5 to 2 times the speed."""
+    rng = np.random.default_rng()
+    for _ in range(number):
+        contact = random_contact(rng)
+        load, speed = 10 ** rng.uniform(-0.5, 0.5), 2 ** rng.uniform(-1, 1)
+        other = replace(contact, load=load * contact.load, entrainment=speed * contact.entrainment)
+        layer = OilLayer(10 ** rng.uniform(-1.7, 0.1) * sound(solve(contact)).flow)
+        X = 1 + 10 ** rng.uniform(-2.5, 0.5)
+        for fed, fed_other in ((layer, layer), *[[Meniscus(-X * c.half_width) for c in (contact, other)]]):
+            alone, before = solve(contact, supply=fed), solve(other, supply=fed_other)
+            near = sound(solve(contact, supply=fed, start=before if before.converged else None))
+            off = abs(near.central_thickness / alone.central_thickness - 1)
+            assert off < near.error + alone.error, (contact, fed, other)
+            assert near.starved == alone.starved, (contact, fed, other)
+        rough = Roughness.of_deviation(10 ** rng.uniform(-0.5, 0.7) * alone.central_thickness)
+        alone, before = (solve_mixed(c, rough, supply=s) for c, s in ((contact, fed), (other, fed_other)))
+        near = solve_mixed(contact, rough, supply=fed, start=before if before.converged else None)
+        assert alone.converged == near.converged, (contact, fed, other, rough)
+        if alone.converged and alone.asperity_share:
+            h = alone.central_thickness
+            pressure, slope = rough.pressure(h, contact.reduced_modulus)
+            allowed = (near.error + alone.error) * (1 - slope * h / pressure)
+            assert abs(near.asperity_share / alone.asperity_share - 1) < allowed, (contact, fed, other, rough)
+
+
+def test_a_few_random_neighbours():
+    check_random_neighbours(2)
+
+
+@pytest.mark.slow
+def test_random_neighbours():
+    check_random_neighbours(100)
