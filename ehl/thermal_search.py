@@ -99,11 +99,11 @@ class Search:
         tolerance = max(self.tolerance, 0.01)
         for n in (_FIRST_NODES, None) if nodes is None else (nodes,):
             film = solve_checked(self.isothermal, Options(tolerance, n), None)
-            self.iterations += film.cost.iterations
-            if film.converged and film.state is not None:
-                base = film.state.fine if n == _FIRST_NODES else film.state.coarse
+            self.iterations += film.run.iterations
+            if film.converged:
+                base = film.state.bare().fine if n == _FIRST_NODES else film.state.bare().coarse
                 return self._refine(base, None, nodes)
-        self.left = f"without heat and shear: {film.message}"
+        self.left = f"without heat and shear: {film.film().message}"
         return None
 
     def from_neighbour(self, old: State, oils: tuple[Heated, Heated], nodes: int | None) -> Compared | None:
