@@ -5,6 +5,9 @@ from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
+from .hot_contacts import HeatScreen as HeatScreen
+from .hot_contacts import heat_screen as heat_screen
+from .hot_contacts import hottest_film as hottest_film
 from .jump_order import OrderedJumps as OrderedJumps
 from .jump_order import jumps_to_tolerance as jumps_to_tolerance
 from .jumps import Jump as Jump

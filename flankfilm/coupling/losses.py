@@ -255,16 +255,17 @@ class _Run:
     def _band(self, agreed: _Agreed) -> LossBand:
         """Losses at the ends of the band of Eyring's stress, by the ratios of some films."""
         some = agreed.films.some(FEW)
-        found, off = [], [0.0]
+        found, along, off = [], [], [0.0]
         for stress in BAND:
             ratios = self._ratios(some, stress, agreed.bulk)
             means, coarser = (
                 self._means(agreed.cycle, agreed.films, one) for one in (ratios, ratios.some((FEW + 1) // 2))
             )
             found.append(means)
+            along.append(Carried.of(agreed.films, ratios).friction)
             if means.mesh_loss:
                 off.append(abs(coarser.mesh_loss / means.mesh_loss - 1.0))
-        return _band(found, max(off), self._power)
+        return _band(found, np.array(along), max(off), self._power)
 
     def _ratios(self, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
         """Friction and rolling of some films at another stress, over those at the given one."""
@@ -293,7 +294,7 @@ class _Balance:
         return mean + apart, mean - apart
 
 
-def _band(found: Sequence[Means], error: float, power: float) -> LossBand:
+def _band(found: Sequence[Means], along: Array, error: float, power: float) -> LossBand:
     def each(name: str) -> Array:
         return np.array([getattr(one, name) for one in found])
 
@@ -305,6 +306,7 @@ def _band(found: Sequence[Means], error: float, power: float) -> LossBand:
         rolling_loss=each("rolling_loss"),
         mesh_loss=loss,
         efficiency=1.0 - loss / power,
+        friction_coefficient=along,
         error=error,
     )
 

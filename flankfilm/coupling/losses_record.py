@@ -26,6 +26,9 @@ class LossBand:
     rolling_loss: Array = quantity("W", "mean power lost by rolling", "end", error="error")
     mesh_loss: Array = quantity("W", "mean power lost in the mesh", "end", error="error")
     efficiency: Array = quantity("1", "power put out over power put in", "end", error="error")
+    friction_coefficient: Array = quantity(
+        "1", "coefficient of friction at the contacts in the order of the path", "end point", error="error"
+    )
     error: float = quantity(
         "1", "relative error of the ratios by being carried along the path", no_error=ITSELF
     )

@@ -16,6 +16,9 @@ from .gear import gears_in_mesh as gears_in_mesh
 from .gear import kinematics as kinematics
 from .gear import root_stress as root_stress
 from .gear import tooth_stress as tooth_stress
+from .heat import losses_along_path as losses_along_path
+from .heat import temperature_field as temperature_field
+from .heat import temperatures_along_path as temperatures_along_path
 from .motion import diagram as diagram
 from .motion import portraits as portraits
 from .motion import resonance as resonance

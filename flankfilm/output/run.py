@@ -16,6 +16,7 @@ from base.results import EXACT, figures, why_no_error
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
 from flankfilm.figures import drawn
+from flankfilm.output import heat
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.convergence import with_convergence
 from flankfilm.output.files import provenance, write_csv, write_netcdf
@@ -53,6 +54,9 @@ MEANS = {"mean_secant_stiffness": "mean_error", "transmission_error_range": "ran
 """Figures of mesh cycles to those that hold their errors."""
 
 HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
+
+STRESSES = ("eyring_stress", "mean_friction", "sliding_loss", "rolling_loss", "mesh_loss", "efficiency")
+"""Figures of a mesh's losses by Eyring's stress."""
 
 CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
 
@@ -111,6 +115,8 @@ TABLES: Mapping[str, Table] = {
     **{f"fillet_stress_{gear}": Table(f"fillet_{gear}", "arc", axis="arc") for gear in GEARS},
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),
     "film_along_path": Table("film", "rho1", axis="point"),
+    "losses_along_path": Table("losses_path", "rho1", axis="point"),
+    "losses_by_eyring_stress": Table("losses_band", "eyring_stress", STRESSES),
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
     "excitation": Table("excitation", "amplitude", axis="harmonic"),
     "spectrum": Table("spectrum", "force", axis="line"),
@@ -198,6 +204,10 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         yield of_models("other", labelled, "model of the mesh cycle", errors=MEANS, no_error=OTHERS)
     if (lubricated := values.get("film")) is not None:
         yield from _lubricated(lubricated, values["pair"].reduced_modulus)
+    if (lost := values.get("losses")) is not None:
+        yield from heat.losses(lost)
+    if (hot := values.get("hot contact")) is not None and hot.converged:
+        yield from heat.hot_contact(hot, values["losses"].bulk_temperatures)
     if (roots := values.get("root stress")) is not None:
         yield from _roots(roots)
     if (series := values.get("fourier")) is not None:

@@ -41,7 +41,7 @@ class Decision:
     Attributes
     ----------
     subject : str
-        ``"stiffness"``, ``"film"`` or ``"Fourier order"``.
+        ``"stiffness"``, ``"film"``, ``"heat in the film"`` or ``"Fourier order"``.
     choice : str
         As the scene would name it.
     asked : bool
@@ -91,7 +91,8 @@ def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     """Decisions among the results of stages, in the order in which they were made."""
     plan, series = values.get("plan"), values.get("fourier")
     order = None if series is None else order_decision(series, values.get("diagram"))
-    return (*(() if plan is None else plan.decisions), *(() if order is None else (order,)))
+    later = (values.get("heat in the film"), order)
+    return (*(() if plan is None else plan.decisions), *(one for one in later if one is not None))
 
 
 def order_decision(series: MeshSeries, diagram: SpeedDiagram | None = None) -> Decision | None:

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.figures.reading import read_figure
-from flankfilm.report import excitation_parts, film_parts, mesh_parts, motion_parts, pair_parts, run_parts
+from flankfilm.report import (
+    excitation_parts,
+    film_parts,
+    losses_parts,
+    mesh_parts,
+    motion_parts,
+    pair_parts,
+    run_parts,
+)
 from flankfilm.report.page import Fact, Headline, Part, said, write_page
 from flankfilm.report.text import counted, percent, seconds
 
@@ -21,6 +29,7 @@ if TYPE_CHECKING:
 
 HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "film": film_parts.headlines,
+    "losses": losses_parts.headlines,
     "root stress": mesh_parts.root_headlines,
     "fourier": motion_parts.fourier_headlines,
     "sweep": motion_parts.sweep_headlines,
@@ -58,6 +67,11 @@ def headlines(results: Results) -> list[Headline]:
     for name, numbers in HEADLINES.items():
         if (found := values.get(name)) is not None:
             shown += numbers(found)
+    if "losses" in values:
+        shown = [
+            replace(one, name=f"{one.name}, isothermal") if one.name == film_parts.LEAST else one
+            for one in shown
+        ]
     pair = values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
@@ -141,6 +155,8 @@ def _result_parts(results: Results) -> list[Part]:
                 parts.append(mesh_parts.references(references, width))
     if film is not None:
         parts.append(film_parts.film(film, data, results.scene.tolerance))
+    if (lost := values.get("losses")) is not None:
+        parts.append(losses_parts.losses(lost, data, results.scene))
     return parts + [part(values[name], data) for name, part in PARTS.items() if values.get(name) is not None]
 
 

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
+LEAST = "least film on the path"
+"""Name of the headline."""
+
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 
 
@@ -164,7 +167,7 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
     shown = [
-        Headline("least film on the path", f"{float(least.values):.3g}", note, least.unit),
+        Headline(LEAST, f"{float(least.values):.3g}", note, least.unit),
         Headline("mean secant stiffness, change by the film", changed, _off(cycle), change.unit),
     ]
     if stage.starvation is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flankfilm.report.page import Part, Table, said
 from flankfilm.report.text import counted, percent, seconds
 from flankfilm.scene.flank_files import CURVES
+from flankfilm.stages.losses import FINEST
 
 if TYPE_CHECKING:
     from flankfilm.plan.decide import Plan
@@ -68,6 +69,10 @@ def _work(name: str, results: Results) -> Work:
         films, rounds = counted(film.rho1.size, "film"), counted(value.rounds, "round")
         note = f"{films} of up to {counted(film.cost.unknowns, 'unknown')}, {rounds}"
         return Work("film thickness", plan.film_tolerance, film.error, note)
+    if name == "losses":
+        films, rounds = counted(value.path.rho1.size, "film"), counted(value.rounds, "round")
+        note = f"{films} of up to {counted(value.cost.unknowns, 'unknown')}, {rounds}"
+        return Work("mean friction", max(tolerance, FINEST), value.error, note)
     if name == "fourier" and value.fit is not None:
         allowed = None if plan is None else plan.series
         return Work("what the series leaves out", allowed, value.remainder, f"order {value.order}")
@@ -110,6 +115,8 @@ def misses(results: Results) -> list[str]:
         errors["film thickness"] = film.film.error
     if roots is not None:
         errors["greatest root stress"] = roots.error
+    if (lost := values.get("losses")) is not None:
+        errors["power lost in the mesh"] = lost.error
     above = [
         f"{name}: its error of {percent(error)} is above the tolerance of {percent(tolerance)}"
         for name, error in errors.items()

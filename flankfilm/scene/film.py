@@ -226,6 +226,12 @@ class FilmSection(Section):
         "auto",
         example="ehl",
     )
+    heat: Literal["on", "off", "auto"] | None = key(
+        "whether the wanted film is that with heat and shear thinning: with auto where they change it by more than the "
+        'tolerance; if left out auto beside model = "auto", else off',
+        None,
+        such_as="auto",
+    )
     stiffness: Literal["approach", "tangent", "nodal-sum", "dowson-central", "dowson-minimum"] | None = key(
         "definition of the film's stiffness; if left out approach, or dowson-central with formulas",
         None,
@@ -252,6 +258,11 @@ class FilmSection(Section):
         """Whether a supply is held."""
         return self.supply != "flooded"
 
+    @property
+    def asked_heat(self) -> str:
+        """What the scene asks of heat in the film, by itself or by its model: on, off or auto."""
+        return self.heat or ("auto" if self.model == "auto" else "off")
+
     @model_validator(mode="after")
     def _what_formulas_give(self) -> FilmSection:
         by_formula = (self.stiffness or "").startswith("dowson")
@@ -264,6 +275,11 @@ class FilmSection(Section):
             raise refused(
                 f'must have model = "ehl" and its stiffness with supply = "{self.supply}": '
                 "Dowson's formulas are of flooded contacts"
+            )
+        if self.heat == "on" and (self.starved or self.model in ("dowson", "none") or self.grid != "graded"):
+            raise refused(
+                'must have heat = "off", or a flooded film with model = "ehl" or "auto" and grid = "graded": '
+                "heat is in such films alone"
             )
         if self.grid == "article" and (self.starved or self.model == "dowson"):
             raise refused('must have grid = "graded": "article" is of flooded films solved by model = "ehl"')

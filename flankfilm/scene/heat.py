@@ -4,9 +4,28 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from pydantic import model_validator
+
+from base import Limit
 from flankfilm.scene.key import key
-from flankfilm.scene.section import Limits, Section
-from gears.heat import LIMITS
+from flankfilm.scene.section import Limits, Section, refused
+from gears.heat import LIMITS, TEMPERATURE
+
+_TRANSFER = Limit(1e-3, 1e6, "W/K", "heat transfer coefficient times area of a gear; 1 to 100 W/K are usual")
+
+
+class HeatTransfer(Section):
+    """What takes the losses of the mesh away from the gears."""
+
+    ground: ClassVar[Limits] = {"pinion": _TRANSFER, "wheel": _TRANSFER}
+
+    pinion: float = key("of the pinion, in W/K", example=10.0)
+    wheel: float = key("of the wheel, in W/K", example=12.0)
+
+    @property
+    def each(self) -> tuple[float, float]:
+        """Of pinion and wheel [W/K]."""
+        return self.pinion, self.wheel
 
 
 class HeatSection(Section):
@@ -15,7 +34,7 @@ class HeatSection(Section):
     The temperature of a gear is that of its flanks as well, where the film forms: one that is given decides both.
     """
 
-    ground: ClassVar[Limits] = LIMITS
+    ground: ClassVar[Limits] = {**LIMITS, "ambient_temperature": TEMPERATURE}
 
     pinion_temperature_C: float | None = key(
         "temperature of the pinion and its flanks; if left out 20, and flanks are as warm as the oil unless that of "
@@ -36,3 +55,29 @@ class HeatSection(Section):
     housing_expansion_per_K: float = key(
         "coefficient of linear expansion of the housing; steel if left out", 11.5e-6, such_as=23e-6
     )
+    heat_transfer_W_per_K: HeatTransfer | None = key(
+        "heat transfer coefficient times area of each gear, instead of the gears' temperatures: flanks are then as "
+        "warm as takes away the losses of the mesh, and gears do not grow",
+        None,
+        of=None,
+        such_as={"pinion": 10.0, "wheel": 12.0},
+    )
+    ambient_temperature_C: float | None = key(
+        "temperature of what takes this heat, oil and air in the housing; the oil's if left out",
+        None,
+        celsius="ambient_temperature",
+        such_as=60.0,
+    )
+
+    @model_validator(mode="after")
+    def _temperatures_given_or_balanced(self) -> HeatSection:
+        given = self.given("pinion_temperature_C", "wheel_temperature_C")
+        if given and self.heat_transfer_W_per_K is not None:
+            raise refused(
+                f"must have {' and '.join(given)}, or heat_transfer_W_per_K", "Leave one of them out"
+            )
+        if self.heat_transfer_W_per_K is None and self.ambient_temperature_C is not None:
+            raise refused(
+                "must have heat_transfer_W_per_K beside ambient_temperature_C", "Give both, or none"
+            )
+        return self

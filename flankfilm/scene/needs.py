@@ -55,7 +55,7 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
     stiffness, film = _table(raw, "stiffness"), _table(raw, "film")
     moving = listed & set(MOTIONS)
     physical = bool(moving) and "mean_force" not in _table(raw, "dynamics")
-    geared = listed & {"geometry", "closed-forms", "film", *BY_FINITE_ELEMENTS}
+    geared = listed & {"geometry", "closed-forms", "film", "losses", *BY_FINITE_ELEMENTS}
     meshed = listed & {"stiffness", "fourier", *moving} and stiffness.get("model") != "given"
     if geared:
         yield "pair", f"wants = [{_quoted(geared)}]"
@@ -68,8 +68,8 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
     if (geared or meshed) and not listed <= {"geometry", "report"}:
         yield from ((name, f"wants = [{_quoted(listed)}]") for name in ("material", "operating"))
     model = film.get("model", "auto")
-    if "film" in listed:
-        yield "lubricant", "the film"
+    if "film" in listed or "losses" in listed:
+        yield "lubricant", "the film" if "film" in listed else "the wanted losses"
     elif film and model not in ("none", "auto"):
         yield "lubricant", f"film.model = {shorten(model)}"
     elif "film" in raw and model == "auto":
@@ -83,9 +83,12 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     """Keys of sections that are there, needed by what is wanted."""
     operating, dynamics, stiffness = (_table(raw, n) for n in ("operating", "dynamics", "stiffness"))
     chosen = "film" in raw and _table(raw, "film").get("model", "auto") != "none"
-    lubricated = "film" in listed or ("lubricant" in raw and chosen)
+    lubricated = listed & {"film", "losses"} or ("lubricant" in raw and chosen)
     if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
         yield _required("operating.pinion_speed_rpm", "the film", "Give the pinion's speed")
+    if (hot := _heated(raw, listed)) and "lubricant" in raw and not _known_temperature(raw):
+        remedy = "Give the oil's temperature, or those of the gears in [heat]"
+        yield _required("lubricant.temperature_C", hot, remedy)
     if "torques" in listed and "operating" in raw and not operating.get("torques_Nm"):
         remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
         yield _required("operating.torques_Nm", "the wanted torques", remedy)
@@ -113,9 +116,13 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     if film.get("model") == "dowson" and constant:
         allowed = "does not know a viscosity that pressure leaves as it is"
         yield Fault("film.model", "'dowson'", allowed, solved)
-    if "film" in listed and stiffness.get("model") == "given":
-        allowed = "has no load share, which the wanted film needs"
-        yield Fault("stiffness.model", "'given'", allowed, 'Take "fem" or a closed form, or drop film')
+    for want in ("film", "losses"):
+        if want in listed and stiffness.get("model") == "given":
+            allowed = f"has no load share, which the wanted {want} needs"
+            yield Fault("stiffness.model", "'given'", allowed, f'Take "fem" or a closed form, or drop {want}')
+    if (hot := _heated(raw, listed)) and film.get("supply", "flooded") != "flooded":
+        remedy = 'Take supply = "flooded", or leave it out'
+        yield Fault("film.supply", shorten(film["supply"]), f"excludes {hot}, of flooded films", remedy)
     if "centre_distance_mm" in pair and "backlash_um" in pair:
         value = shorten(pair["backlash_um"])
         yield Fault("pair.backlash_um", value, "follows from centre_distance_mm", "Give one of them")
@@ -127,6 +134,21 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
         elif pairs != "coupled":
             remedy = "Independent pairs have no common field, nor one contact; or drop it"
             yield Fault("stiffness.pairs", shorten(pairs), f'must be "coupled" for {asked}', remedy)
+
+
+def _heated(raw: Raw, listed: set[str]) -> str:
+    """What asks for films with heat in any case; empty where nothing does."""
+    if "losses" in listed:
+        return "the wanted losses"
+    return 'film.heat = "on"' if _table(raw, "film").get("heat") == "on" and "film" in listed else ""
+
+
+def _known_temperature(raw: Raw) -> bool:
+    """Whether the temperature of the flanks, or that of the oil, is known."""
+    heat = _table(raw, "heat")
+    return "temperature_C" in _table(raw, "lubricant") or any(
+        f"{g}_temperature_C" in heat for g in ("pinion", "wheel")
+    )
 
 
 def _required(where: str, by: str, remedy: str) -> Fault:

@@ -29,6 +29,7 @@ Want = Literal[
     "revolution",
     "root-stress",
     "film",
+    "losses",
     "fourier",
     "sweep",
     "diagram",

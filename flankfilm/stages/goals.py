@@ -7,7 +7,7 @@ from typing import Any
 
 from flankfilm.scene import Scene, needs
 from flankfilm.stages import catalogue as of
-from flankfilm.stages import motion
+from flankfilm.stages import losses, motion
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
 
@@ -30,6 +30,10 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
             yield of.OTHER_CYCLES
         if scene.film.model != "none" or "film" in wants:
             yield of.MESH
+    if "film" in wants and not given and scene.film.asked_heat != "off":
+        yield losses.HOT_FILM
+    if "losses" in wants:
+        yield from (of.PAIR, losses.LOSSES, losses.HOT_CONTACT)
     yield from (wanted for wanted in (of.TORQUES, of.REVOLUTION) if wanted.name in wants)
     if "root-stress" in wants:
         yield of.ROOT_STRESS

@@ -1,0 +1,152 @@
+"""Friction, losses and temperatures along the path of contact, and the oil's temperature in the hottest contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array
+from flankfilm.figures.panels import curves, over_path
+from flankfilm.figures.reading import GEARS, Reading, need, read, travel
+from flankfilm.figures.style import MARK, Style, colours, from_zero, legend_over, sheet
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LOSSES = 'run a scene that wants "losses"'
+
+THROUGH = (-2.0, 1.5)
+"""Part of the hottest contact that is drawn, in half-widths."""
+
+BAND = "#bbbbbb"
+"""Colour of what lies between the ends of a band."""
+
+BLOK = "flash temperature after Blok"
+
+
+def losses_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw friction, the power that each contact loses, and pressure times sliding against the travel from A.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``losses``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, LOSSES, "losses_path_rho1", "path_point_rho1")
+    at, stress = travel(results, "losses_path_rho1"), read(results, "losses_path_pressure_times_sliding")
+    friction = read(results, "losses_path_friction_coefficient")
+    lost = {way: read(results, f"losses_path_{way}_loss") for way in ("sliding", "rolling")}
+    band = results["losses_band_friction_coefficient"].values
+    stresses = read(results, "losses_band_eyring_stress").values
+    with sheet(style, 3, height=5.8, height_ratios=(3, 3, 2), legend=2) as (drawn, (upper, middle, lower)):
+        curves(middle, at, {f"lost by {way}": power for way, power in lost.items()}, "power of one contact")
+        ends = " to ".join(f"{stress:g}" for stress in np.sort(stresses))
+        upper.fill_between(at, *band, color=BAND, label=f"Eyring stress {ends} MPa")
+        upper.plot(at, friction.values, color=colours(3)[2], label="this run's")
+        upper.set(ylabel=friction.named("coefficient of friction"))
+        lower.plot(at, 1e-9 * stress.values, color=colours(4)[3])
+        lower.set(ylabel="Hertz pressure ×\nsliding [GPa m/s]")
+        from_zero(upper, middle, lower)
+        over_path(results, upper, middle, lower)
+        legend_over(middle, 2)
+    return drawn
+
+
+def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw by what oil and flanks are warmer in each contact, and the film with and without heat below.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``losses``; isothermal films stand beside where it wants ``film`` too.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, LOSSES, "losses_path_rho1", "path_point_rho1")
+    at, flanks = travel(results, "losses_path_rho1"), read(results, "losses_path_surface_temperature_rise")
+    rises = {"oil, greatest": read(results, "losses_path_oil_temperature_rise")}
+    rises |= {
+        f"flank of the {gear}": Reading(flanks.values[k], flanks.meaning, flanks.unit)
+        for k, gear in enumerate(GEARS)
+    }
+    rises[BLOK] = read(results, "losses_path_flash_temperature")
+    with sheet(style, 2, height=4.8, height_ratios=(3, 2), legend=2) as (drawn, (upper, lower)):
+        curves(upper, at, rises, "rise above the bulk temperature")
+        films = {"least film with heat": (at, read(results, "losses_path_minimum_thickness"))}
+        if "film_minimum_thickness" in results:
+            isothermal = read(results, "film_minimum_thickness")
+            films["isothermal"] = travel(results, "film_rho1"), isothermal
+        for (label, (places, film)), colour, dash in zip(
+            films.items(), colours(6)[4:], ("-", "--"), strict=False
+        ):
+            lower.plot(places, film.values, color=colour, linestyle=dash, label=label)
+            lower.set(ylabel=film.named("least film"))
+        from_zero(upper, lower)
+        over_path(results, upper, lower)
+        if len(films) > 1:
+            legend_over(lower, 2)
+    return drawn
+
+
+def temperature_field(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the oil's temperature across and along the film of the hottest contact, below pressure and both flanks'.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``losses``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, LOSSES, "hot_contact_temperature", "hot_contact_place")
+    x = results["hot_contact_x"].values / float(results["hot_contact_half_width"])
+    bulk = results["hot_contact_bulk_temperature"].values
+    warm = results["hot_contact_temperature"].values
+    filled = slice(0, int(np.flatnonzero(results["hot_contact_pressure"].values > 0.0)[-1]) + 1)
+    gap, pressure = read(results, "hot_contact_thickness"), read(results, "hot_contact_pressure")
+    with sheet(style, 2, height=5.2, height_ratios=(2, 3), legend=3) as (drawn, (upper, lower)):
+        for k, (gear, colour, dash) in enumerate(zip(GEARS, colours(2), ("-", "--"), strict=True)):
+            rise = warm[filled, -k] - bulk[k]
+            upper.plot(x[filled], rise, color=colour, linestyle=dash, label=f"flank of the {gear}")
+        upper.plot([], [], color=MARK, linewidth=1.0, label="pressure (right)")
+        upper.set(ylabel="flank above its bulk [K]", xlim=THROUGH)
+        from_zero(upper)
+        _pressure_beside(upper, x, pressure)
+        _field(lower, x, gap, results["hot_contact_place"].values, warm[filled] - bulk.mean())
+    return drawn
+
+
+def _pressure_beside(axes: Axes, x: Array, pressure: Reading) -> None:
+    """Draw the pressure on an axis of its own at the right."""
+    other = axes.twinx()
+    other.grid(visible=False)
+    other.spines["right"].set_visible(True)
+    other.plot(x, pressure.values, color=MARK, linewidth=1.0)
+    other.set(ylabel=pressure.named("pressure"))
+    other.set_ylim(0.0, 1.08 * float(pressure.values.max()))
+
+
+def _field(axes: Axes, x: Array, gap: Reading, place: Array, rise: Array) -> None:
+    """Colour the film between the wheel's flank, below, and the pinion's above by the oil's temperature rise."""
+    height = gap.values[: len(rise), None] * (0.5 - place)
+    along = np.broadcast_to(x[: len(rise), None], height.shape)
+    top = 2.5 * float(np.interp(0.0, x, gap.values))
+    painted = axes.pcolormesh(
+        along, height, rise, cmap="YlOrRd", shading="gouraud", vmin=0.0, vmax=float(rise.max()),
+        rasterized=True,
+    )  # fmt: skip
+    axes.plot(x, gap.values, color="#000000", linewidth=1.0)
+    axes.axhline(0.0, color="#000000", linewidth=1.0)
+    axes.grid(visible=False)
+    axes.set(
+        xlabel="distance from the line of centres [half-widths]",
+        ylabel=gap.named("from the wheel's flank"),
+        xlim=THROUGH,
+        ylim=(0.0, top),
+    )
+    axes.figure.colorbar(painted, ax=axes, label="oil above the mean bulk [K]", location="bottom", shrink=0.7)

@@ -1,0 +1,157 @@
+"""Section of the report about friction, losses and temperatures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.build_heat import shearing_oil, warmth
+from flankfilm.figures.reading import read_figure
+from flankfilm.report.page import Headline, Part, Table, pictures, said
+from flankfilm.report.text import number, percent, plus_minus
+from flankfilm.scene.key import ZERO_CELSIUS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from flankfilm.coupling import MeshLosses
+    from flankfilm.scene import Scene
+
+
+def losses(found: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
+    """Losses with their band, temperatures along the path and in the hottest contact."""
+    film = " beside the isothermal one" if "film_rho1" in results else ""
+    hot = "hot_contact_temperature" in results
+    drawn = pictures(results, "losses_along_path", "temperatures_along_path", beside=film)
+    if hot:
+        rho1 = found.path.rho1[int(np.argmax(found.path.oil_temperature_rise))]
+        drawn += pictures(results, "temperature_field", rho1=number(1e3 * rho1))
+    return Part(
+        "losses",
+        "Friction, losses and temperatures",
+        (_lost(found), _by_stress(found, scene), _warm(found, scene)),
+        drawn,
+        (_band(found), _greatest(found)),
+        (said("losses_model"),),
+    )
+
+
+def headlines(found: MeshLosses) -> list[Headline]:
+    """Numbers for the page's head."""
+    off = plus_minus(found.error)
+    band = " to ".join(number(loss, 3) for loss in np.sort(found.band.mesh_loss))
+    least = read_figure(found.path, "least_film")
+    film_error = float(np.max(found.path.film_error))
+    hottest = found.greatest_contact_temperature - ZERO_CELSIUS
+    return [
+        Headline("power lost in the mesh", number(found.mesh_loss), f"{off}; {band} W {_BAND}", "W"),
+        Headline(
+            "efficiency of the mesh", f"{100 * found.efficiency:.3f}", plus_minus(found.loss_error), "%"
+        ),
+        Headline("mean coefficient of friction", f"{found.mean_friction:.4f}", off),
+        Headline("greatest temperature of the flanks", f"{hottest:.1f}", _bulk(found), "°C"),
+        Headline("least film with heat", f"{float(least.values):.3g}", plus_minus(film_error), least.unit),
+    ]
+
+
+_BAND = "for Eyring stresses of 5 to 10 MPa"
+
+
+def _lost(found: MeshLosses) -> str:
+    parts = [f"{number(found.sliding_loss, 3)} W by sliding", f"{number(found.rolling_loss, 3)} W by rolling"]
+    if found.edge_loss:
+        parts.append(f"{number(found.edge_loss, 3)} W by tip edges outside the path")
+    return said(
+        "losses",
+        loss=number(found.mesh_loss),
+        power=number(1e-3 * found.input_power),
+        part=percent(found.mesh_loss / found.input_power, 3),
+        parts=", ".join(parts),
+    )
+
+
+def _by_stress(found: MeshLosses, scene: Scene) -> str:
+    """What Eyring's stress leaves open."""
+    stress = shearing_oil(scene).eyring_stress
+    assert stress is not None
+    low, high = np.sort(found.band.mesh_loss)
+    unsaid = scene.lubricant is not None and scene.lubricant.eyring_stress_MPa is None
+    given = "the scene gives none" if unsaid else "as the scene gives it"
+    return said(
+        "losses_band", stress=number(1e-6 * stress), given=given, low=number(low, 3), high=number(high, 3)
+    )
+
+
+def _warm(found: MeshLosses, scene: Scene) -> str:
+    """Temperatures of the flanks and where they come from."""
+    known = warmth(scene)
+    if known.transfer is None:
+        given = scene.heat is not None and scene.heat.given("pinion_temperature_C", "wheel_temperature_C")
+        source = "as [heat] gives them" if given else "as warm as the oil"
+    else:
+        first, second = (number(one, 3) for one in found.heat)
+        source = f"where they give off the losses, {first} and {second} W"
+    return said("losses_warm", bulk=_bulk(found), source=source, rise=_rise(found))
+
+
+def _bulk(found: MeshLosses) -> str:
+    first, second = found.bulk_temperatures - ZERO_CELSIUS
+    return f"bulk {first:.1f} and {second:.1f} °C"
+
+
+def _rise(found: MeshLosses) -> str:
+    path = found.path
+    oil, flank = float(path.oil_temperature_rise.max()), float(path.surface_temperature_rise.max())
+    off = float(np.max(path.temperature_error))
+    return f"{oil:.1f} K in the oil and {flank:.1f} K on the flanks ({plus_minus(off)})"
+
+
+def _band(found: MeshLosses) -> Table:
+    """Means at the ends of the band."""
+    band = found.band
+    rows = tuple(
+        (
+            number(1e-6 * band.eyring_stress[k]),
+            f"{band.mean_friction[k]:.4f}",
+            number(band.sliding_loss[k]),
+            number(band.rolling_loss[k]),
+            number(band.mesh_loss[k]),
+            f"{100 * band.efficiency[k]:.3f}",
+        )
+        for k in range(band.eyring_stress.size)
+    )
+    heads = (
+        "Eyring stress [MPa]",
+        "mean friction [-]",
+        "sliding [W]",
+        "rolling [W]",
+        "whole [W]",
+        "efficiency [%]",
+    )
+    return Table(heads, rows, f"Means over the path; right to {percent(found.error + band.error)}.")
+
+
+def _greatest(found: MeshLosses) -> Table:
+    """Greatest values along the path, and the loss factor."""
+    return Table(("along the path", "value"), tuple(_rows(found)))
+
+
+def _rows(found: MeshLosses) -> Iterator[tuple[str, str]]:
+    path = found.path
+    yield "greatest oil temperature above the flanks' bulk", f"{path.oil_temperature_rise.max():.1f} K"
+    for gear, rise in zip(("pinion", "wheel"), path.surface_temperature_rise, strict=True):
+        yield f"greatest rise of the {gear}'s flank", f"{rise.max():.1f} K"
+    yield (
+        "greatest flash temperature after Blok, at the same friction",
+        f"{path.flash_temperature.max():.1f} K",
+    )
+    slides = 1e-9 * found.path.greatest_pressure_times_sliding
+    yield "greatest Hertz pressure times sliding speed", f"{slides:.3g} GPa m/s"
+    if path.film_ratio is not None:
+        yield "least film ratio Lambda with heat", f"{path.film_ratio.min():.3g}"
+    yield "tooth loss factor H_V of the forces", f"{found.loss_factor:.4f}"
+    if found.ohlendorf_loss_factor is not None:
+        yield "H_V after Ohlendorf, pairs sharing evenly", f"{found.ohlendorf_loss_factor:.4f}"
+    yield "energy that does not close, at most", percent(float(np.max(np.abs(path.closure))))
