@@ -32,6 +32,7 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.losses_along_path:LossesAlongPath": "losses_along_path",
     "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
     "flankfilm.coupling.loads:TorqueCurves": "curves",
+    "flankfilm.coupling.film_damping:FilmDamping": "curves",
     "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",
     "flankfilm.coupling.jumps:SpeedDiagram": "speed_diagram",
     "flankfilm.coupling.excitation:ErrorSeries": "error_series",

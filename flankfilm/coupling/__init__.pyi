@@ -3,6 +3,8 @@ from .cycle import MeshCycle as MeshCycle
 from .excitation import ErrorSeries as ErrorSeries
 from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error
+from .film_damping import FilmDamping as FilmDamping
+from .film_damping import film_damping as film_damping
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
 from .hot_contacts import HeatScreen as HeatScreen

@@ -9,7 +9,7 @@ import numpy as np
 
 import ehl
 import gears
-from base import Array, Faults, InputError, SolverError
+from base import Array, Faults, InputError, Integers, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 
@@ -115,6 +115,13 @@ class PathFilms:
     flooded: tuple[ehl.Film, ...] = ()
 
 
+def touching(cycle: MeshCycle) -> tuple[Integers, Integers]:
+    """Positions and numbers of the loaded pairs of a cycle, in the order of the path."""
+    position, number = np.nonzero(np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE))
+    order = np.argsort(cycle.rho1[position, number], kind="stable")
+    return position[order], number[order]
+
+
 def contacts_of(
     pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
 ) -> tuple[Array, tuple[ehl.LineContact, ...]]:
@@ -128,10 +135,7 @@ def contacts_of(
     if not pair.straight:
         remedy = "leave the leads out; fem.mesh_cycle knows them"
         raise InputError.at("pair", "with leads", "must be straight along the face where films are", remedy)
-    touching = np.isfinite(cycle.rho1) & (cycle.load_share > LEAST_SHARE)
-    position, number = np.nonzero(touching)
-    order = np.argsort(cycle.rho1[position, number], kind="stable")
-    position, number = position[order], number[order]
+    position, number = touching(cycle)
     rho1 = cycle.rho1[position, number]
     path = pair.path_at(rho1)
     load = cycle.forces[position, number] / pair.face_width

@@ -42,6 +42,7 @@ CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
     "FilmAlongPath": ("rho1", (("central_thickness", "minimum_thickness"), ("hertz_pressure",))),
     "Film": ("x", (("pressure",), ("thickness",))),
     "TransientFilm": ("time", (("load",), ("central", "least"), ("greatest_pressure",))),
+    "FilmDamping": ("position", (("damping_curve",),)),
     "PathOfContact": ("rho1", (("rho1", "rho2", "radius"),)),
 }
 """Class of a record to the figure along the axis, and those of each panel."""

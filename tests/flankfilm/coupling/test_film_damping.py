@@ -1,0 +1,92 @@
+"""Damping of the mesh by its films: by hand at one contact, in the mean over the path, refusals."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ehl
+from base import InputError
+from flankfilm.coupling import FilmModel, PlacedMeniscus, film_damping, mesh_cycle
+from tests.ehl.films import quiet
+from tests.validation.article import FACE, OIL, PAIR, PITCH
+
+SPEED = 2000.0 * math.pi / 30.0
+LOOSE = PAIR.with_backlash(50e-6)
+MASS = 0.381  # kg, of the article's pair with solid bodies
+
+
+def damping_ratio_at_the_pitch_point(share: float, mesh: float) -> float:
+    omega = 2.0 * math.pi * 7100.0
+    film = quiet(replace(PITCH, load=share * PITCH.load), tolerance=1e-3)
+    compliance = complex(ehl.film_response(film, omega).compliance) / FACE
+    return (1.0 / (1.0 / mesh + compliance)).imag / omega / (2.0 * MASS * omega)
+
+
+@pytest.mark.parametrize(("share", "known"), [(1.0, 0.003), (0.03, 0.058), (0.01, 0.14)])
+def test_one_film_in_series_with_the_mean_mesh_stiffness(share, known):
+    # an independent throw-away solver, with the whole load at C on 19 N/(mm um)
+    assert damping_ratio_at_the_pitch_point(share, 7.6e8) == pytest.approx(known, rel=0.07)
+
+
+def test_the_mean_over_the_path_is_that_of_the_films_by_hand():
+    cycle = mesh_cycle(LOOSE, 60.0, model="ishikawa")
+    found = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=3e4)
+    at = int(np.argmin(np.abs(cycle.position - found.position[7])))
+    total = 0.0
+    for rho1, force, share in zip(cycle.rho1[at], cycle.forces[at], cycle.load_share[at], strict=True):
+        if not force > 0.0:
+            continue
+        path = LOOSE.path_at(np.array([rho1]))
+        contact = ehl.LineContact(
+            force / LOOSE.face_width,
+            float(path.entrainment(SPEED)[0]),
+            float(path.radius[0]),
+            LOOSE.reduced_modulus,
+            OIL,
+        )
+        answer = ehl.film_response(quiet(contact, tolerance=0.005), 3e4)
+        slope = share * cycle.stiffness[at]
+        total += (1.0 / (1.0 / slope + complex(answer.compliance) / LOOSE.face_width)).imag / 3e4
+    assert found.damping_curve[7] == pytest.approx(total, rel=0.02)
+    assert found.damping == pytest.approx(np.mean(found.damping_curve))
+    critical = 2.0 * found.equivalent_mass * found.natural_frequency
+    assert found.damping_ratio == pytest.approx(found.damping / critical)
+
+
+def test_films_damp_light_loads_and_slow_oscillations_most():
+    ratio = {}
+    for torque in (600.0, 60.0, 6.0):
+        cycle = mesh_cycle(LOOSE, torque, model="ishikawa")
+        ratio[torque] = film_damping(cycle, LOOSE, torque, SPEED, OIL, tolerance=0.02)
+    assert ratio[6.0].damping_ratio > 10.0 * ratio[60.0].damping_ratio
+    assert abs(ratio[600.0].damping_ratio) < 0.002
+    slow = film_damping(cycle, LOOSE, 6.0, SPEED, OIL, frequency=1e3, tolerance=0.02)
+    assert slow.damping > ratio[6.0].damping
+    assert "not known" in slow.message
+
+
+def test_a_meniscus_is_held_and_what_has_no_answer_is_refused():
+    cycle = mesh_cycle(LOOSE, 60.0, model="ishikawa")
+    held = film_damping(
+        cycle,
+        LOOSE,
+        60.0,
+        SPEED,
+        OIL,
+        film=FilmModel(supply=PlacedMeniscus(1.3)),
+        frequency=3e4,
+        tolerance=0.02,
+    )
+    flooded = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=3e4, tolerance=0.02)
+    assert held.damping != pytest.approx(flooded.damping, rel=0.05)
+    for film, word in (
+        (FilmModel("dowson"), "formula"),
+        (FilmModel(supply=ehl.OilLayer(1e-7)), "layer"),
+        (FilmModel(roughness=ehl.Roughness(1e-7, 4e10, 1e-5)), "asperities"),
+    ):
+        with pytest.raises(InputError, match=word):
+            film_damping(cycle, LOOSE, 60.0, SPEED, OIL, film=film)
+    with pytest.raises(InputError, match="frequency"):
+        film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=-1.0)
