@@ -1,6 +1,7 @@
 from .arrays import Array as Array
 from .arrays import Booleans as Booleans
 from .arrays import Integers as Integers
+from .compiled import compiling as compiling
 from .compiled import heard_compiling as heard_compiling
 from .compiled import hide_compilation as hide_compilation
 from .cost import Cost as Cost

@@ -9,8 +9,8 @@ from typing import Any
 
 from base.cost import ASIDE, unclocked
 
-_HEARERS: list[Callable[[], None]] = []
-"""Called when a function is compiled."""
+_HEARERS: list[Callable[[str], None]] = []
+"""Called with the name of what is compiled."""
 
 
 @cache
@@ -43,9 +43,8 @@ def hide_compilation() -> None:
     class Herald(event.Listener):  # type: ignore[misc,unused-ignore]
         """Says that a function is compiled, which takes seconds, rather than loaded."""
 
-        def on_start(self, _event: Any) -> None:
-            for hearer in tuple(_HEARERS):
-                hearer()
+        def on_start(self, about: Any) -> None:
+            compiling(str(about.data["dispatcher"].py_func.__module__))
 
         def on_end(self, _event: Any) -> None:
             pass
@@ -54,21 +53,34 @@ def hide_compilation() -> None:
     event.register("numba:compile", Herald())
 
 
+def compiling(what: str) -> None:
+    """Say to those who listen that something is compiled, rather than loaded.
+
+    Examples
+    --------
+    >>> with heard_compiling(print):
+    ...     compiling("kernels of the motion")
+    kernels of the motion
+    """
+    for hearer in tuple(_HEARERS):
+        hearer(what)
+
+
 @contextmanager
-def heard_compiling(hearer: Callable[[], None]) -> Iterator[None]:
+def heard_compiling(hearer: Callable[[str], None]) -> Iterator[None]:
     """Call `hearer` whenever a function is compiled inside; what was kept by an earlier process is only loaded.
 
     Parameters
     ----------
     hearer : callable
-        Without arguments.
+        Takes the name of the module of the function, or of what is compiled at once.
 
     Examples
     --------
     >>> hide_compilation()
     >>> from numba import njit
     >>> heard = []
-    >>> with heard_compiling(lambda: heard.append("compiling")):
+    >>> with heard_compiling(lambda what: heard.append("compiling")):
     ...     two = njit(lambda x: x + 1.0)(1.0)
     >>> heard
     ['compiling']

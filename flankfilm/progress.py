@@ -53,7 +53,7 @@ def console_progress() -> Iterator[Progress]:
         shown = advance or lines(sys.stderr)
         said: list[str] = []
 
-        def compiling() -> None:
+        def compiling(_what: str) -> None:
             if not said:
                 said.append(COMPILING)
                 shown(COMPILING, 0, 1)

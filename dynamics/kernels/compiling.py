@@ -18,6 +18,7 @@ from base import hide_compilation
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
+Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]  # see tables.room_of
 F = TypeVar("F", bound=Callable[..., Any])
 
 MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES, ORDER, SERIES = range(10)  # places in `par`

@@ -9,16 +9,16 @@ from dynamics.kernels.compiling import (
     FREQUENCY,
     HALF_BACKLASH,
     LOST,
+    ZERO,
     ZETA,
     FloatArray,
     IntArray,
     helper,
     kernel,
-    maker,
 )
 from dynamics.kernels.roots import largest
 from dynamics.kernels.sensitivity import probe
-from dynamics.kernels.tables import differentiate, tabulate
+from dynamics.kernels.tables import EDGE, differentiate, fill, first_touched, room_of
 
 NEARLY = 1e-6  # Newton's step, over the scale, after which an orbit is likely to be good to rounding
 
@@ -50,28 +50,14 @@ def solve_three(matrix: FloatArray, right: FloatArray) -> bool:
     return True
 
 
-@maker
-def look(
-    origin: FloatArray, ways: FloatArray, cells: int, degree: int, u: FloatArray, scale: float,
-    periods: int, state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
-) -> tuple[int, int, float]:  # fmt: skip
-    """Probe the orbit of the unknowns u: X and V over the scale, then amounts of the directions `ways`.
-
-    Returns flag, number of extrema and the residual over the scale. `origin` and the rows of `ways` hold `par`,
-    amplitudes and phases.
-    """
-    q = origin.copy()
-    for k in range(len(ways)):
-        for i in range(len(q)):
+@helper
+def move(origin: FloatArray, ways: FloatArray, u: FloatArray, q: FloatArray) -> bool:
+    """Fill `q` with the parameters of the unknowns; False where they are not allowed."""
+    for i in range(len(q)):
+        q[i] = origin[i]
+        for k in range(len(ways)):
             q[i] += u[2 + k] * ways[k, i]
-    if not (q[FREQUENCY] > 0.0 and q[HALF_BACKLASH] >= 0.0 and q[ZETA] >= 0.0):
-        return LOST, 0, math.inf
-    coef, edge = tabulate(q, cells, degree)
-    slopes = differentiate(q, ways, coef, edge)
-    state[0], state[1] = u[0] * scale, u[1] * scale
-    flag, turned = probe((q, coef, edge), slopes, ways, state, periods, lin, bend, counts, turns)
-    off = max(abs(state[0] / scale - u[0]), abs(state[1] / scale - u[1]))
-    return flag, turned, off if flag == FINE and off < math.inf else math.inf
+    return bool(q[FREQUENCY] > 0.0 and q[HALF_BACKLASH] >= 0.0 and q[ZETA] >= 0.0)
 
 
 @helper
@@ -91,15 +77,6 @@ def scaled(
         turns[i, 0] = turns[i, 0] / length % 1.0
         for k in range(7, turns.shape[1]):
             turns[i, k] /= scale
-
-
-@helper
-def frequency(origin: FloatArray, ways: FloatArray, u: FloatArray) -> float:
-    """The frequency of the unknowns."""
-    value = origin[FREQUENCY]
-    for k in range(len(ways)):
-        value += u[2 + k] * ways[k, FREQUENCY]
-    return float(value)
 
 
 @helper
@@ -136,23 +113,37 @@ def correct(
     filled as by `probe`, for the image of the orbit, but with derivatives with respect to the unknowns, over the scale,
     and with phases in [0, 1) of the orbit's period for times.
     """
-    guess, last = u.copy(), u.copy()
+    guess, last, q = u.copy(), u.copy(), origin.copy()
     matrix, right = np.empty((3, 3)), np.empty(3)
-    best, step, done = math.inf, math.inf, 0
+    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, EDGE))
+    dcoef, dedge = np.zeros((len(ways), 2 * cells, 4, degree + 1)), np.zeros((len(ways), 2 * cells, 6))
+    room, more = room_of(cells, degree), room_of(cells, degree)
+    touched, first = first_touched(origin, ways), ZERO
+    best, step, done, turned, final = math.inf, math.inf, 0, 0, False
     while True:
         # the error falls with the square of the step: this is likely to be the last time
-        whole = limit == 0 or step < NEARLY
-        flag, turned, size = look(
-            origin, ways, cells, degree, u, scale, periods, state, lin,
+        whole = final or limit == 0 or step < NEARLY
+        if not move(origin, ways, u, q):
+            return LOST, 0, done, best
+        fill(q, coef, edge, room, first)
+        first = touched
+        differentiate(q, ways, edge, room, more, dcoef, dedge)
+        state[0], state[1] = u[0] * scale, u[1] * scale
+        flag, turned = probe(
+            (q, coef, edge), (dcoef, dedge), ways, state, periods, lin,
             bend if whole else bend[:0], counts, turns if whole else turns[:0],
         )  # fmt: skip
         if flag != FINE:
             return flag, 0, done, best
+        size = max(abs(state[0] / scale - u[0]), abs(state[1] / scale - u[1]))
+        if final:
+            best = size
+            break
         if not size < best and done > 3:  # rounding: the one before was as good
             for k in range(3):
                 u[k] = last[k]
-            whole = False
-            break
+            final = True
+            continue
         best = size
         if limit == 0:
             break
@@ -160,8 +151,8 @@ def correct(
         if whole and (size <= 4e-15 * max(1.0, largest(lin, 2)) or step < 1e-11):
             break
         if rest == 0.0 or done >= limit:
-            whole = False
-            break
+            final = True
+            continue
         if not rest < 0.5:
             return LOST, 0, done, best
         step = rest
@@ -169,12 +160,9 @@ def correct(
         for k in range(3):
             last[k] = u[k]
             u[k] += right[k]
-    if not whole:
-        flag, turned, best = look(
-            origin, ways, cells, degree, u, scale, periods, state, lin, bend, counts, turns
-        )
     rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.corrector
+    flag = FINE
     if limit > 0 and not best <= rounding * max(1.0, largest(lin, 2)):
         flag = LOST
-    scaled(frequency(origin, ways, u), scale, periods, lin, bend, turns[: min(turned, len(turns))])
+    scaled(q[FREQUENCY], scale, periods, lin, bend, turns[: min(turned, len(turns))])
     return flag, turned, done, best

@@ -12,6 +12,8 @@ from scipy.optimize import brentq
 
 from base import InputError
 from dynamics import (
+    FourierStiffness,
+    GearOscillator,
     continue_branch,
     find_orbit,
     find_orbits,
@@ -212,3 +214,29 @@ def test_branch_that_grows_without_bound_goes_to_the_edge_of_the_linear_resonanc
         least = np.linalg.eigvals(period_map(linear, (0.0, 0.0)).jacobian).real.min()
         assert abs(least + 1.0) < 2e-3
     assert {round(float(v), 3) for v in branch.values[[0, -1]]} == {1.954, 2.045}
+
+
+@pytest.mark.parametrize(
+    ("parameter", "reach"),
+    [
+        ("mean_force", 0.01), ("error_amplitude[0]", 0.02), ("error_amplitude[1]", 0.02), ("error_phase[1]", 0.1),
+        ("half_backlash", 0.02), ("damping_ratio", 0.01), ("stiffness.amplitudes[0]", 0.02),
+    ],
+)  # fmt: skip
+def test_points_are_orbits_whatever_the_parameter_touches(parameter, reach):
+    """Forces touch one of the tabulated solutions, the play none of them: what is kept must still be right."""
+    osc = GearOscillator(
+        FourierStiffness(1.0, (0.18,), (0.0,)),
+        0.05,
+        0.1,
+        (0.2, 0.03),
+        0.6,
+        half_backlash=0.2,
+        error_phase=(0.2, 0.5),
+    )
+    middle = osc.get(parameter)
+    branch = continue_branch(find_orbit(osc, (0.5, 0.2)), parameter, (middle - reach, middle + reach))
+    assert len(branch.values) > 4
+    for value, state in zip(branch.values[::3], branch.states[::3], strict=True):
+        image = period_map(osc.with_parameter(parameter, float(value)), state)
+        assert image.state == pytest.approx(state, abs=1e-13)
