@@ -156,10 +156,10 @@ def tabulate(
         np.zeros((2 * cells, 2 * m + 2, 2 * m)),
         np.zeros((2 * cells, 2 * m + 2)),
     )
-    roots, weights = np.empty((2, 2 * cells)), np.empty(n)
+    sums, roots, waves = np.zeros((2, n, cells)), np.empty((2, 2 * cells)), np.empty((2, cells))
     fill_roots(roots)
     for cell in range(cells):
-        series[cell, 0, 0] = mesh[0, 0]
+        sums[0, 0, cell] = mesh[0, 0]
     for which in range(2):
         table, first = (mesh, ONE) if which == 0 else (errors, ZERO)
         for j in range(first, table.shape[1]):
@@ -167,7 +167,10 @@ def tabulate(
             # half a cell back, from its middle to its start
             at = table[1, j] - math.pi * harmonic / cells
             p, q = table[0, j] * math.cos(at), table[0, j] * math.sin(at)
-            add_harmonic(series, which, harmonic, p, q, roots, weights)
+            add_harmonic(sums[which], harmonic, p, q, roots, waves)
+        for k in range(n):
+            for cell in range(cells):
+                series[cell, which, k] = sums[which, k, cell]
     a, begin = np.empty((n, m, 2 * m + 2)), np.empty((2 * m, 2 * m + 2))
     fill_maps(systems, load, series, maps, reach, a, np.zeros((m, n)), begin)
     return series, maps, reach
