@@ -81,7 +81,10 @@ def test_slow_motion_by_many_shots():
     assert ours.converged
     assert len(ours.nodes) > 1
     shift = np.ravel(drive.error_motion(np.zeros(1)))
-    assert ours.state - shift == pytest.approx(theirs.state, abs=1e-11)
+    # Newton's method ends where the gaps are rounding, a step before or after: both errors say which
+    off = 1e-11 + 2.0 * (ours.error + theirs.error) * float(np.max(np.abs(theirs.state)))
+    assert off < 1e-7
+    assert ours.state - shift == pytest.approx(theirs.state, abs=off)
     assert ours.multipliers[0] == pytest.approx(theirs.multipliers[0], rel=1e-8)
     assert ours.determinant == pytest.approx(theirs.determinant, rel=1e-12)
     assert ours.counts == theirs.counts
