@@ -9,14 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array, Cost, InputError, Stopwatch
-from dynamics.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, SpecialPoint
+from dynamics.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, UNBOUNDED, Branch, SpecialPoint
 from dynamics.branch_problem import BranchProblem, MapPoint, Steps
 from dynamics.crossings import find_crossings
+from dynamics.meetings import meeting
 from dynamics.shooting import is_stable, motion_label
 from dynamics.tracing import Tracer, both_ways, joined
 
-LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
-ENDLESS = 1e4  # times its first size: a motion that grows without bound
+MET = 1e-5  # of the size of the motion: distance of two halves of an orbit at which its branch meets that of the half
+FALLEN = 1e-3  # of the halves' distance at the last point: Newton's method has come to the orbit of half the period
 
 
 def follow(
@@ -68,6 +69,7 @@ class _Walker(Tracer):
         self.tangent, self.bend = start.tangent(along), np.zeros(len(along))
         self.half = self._half(start)
         self.refused = ""
+        self.meeting: SpecialPoint | None = None
         self.missed: list[float] = []
         self.iterations = 0
 
@@ -98,6 +100,23 @@ class _Walker(Tracer):
         if abs(new.trace - last.trace) > 0.3 * max(1.0, abs(last.trace)) and patient:
             return None
         return self._between(last, new, tangent, patient)
+
+    def _end_at(self, point: SpecialPoint | None) -> None:
+        """Note where the branch ends; a saddle node there is the doubling itself, at which a multiplier is 1 too."""
+        self.ended, self.meeting = MEETS, point
+        if point is not None:
+            near = 10.0 * MET * self.problem.scale
+            self.special = [
+                p for p in self.special if p.kind != "saddle-node" or _off(p.state, point.state) > near
+            ]
+
+    def _met(self, half: Array) -> bool:
+        """Whether the two halves of the orbit have changed places, or become one."""
+        if self.problem.periods % 2:
+            return False
+        return half @ self.half < 0.0 or float(np.max(np.abs(half))) < FALLEN * float(
+            np.max(np.abs(self.half))
+        )
 
     def why(self, last: MapPoint) -> str:
         """What the last attempt was refused for."""
@@ -134,8 +153,10 @@ class _Walker(Tracer):
         if not arrived and patient:
             return None
         half = self._half(new)
-        if half @ self.half < 0.0:  # the two halves of the orbit have changed places
-            self.ended = MEETS
+        if self._met(half):
+            self.refused = "the branch of half the period is near"
+            if not patient or float(np.max(np.abs(self.half))) < MET:
+                self._end_at(meeting(self.problem, last))
             return None
         chord = new.u - last.u
         found = [p for p, _ in looked if p is not None]
@@ -161,6 +182,10 @@ class _Walker(Tracer):
             self.progress(len(self.points), new.value)
 
 
+def _off(one: Array, other: Array) -> float:
+    return float(np.max(np.abs(one - other)))
+
+
 def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
     """Join the directions into one record."""
     problem = walkers[0].problem
@@ -173,7 +198,10 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
     good = all(reason in GOOD_ENDS for reason in ended) and not missed
+    met = (walkers[0].meeting, walkers[-1].meeting if len(walkers) > 1 else None)
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
+    if any(end == MEETS and point is None for end, point in zip(ended, met, strict=True)):
+        message += "; where it meets was not located"
     if missed:
         message += f"; not located near {problem.parameter} = {missed[0]:.10g}: lower min_step"
     iterations = sum(w.iterations for w in walkers)
@@ -191,4 +219,5 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
         Cost(watch.seconds, problem.size + 1, iterations, problem.maps * problem.periods * iterations),
         good,
         message,
+        met,
     )

@@ -16,6 +16,8 @@ from dynamics.arrays import AsArray
 MEETS = "meets the branch of half the period"
 UNBOUNDED = "the motion grows without bound"
 GOOD_ENDS = ("bound", "closed", MEETS, UNBOUNDED)
+LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
+ENDLESS = 1e4  # times its first size: a motion that grows without bound
 KINDS = ("saddle-node", "period-doubling", "grazing")
 
 
@@ -102,6 +104,13 @@ class Branch(AsArray):
         "period, motion without bound, to which resonances lead) and every special point seen was located"
     )  # fmt: skip
     message: str = quantity("", "what happened, with a remedy if not converged")
+    meetings: tuple[SpecialPoint | None, SpecialPoint | None] = quantity(
+        "",
+        "period doubling of the branch of half the period at which the first and the last end lies; None at an end for "
+        "another reason",
+        "end",
+        default=(None, None),
+    )
 
     def special(self, kind: str) -> list[SpecialPoint]:
         """Special points of one kind, in their order along the branch.

@@ -10,11 +10,9 @@ import numpy as np
 from dynamics.branch import MEETS, Branch
 from dynamics.continuation import continue_branch, doubled_orbit
 from dynamics.corrector import OrbitProblem
-from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit
-from dynamics.special_orbits import Condition, special_orbit
-from dynamics.states import apart, scale_of
+from dynamics.states import apart
 
 
 @dataclass(frozen=True)
@@ -117,25 +115,11 @@ class BranchTree:
 
     def _note_ends(self, branch: Branch) -> None:
         """Note the period doublings at which a branch ends, so that it is not followed from its other end."""
-        low, high = (np.array([b]) for b in self.bounds)
-        n = branch.periods // 2
         for k in (0, -1):
-            if branch.ended[k] != MEETS:
-                continue
-            state, value = branch.states[k], float(branch.values[k])
-            half = period_map(self.oscillator.with_parameter(self.parameter, value), state, n).state
-            scale = scale_of(self.oscillator, state)
-            problem = OrbitProblem(self.oscillator, (self.parameter,), n, low, high, scale)
-            guess = problem.unknowns(0.5 * (state + half), value)
-            point = special_orbit(problem, Condition("period-doubling"), guess)
-            if point is not None:
-                value = point.value
-            else:  # a corner next to a grazing: the nearest of those known
-                known = [
-                    p.parameter for b in self.branches if b.periods == n for p in b.special("period-doubling")
-                ]
-                value = min(known, key=lambda at: abs(at - value), default=value)
-            self.ends.append((branch.periods, value))
+            if branch.ended[k] == MEETS:
+                point = branch.meetings[k]
+                value = float(branch.values[k]) if point is None else point.parameter
+                self.ends.append((branch.periods, value))
 
     def _taken(self, periods: int, value: float) -> bool:
         """Whether a branch of this period ends at the value by meeting that of half its period."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.branch import SpecialPoint, of_kind
+from dynamics.branch import UNBOUNDED, SpecialPoint, of_kind
 from dynamics.branch_problem import Steps, checked_range
 from dynamics.corrector import OrbitProblem
 from dynamics.locus_tracing import DoublePoint, LocusTracer
@@ -42,7 +42,8 @@ class Locus(AsArray):
     error: float = quantity("1", "largest estimated relative error of a point of codimension two")
     cost: Cost
     converged: bool = quantity(
-        "1", "whether both ends are at a bound, at the start again, or at a grazing that ends the curve"
+        "1",
+        "whether both ends are at a bound, at the start again, at a grazing that ends the curve, or motion without bound",
     )
     message: str
 
@@ -143,7 +144,8 @@ def continue_locus(
     tracers = both_ways(lambda sign: LocusTracer(problem, condition, first, sign, steps, progress))
     points, double = joined([t.points for t in tracers], 1), joined([t.double for t in tracers])
     ended = (tracers[0].ended, tracers[-1].ended)
-    good = all(e in ("bound", "closed", "ends at a grazing", "the extremum that touches ends") for e in ended)
+    fair = ("bound", "closed", "ends at a grazing", "the extremum that touches ends", UNBOUNDED)
+    good = all(e in fair for e in ended)
     return Locus(
         condition.kind, condition.boundary, (parameters[0], parameters[1]), problem.periods,
         np.array([p.values for p in points]), np.array([p.state for p in points]),

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, quantity, record
+from dynamics.branch import ENDLESS, LARGE, UNBOUNDED
 from dynamics.branch_problem import Steps, match_extrema
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.protocol import EPS
@@ -48,13 +49,19 @@ class LocusTracer(Tracer):
         steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
-        self.condition, self.progress = condition, progress
+        self.condition, self.progress, self.size = condition, progress, problem.scale
         self.double: list[DoublePoint] = []
         self.tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3])) * sign
         self.null = _cusp(start, np.ones(2))[1]
 
     def attempt(self, last: Point) -> Point | None:
         """Next point; at a bound, the point on it."""
+        size = float(np.max(np.abs(last.u[:2])))
+        if size * self.problem.scale > ENDLESS * self.size:
+            self.ended = UNBOUNDED
+            return None
+        if size > LARGE:
+            last = self._magnified(last, size)
         aim = self.aimed(last, last.u + self.step * self.tangent)
         if aim is None:
             return None
@@ -72,6 +79,19 @@ class LocusTracer(Tracer):
             if abs(turn) > 0.05:
                 return None
         return new
+
+    def _magnified(self, last: Point, factor: float) -> Point:
+        """The point measured by its new size, of which steps and tolerances are shares, if it is found again."""
+        larger = self.problem.magnified(factor)
+        shrink = np.array([1.0 / factor, 1.0 / factor, 1.0, 1.0])
+        along = self.tangent * shrink
+        again = special_orbit(larger, self.condition, larger.unknowns(last.state, last.values), along)
+        if again is None:
+            return last
+        self.problem, self.points[-1] = larger, again
+        self.phases = (np.array(self.phases) * shrink).tolist()
+        self.tangent = self._tangent(again, along)
+        return again
 
     def accept(self, last: Point, found: Point) -> None:
         """Take a point, mark what changes sign before it, choose the next step."""

@@ -1,0 +1,64 @@
+"""Where a branch of doubled period meets that of half its period: the latter's period doubling."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from base import Array
+from dynamics.branch import SpecialPoint
+from dynamics.branch_problem import BranchProblem, MapPoint
+from dynamics.special_orbits import Condition
+
+FLAT = np.array([0.0, 0.0, 1.0])  # across which the parameter is held
+FIRST, LAST = (
+    1e-13,
+    1e-2,
+)  # of the range: distances from the last doubled orbit at which the parent is looked at
+WIDER = 4.0
+DOUBLING = (Condition("period-doubling"),) * 2
+
+
+def meeting(problem: BranchProblem, last: MapPoint) -> SpecialPoint | None:
+    """Period doubling of the branch of half the period beside a doubled orbit; None if none is found.
+
+    The parent's orbit is looked at on both sides of the doubled one, ever farther away, until the product of
+    (1 + multiplier) changes its sign; a doubling behind a grazing, where the product has a corner, is bracketed too.
+
+    Parameters
+    ----------
+    problem : BranchProblem
+        Of the doubled orbits.
+    last : MapPoint
+        The doubled orbit next to the meeting.
+    """
+    parent = replace(problem, periods=problem.periods // 2)
+    guess = last.u.copy()
+    guess[:2] += 0.5 * (problem.half_way(last) - last.u[:2])
+    start = parent.correct(guess, FLAT)
+    if start is None:
+        return None
+    for way in (1.0, -1.0):
+        before, off = start, FIRST
+        while off < LAST:
+            there = _beside(parent, start, before, way * off)
+            if there is None:
+                break
+            if before.flip * there.flip <= 0.0:
+                found, arrived = parent.locate(before, there, DOUBLING)
+                if found is not None and arrived:
+                    return found
+                break
+            before, off = there, WIDER * off
+    return None
+
+
+def _beside(parent: BranchProblem, start: MapPoint, before: MapPoint, off: float) -> MapPoint | None:
+    """Orbit of the parent's branch a distance of the parameter away from the start."""
+    along: Array = start.tangent(FLAT) if before is start else before.tangent(FLAT)
+    step = start.u[2] + off - before.u[2]
+    guess = before.u + (step / along[2] if along[2] else 0.0) * along
+    guess[2] = start.u[2] + off
+    found: MapPoint | None = parent.correct(guess, FLAT)
+    return found
