@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +20,10 @@ from dynamics.states import Region, apart, checked_region
 from dynamics.sweeps import settling_periods
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
+PLAIN = 25  # Newton iterations from a start without deflation
+BATCHES = 36  # of starts without deflation, each as many as the grid has
+LIKELY = 0.5  # orbits probably missing that a set of orbits is not complete with
+GOLDEN = (0.7548776662466927, 0.5698402909980532)  # shifts of a sequence that fills the plane evenly, after Roberts
 RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
@@ -30,6 +37,14 @@ class IndexCount:
     points: int = quantity("1", "fixed points found, those of shorter periods included")
     found: int = quantity("1", "sum of their indices, the sign of (1 - m1)(1 - m2) of each")
     expected: int | None = quantity("1", "index of the map on a large circle; None if it is not known")
+    starts: int = quantity("1", "starts of the search without deflation", default=0)
+    once: int = quantity("1", "orbits that only one of those starts led to", default=0)
+    unseen: float = quantity(
+        "1",
+        "orbits that are probably missing, by how many were met once and how many twice: index cannot see pairs of "
+        "opposite sign",
+        default=0.0,
+    )
 
 
 @record
@@ -37,7 +52,8 @@ class OrbitSet:
     """Orbits found.
 
     Where the indices found and expected of a period differ, orbits are missing, or lie on a bifurcation. Where they
-    agree none need be missing, but pairs of opposite index may.
+    agree pairs of opposite index may be missing. Those are estimated by how often single starts lead to the same orbit:
+    as long as some are met once, others are likely not to be met at all.
     """
 
     headline = ("message",)
@@ -47,7 +63,9 @@ class OrbitSet:
     region: Region = quantity("1", "where the searches started, ((x0, x1), (v0, v1))", "state bound")
     error: float = quantity("1", "largest estimated relative error of an orbit")
     cost: Cost
-    converged: bool = quantity("1", "whether all sums of indices are as expected")
+    converged: bool = quantity(
+        "1", "whether all sums of indices are as expected, and less than half an orbit is probably missing"
+    )
     message: str
 
     def __len__(self) -> int:
@@ -68,6 +86,11 @@ def find_orbits(
     Starts lie on a grid and on long motions. Orbits found are deflated, so that later searches are pushed away from
     them. The fixed points of the n-period map have indices, the sign of (1 - m1)(1 - m2), whose sum is the index of
     the map on a large circle (`dynamics.index`). Where the sum differs the search is repeated with a finer grid, twice.
+
+    Orbits of opposite index may still be missing in pairs. So Newton's method without deflation follows, from batches of
+    starts spread over the region, until no orbit has been met by one start alone, or 36 batches. With :math:`f_1` orbits
+    met once and :math:`f_2` met twice, about :math:`f_1 (f_1 - 1) / (2 f_2 + 2)` have not been met (Chao 1984,
+    Scandinavian Journal of Statistics 11, 265-270).
 
     Parameters
     ----------
@@ -109,17 +132,24 @@ def find_orbits(
         for fineness in (1, 2, 4):
             search.run(n, side * fineness)
             search.twins(n)
-            count = search.count(n)
+            met = search.spread(n, side * fineness)
+            search.twins(n)
+            count = replace(search.count(n), **met)
             if count.expected is None or count.found == count.expected:
                 break
         counts.append(count)
     orbits = tuple(sorted(search.orbits, key=lambda o: (o.periods, float(o.state[0]))))
-    good = all(c.found == c.expected for c in counts)
+    good = all(c.found == c.expected and c.unseen < LIKELY for c in counts)
     said = [f"{len(orbits)} orbits"]
     said += [
         f"the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
         for c in counts
         if c.expected is not None and c.found != c.expected
+    ]
+    said += [
+        f"about {math.ceil(c.unseen)} more of period {c.periods} are likely, {c.once} were met once: raise starts"
+        for c in counts
+        if c.unseen >= LIKELY
     ]
     if any(c.expected is None for c in counts):
         said.append("the sum of the indices is not known for this oscillator")
@@ -146,6 +176,43 @@ class _Search:
         starts = np.concatenate([self.motion[-RECURRENT:], grid.reshape(-1, 2)])
         deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
         self._hunt(starts, n, 40, np.concatenate([np.empty((0, 2)), *deflated]))
+
+    def spread(self, n: int, side: int) -> dict[str, Any]:
+        """Newton's method without deflation from batches of starts, until no orbit was met by one of them alone.
+
+        Returns the starts and what they say of orbits that none of them met.
+        """
+        from dynamics.kernels.searching import hunt
+
+        (x0, x1), (v0, v1) = self.region
+        met: list[int] = [0] * len(self.orbits)
+        point, none = np.empty((n, 2)), 0
+        once, unseen, used = 0, 0.0, 0
+        for batch in range(BATCHES):
+            at = (0.5 + np.outer(np.arange(used + 1, used + side**2 + 1), GOLDEN)) % 1.0
+            starts = np.array([x0, v0]) + at * np.array([x1 - x0, v1 - v0])
+            used += side**2
+            for k in range(side**2):
+                last, periods = hunt(self.table.arrays, starts[k : k + 1], n, PLAIN, self.scale, point, none)
+                self.periods += int(periods)
+                if last:
+                    self._meet(point[0].copy(), n, met)
+            seen = [hits for hits, orbit in zip(met, self.orbits, strict=True) if n % orbit.periods == 0]
+            once = seen.count(1)
+            unseen = once * (once - 1) / (2.0 * seen.count(2) + 2.0)
+            if batch > 0 and once == 0:
+                break
+        return {"starts": used, "once": once, "unseen": unseen}
+
+    def _meet(self, point: Array, n: int, met: list[int]) -> None:
+        """Count that a start has come to a point of an orbit, which may be new."""
+        for k, orbit in enumerate(self.orbits):
+            if apart(point, orbit.points) < 1e-7 * self.scale:
+                met[k] += 1
+                return
+        self._keep(find_orbit(self.oscillator, point, periods=n))
+        if len(self.orbits) > len(met):
+            met.append(1)
 
     def twins(self, n: int) -> None:
         """Search beside orbits close to a bifurcation for their partners, which deflation pushes away.
