@@ -15,6 +15,8 @@ from .diagrams import Diagram as Diagram
 from .diagrams import diagram as diagram
 from .drives.oscillator import DriveOscillator as DriveOscillator
 from .edges import edge_saddles as edge_saddles
+from .escapes import ChaosEnd as ChaosEnd
+from .escapes import chaos_end as chaos_end
 from .exponents import LyapunovResult as LyapunovResult
 from .exponents import lyapunov_exponents as lyapunov_exponents
 from .exponents import lyapunov_scan as lyapunov_scan

@@ -114,9 +114,8 @@ class _Walker(Tracer):
         """Whether the two halves of the orbit have changed places, or become one."""
         if self.problem.periods % 2:
             return False
-        return half @ self.half < 0.0 or float(np.max(np.abs(half))) < FALLEN * float(
-            np.max(np.abs(self.half))
-        )
+        fallen = float(np.max(np.abs(half))) < FALLEN * float(np.max(np.abs(self.half)))
+        return fallen or bool(half @ self.half < 0.0)
 
     def why(self, last: MapPoint) -> str:
         """What the last attempt was refused for."""

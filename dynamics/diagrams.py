@@ -164,7 +164,7 @@ def diagram(
     unsure = []
     for k in range(number):
         value = low + (k + 0.5) / number * (high - low)
-        found = find_orbits(oscillator.with_parameter(parameter, value), periods)
+        found = find_orbits(oscillator.with_parameter(parameter, value), periods, batches=0)
         builder.periods += found.cost.periods
         if not found.converged and any(c.expected is not None for c in found.counts):
             unsure.append(value)

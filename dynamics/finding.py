@@ -12,6 +12,7 @@ import numpy as np
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow import Tables, tables
 from dynamics.index import index_at_infinity
+from dynamics.manifolds import carried
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
@@ -21,9 +22,12 @@ from dynamics.sweeps import settling_periods
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 PLAIN = 25  # Newton iterations from a start without deflation
-BATCHES = 36  # of starts without deflation, each as many as the grid has
-LIKELY = 0.5  # orbits probably missing that a set of orbits is not complete with
-GOLDEN = (0.7548776662466927, 0.5698402909980532)  # shifts of a sequence that fills the plane evenly, after Roberts
+LEAST = 20  # batches at least, and twice as many as the last new orbit took
+PASSED = 6  # periods that every second batch has gone on for, at most
+GOLDEN = (
+    0.7548776662466927,
+    0.5698402909980532,
+)  # shifts of a sequence that fills the plane evenly, after Roberts
 RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
@@ -41,8 +45,8 @@ class IndexCount:
     once: int = quantity("1", "orbits that only one of those starts led to", default=0)
     unseen: float = quantity(
         "1",
-        "orbits that are probably missing, by how many were met once and how many twice: index cannot see pairs of "
-        "opposite sign",
+        "orbits that are probably missing, by how many were met once and how many twice: the index cannot see pairs "
+        "of opposite sign; 0 where no such search was made",
         default=0.0,
     )
 
@@ -64,7 +68,7 @@ class OrbitSet:
     error: float = quantity("1", "largest estimated relative error of an orbit")
     cost: Cost
     converged: bool = quantity(
-        "1", "whether all sums of indices are as expected, and less than half an orbit is probably missing"
+        "1", "whether all sums of indices are as expected, and no orbit was met by one start alone"
     )
     message: str
 
@@ -80,6 +84,7 @@ def find_orbits(
     region: Region | None = None,
     *,
     starts: int = 10,
+    batches: int = 48,
 ) -> OrbitSet:
     r"""Find the periodic orbits, stable and unstable, that Newton's method reaches from a region.
 
@@ -87,10 +92,10 @@ def find_orbits(
     them. The fixed points of the n-period map have indices, the sign of (1 - m1)(1 - m2), whose sum is the index of
     the map on a large circle (`dynamics.index`). Where the sum differs the search is repeated with a finer grid, twice.
 
-    Orbits of opposite index may still be missing in pairs. So Newton's method without deflation follows, from batches of
-    starts spread over the region, until no orbit has been met by one start alone, or 36 batches. With :math:`f_1` orbits
-    met once and :math:`f_2` met twice, about :math:`f_1 (f_1 - 1) / (2 f_2 + 2)` have not been met (Chao 1984,
-    Scandinavian Journal of Statistics 11, 265-270).
+    Orbits of opposite index may still be missing in pairs. So Newton's method without deflation follows, from batches
+    of starts spread over the region, until no orbit has been met by one start alone and the last half of them found
+    none. With :math:`f_1` orbits met once and :math:`f_2` met twice, about :math:`f_1 (f_1 - 1) / (2 f_2 + 2)` have not
+    been met (Chao 1984, Scandinavian Journal of Statistics 11, 265-270).
 
     Parameters
     ----------
@@ -102,6 +107,9 @@ def find_orbits(
         Starts. Left out: somewhat more than what long motions cover.
     starts : int
         Starts along each side of the region.
+    batches : int
+        Most batches without deflation, each of as many starts as the grid has; 0 leaves pairs of opposite index to
+        chance.
 
     Returns
     -------
@@ -124,6 +132,7 @@ def find_orbits(
     with Faults() as faults:
         wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
         side = faults.whole("starts", starts, 1, 1000, "10 is usual")
+        most = faults.whole("batches", batches, 0, 100_000, "48 is usual")
         if region is not None:
             region = checked_region(faults, region)
     search = _Search(oscillator, region)
@@ -132,14 +141,14 @@ def find_orbits(
         for fineness in (1, 2, 4):
             search.run(n, side * fineness)
             search.twins(n)
-            met = search.spread(n, side * fineness)
+            met = search.spread(n, side * fineness, most)
             search.twins(n)
             count = replace(search.count(n), **met)
             if count.expected is None or count.found == count.expected:
                 break
         counts.append(count)
     orbits = tuple(sorted(search.orbits, key=lambda o: (o.periods, float(o.state[0]))))
-    good = all(c.found == c.expected and c.unseen < LIKELY for c in counts)
+    good = all(c.found == c.expected and c.once == 0 for c in counts)
     said = [f"{len(orbits)} orbits"]
     said += [
         f"the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
@@ -147,9 +156,9 @@ def find_orbits(
         if c.expected is not None and c.found != c.expected
     ]
     said += [
-        f"about {math.ceil(c.unseen)} more of period {c.periods} are likely, {c.once} were met once: raise starts"
+        f"{c.once} of period {c.periods} were met once, so that about {math.ceil(c.unseen)} more may be there: raise starts"
         for c in counts
-        if c.unseen >= LIKELY
+        if c.once
     ]
     if any(c.expected is None for c in counts):
         said.append("the sum of the indices is not known for this oscillator")
@@ -177,7 +186,7 @@ class _Search:
         deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
         self._hunt(starts, n, 40, np.concatenate([np.empty((0, 2)), *deflated]))
 
-    def spread(self, n: int, side: int) -> dict[str, Any]:
+    def spread(self, n: int, side: int, most: int) -> dict[str, Any]:
         """Newton's method without deflation from batches of starts, until no orbit was met by one of them alone.
 
         Returns the starts and what they say of orbits that none of them met.
@@ -187,11 +196,14 @@ class _Search:
         (x0, x1), (v0, v1) = self.region
         met: list[int] = [0] * len(self.orbits)
         point, none = np.empty((n, 2)), 0
-        once, unseen, used = 0, 0.0, 0
-        for batch in range(BATCHES):
+        once, unseen, used, last_new = 0, 0.0, 0, 0
+        for batch in range(most):
             at = (0.5 + np.outer(np.arange(used + 1, used + side**2 + 1), GOLDEN)) % 1.0
             starts = np.array([x0, v0]) + at * np.array([x1 - x0, v1 - v0])
+            if batch % 2:  # what has gone on for a while lies nearer to orbits
+                starts = carried(self.table, starts, batch // 2 % PASSED + 1)
             used += side**2
+            known = len(self.orbits)
             for k in range(side**2):
                 last, periods = hunt(self.table.arrays, starts[k : k + 1], n, PLAIN, self.scale, point, none)
                 self.periods += int(periods)
@@ -200,7 +212,8 @@ class _Search:
             seen = [hits for hits, orbit in zip(met, self.orbits, strict=True) if n % orbit.periods == 0]
             once = seen.count(1)
             unseen = once * (once - 1) / (2.0 * seen.count(2) + 2.0)
-            if batch > 0 and once == 0:
+            last_new = batch if len(self.orbits) > known else last_new
+            if batch + 1 >= max(LEAST, 2 * (last_new + 1)) and once == 0:
                 break
         return {"starts": used, "once": once, "unseen": unseen}
 

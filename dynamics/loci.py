@@ -43,7 +43,7 @@ class Locus(AsArray):
     cost: Cost
     converged: bool = quantity(
         "1",
-        "whether both ends are at a bound, at the start again, at a grazing that ends the curve, or motion without bound",
+        "whether both ends are at a bound, at the start again, at a grazing that ends the curve, or without bound",
     )
     message: str
 

@@ -16,7 +16,7 @@ FIRST, LAST = (
     1e-13,
     1e-2,
 )  # of the range: distances from the last doubled orbit at which the parent is looked at
-WIDER = 4.0
+WIDER = 10.0
 DOUBLING = (Condition("period-doubling"),) * 2
 
 
