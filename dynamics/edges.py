@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array, Booleans, Faults
+from dynamics.accessible import accessible_saddles
 from dynamics.attraction import Attractor
 from dynamics.flow import tables
 from dynamics.homes import Homes
@@ -17,6 +18,7 @@ from dynamics.states import apart
 
 SECTIONS = 16  # parts of the bracket tried at once
 ROUNDS = 14  # of sections: the bracket shrinks to rounding
+PIECES = 40  # longest period of a saddle beside chaos, at least
 NEAR = 1e-2  # of the attractor's size: recurrence of the motion on the boundary that Newton's method is tried from
 
 
@@ -38,12 +40,17 @@ def edge_saddles(
     saddle is that of its part next to the attractor, on which the attractor is destroyed if it grows to reach it. Only
     saddles with a multiplier above 1 can part basins: one below -1 swaps the sides of the stable manifold.
 
+    A chaotic attractor is looked at where it has just ended, since it then is left by motions that pass the saddle with
+    which it collided. The boundary may be fractal and the saddle have a multiple of the attractor's pieces. Near
+    recurrences of these motions, up to several tens of periods, lead to saddles; the nearest that is not on the
+    attractor is the one.
+
     Parameters
     ----------
     oscillator : GearOscillator
         The oscillator.
     attractor : Attractor
-        A periodic one of `basins`.
+        A periodic one of `basins`; or a chaotic one, such as `ChaosEnd.attractor`, for the oscillator past its end.
     rays : int
         Directions tried from each point of the attractor.
     limit : int
@@ -56,12 +63,13 @@ def edge_saddles(
     Returns
     -------
     list of Orbit
-        Saddles with a multiplier above 1, each once, the most often met first.
+        Saddles with a multiplier above 1, each once, the most often met first; beside a chaotic attractor the nearest
+        first.
 
     Raises
     ------
     InputError
-        If the attractor is not periodic, or an argument is out of range.
+        If an argument is out of range, or no motion leaves a chaotic attractor.
 
     Examples
     --------
@@ -72,13 +80,11 @@ def edge_saddles(
     ['U1-1-0']
     """
     with Faults() as faults:
-        if attractor.orbit is None:
-            faults.add(
-                "attractor", attractor.label, "must be a periodic one", "take it where it is still periodic"
-            )
         number = faults.whole("rays", rays, 1, 1000, "8 is usual")
         wait = faults.whole("limit", limit, 1, 10**7, "1000 is usual")
         longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
+    if attractor.orbit is None:
+        return accessible_saddles(oscillator, attractor.states, max(longest, PIECES))
     homes = Homes(tables(oscillator), [attractor.states], radius)
     met: list[tuple[Orbit, int]] = []
     angles = 2.0 * np.pi * (np.arange(number) + 0.5) / number

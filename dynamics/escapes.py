@@ -2,8 +2,8 @@ r"""Where chaos ends, by how long motions stay: past a crisis the attractor is a
 
 Motions started on the attractor leave it past a crisis at :math:`p_c` at a rate that goes as
 :math:`|p - p_c|^\gamma`, :math:`\gamma \ge 1/2` (Grebogi, Ott and Yorke 1987, 10.1103/PhysRevA.36.5365). A motion that
-leaves shows that chaos has ended there; one that stays shows nothing but that the rate is small. So the bracket is as narrow as the periods that
-are spent, and the law says how many a narrower one needs.
+leaves shows that chaos has ended there; one that stays shows nothing but that the rate is small. So the bracket is as
+narrow as the periods that are spent, and the law says how many a narrower one needs.
 """
 
 from __future__ import annotations
@@ -14,17 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, quantity, record
+from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT
+from dynamics.attraction import Attractor
 from dynamics.limits import PERIODS, STARTS, ordered
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, exact_only
 from dynamics.states import checked_state
-from dynamics.sweeps import long_flow, settling_periods
+from dynamics.sweeps import APERIODIC, long_flow, settling_periods
 
 SIDE = 128  # cells along each side of the grid that covers the attractor
 MARGIN = 4  # cells around it that still count as on it: it moves and grows a little with the parameter
-COVERED = 40_000  # periods that the cover is made of
+COVERED = 400_000  # periods that the cover is made of
 STRETCH = 2048  # periods between two looks at a motion
 AFTER = 512  # periods that a motion is followed on outside
 AWAY = 0.2  # share of these that lie outside where it has left, and not only grown
@@ -45,6 +46,7 @@ class ChaosEnd:
     followed: Array = quantity(
         "1", "periods followed at each value, of all motions together", "value", no_error=EXACT
     )
+    attractor: Attractor = part("the chaos at the first bound, in many samples, as `edge_saddles` takes it")
     exponent: float = quantity(
         "1", "exponent of the rate over the distance from the middle of the bracket; nan from less than three rates",
         no_error="not estimated: crises have dips, and the law holds near them alone",
@@ -136,7 +138,7 @@ def chaos_end(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, chaos_end
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.778, 0.4, half_backlash=0.8)
-    >>> end = chaos_end(osc, "error_amplitude", (-0.5, 0.3), (0.7795, 0.79), periods=20_000, starts=8)
+    >>> end = chaos_end(osc, "error_amplitude", (1.06, 0.459), (0.7795, 0.79), periods=20_000, starts=8)
     >>> end.converged, 0.7799 < end.first < 0.7825
     (True, True)
     """
@@ -188,7 +190,8 @@ def chaos_end(
         else "motions leave at the first bound, or stay at the second: move the bounds"
     )
     return ChaosEnd(
-        parameter, stays, gone, values, escapes, followed, _exponent(looked, 0.5 * (stays + gone)), needed,
+        parameter, stays, gone, values, escapes, followed,
+        Attractor(APERIODIC, motion.states, None, 1.0, 0.0), _exponent(looked, 0.5 * (stays + gone)), needed,
         abs(gone - stays) / max(abs(gone), 1e-300), Cost(watch.seconds, periods=used), good, said,
     )  # fmt: skip
 

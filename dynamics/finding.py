@@ -156,7 +156,7 @@ def find_orbits(
         if c.expected is not None and c.found != c.expected
     ]
     said += [
-        f"{c.once} of period {c.periods} were met once, so that about {math.ceil(c.unseen)} more may be there: raise starts"
+        f"{c.once} of period {c.periods} were met once, about {math.ceil(c.unseen)} more may be there: raise starts"
         for c in counts
         if c.once
     ]

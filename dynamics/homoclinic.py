@@ -20,6 +20,7 @@ from dynamics.shooting import Orbit, find_orbit
 
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
 NEAR = 0.04  # of the size of the saddle: nearness at which the side of a passing motion is measured
+OWN = 0.2  # of the distance between points of the saddle: farther than that nothing counts as near
 ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured
 STRAIGHT = 0.3  # of its size, how far the saddle's neighbourhood is straight enough for that
 LOBES = 3  # lobes whose tops are looked for
@@ -183,8 +184,15 @@ class HomoclinicSearch:
 
 
 def _size(orbit: Orbit) -> float:
-    """Largest of X and V at all its points: the same from whichever period it is taken."""
-    return float(np.max(np.abs(orbit.points)))
+    """Largest of X and V at all its points, less where they lie close together; the same from whichever period.
+
+    Beside a saddle of many periods lie other pieces of the attractor, which are past the line of its stable manifold
+    and not past the manifold: what counts as near must leave them out.
+    """
+    points = orbit.points
+    gaps = np.max(np.abs(points[:, None] - points[None]), axis=2)
+    gaps[np.diag_indices(len(points))] = np.inf
+    return min(float(np.max(np.abs(points))), OWN * float(np.min(gaps)) / NEAR)
 
 
 def _directions(jacobian: Array, multiplier: float) -> tuple[Array, Array]:

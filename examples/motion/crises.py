@@ -1,7 +1,7 @@
 """Where chaotic attractors of the article's scans end, and the saddles that they meet there.
 
 Run it with:   python examples/motion/crises.py
-About a minute. With --all 6.1 (or 6.2, 6.3) every saddle of a scan's diagram is looked at: minutes.
+About two minutes. With --all 6.1 (or 6.2, 6.3) every saddle of a scan's diagram is looked at: minutes.
 """
 
 from __future__ import annotations
@@ -40,20 +40,25 @@ class Crisis:
 
 @dataclass(frozen=True)
 class End:
-    """A stable motion from which a sweep runs into chaos that ends at once.
+    """A stable motion whose cascade ends in chaos that ends at once.
 
     Attributes
     ----------
     section, label : str
         Scan and motion.
-    first, last : float
-        Where the sweep begins and ends.
+    first : float
+        Where the motion is stable, or has doubled.
+    bounds : tuple of float
+        Where its chaos lasts, and where motions leave it.
+    points : int
+        Of the stretch of the saddle's unstable manifold.
     """
 
     section: str
     label: str
     first: float
-    last: float
+    bounds: tuple[float, float]
+    points: int = 500
 
 
 CRISES = (
@@ -62,12 +67,17 @@ CRISES = (
     Crisis("6.3", "U1-1-0", 0.778, (0.770, 0.785)),
 )
 ENDS = (
-    End("6.2", "3-3-0", 0.5215, 0.5235),
-    End("6.2", "4-4-0", 0.6090, 0.6110),
-    End("6.2", "4-2-2", 0.9825, 0.9775),
-    End("6.2", "3-1-1", 1.2870, 1.2805),
-    End("6.2", "4-3-0", 1.5890, 1.5870),
+    End("6.2", "3-3-0", 0.5215, (0.52276, 0.5228)),
+    End("6.2", "4-4-0", 0.6090, (0.61013, 0.6102), 3000),
+    End("6.2", "4-2-2", 0.9825, (0.979066, 0.979)),
+    End("6.2", "3-1-1", 1.2870, (1.28154, 1.28147), 3000),
+    End("6.2", "4-3-0", 1.5890, (1.587074, 1.58705)),
 )
+PERIODS = 2_000_000
+"""Periods after which chaos without an escape counts as lasting."""
+
+LIFE = 3e-4
+"""Escapes per period at the value past the end at which saddles are looked for."""
 
 
 def main(arguments: Sequence[str] | None = None) -> list[str]:
@@ -83,7 +93,10 @@ def main(arguments: Sequence[str] | None = None) -> list[str]:
         ]
     else:
         lines += [row(place.section, located(place)) for place in CRISES]
-        lines += ["", *table_head("scan", "motion", "sweep", "chaos ends between")]
+        lines += [
+            "",
+            *table_head("scan", "chaos of", "stays to, leaves from", "saddle", "parameter", "what follows"),
+        ]
         lines += [ended(end) for end in ENDS]
     return shown(lines)
 
@@ -105,40 +118,38 @@ def row(section: str, crisis: dynamics.Crisis) -> str:
     )
 
 
-def ended(end: End, steps: int = 81, growth: float = 2.5) -> str:
-    """Where the motion of a sweep comes to fill `growth` times as many cells as before, or becomes periodic."""
-    scan = SCANS[end.section]
-    period, here = period_of(end.label), scan.at(end.first)
+def ended(end: End) -> str:
+    """Where motions begin to leave the chaos of a cascade, and the saddle that it meets there."""
+    scan, (inside, _) = SCANS[end.section], end.bounds
+    found = dynamics.chaos_end(scan.oscillator, scan.parameter, chaos(end), end.bounds, periods=PERIODS)
+    rates = np.where(found.escapes > 0, found.rates, np.inf)
+    past = float(found.values[int(np.argmin(np.abs(np.log(rates / LIFE))))])
+    row = f"| {end.section} | {end.label} | {found.last:.9g} and {found.first:.9g} |"
+    for saddle in dynamics.edge_saddles(scan.at(past), found.attractor)[:2]:
+        low, high = sorted((inside, past))
+        crisis = dynamics.boundary_crisis(
+            saddle, scan.parameter, (low, high), points=end.points, periods=6 * saddle.periods
+        )
+        if crisis.converged:
+            return f"{row} {saddle.label} | {crisis.parameter:.9f} | {crisis.after} |"
+    return f"{row} none that parts the two | | |"
+
+
+def chaos(end: End) -> np.ndarray:
+    """A state of the chaos that a sweep from the stable motion comes to."""
+    scan, period = SCANS[end.section], period_of(end.label)
+    here = scan.at(end.first)
     orbits = dynamics.find_orbits(here, (period,)).orbits
     start = [o.state for o in orbits if o.stable and o.periods == period and o.label == end.label]
     if not start:  # already doubled
         met = dynamics.multi_sweep(here, scan.parameter, [end.first], seeds=1, starts=12)
         start = [m.states[-1] for m in met.motions[0] if m.periods and m.periods % period == 0]
-    values = np.linspace(end.first, end.last, steps)
-    direction = "up" if end.last > end.first else "down"
-    found = dynamics.sweep(
-        scan.oscillator, scan.parameter, values, direction, initial=start[0], transient=4000, keep=256
+    values = np.linspace(end.first, end.bounds[0], 401)
+    direction = "up" if end.bounds[0] > end.first else "down"
+    swept = dynamics.sweep(
+        scan.oscillator, scan.parameter, values, direction, initial=start[0], transient=2000
     )
-    size = _cells(found.states)
-    gone = [
-        k
-        for k in range(1, steps)
-        if size[k] > growth * size[k - 1] or (found.labels[k - 1] == "aperiodic" and found.periods[k] > 0)
-    ]
-    if not gone:
-        return f"| {end.section} | {end.label} | {end.first:g} to {end.last:g} | not seen |"
-    k = gone[0]
-    return (
-        f"| {end.section} | {end.label} | {end.first:g} to {end.last:g} | "
-        f"{values[k - 1]:.6g} and {values[k]:.6g}: {found.labels[k - 1]}, then {found.labels[k]} |"
-    )
-
-
-def _cells(states: np.ndarray, side: int = 20) -> np.ndarray:
-    """Cells of a grid over all motions that each motion passes; states (values, kept, 2)."""
-    low, high = states.min(axis=(0, 1)), states.max(axis=(0, 1))
-    place = np.minimum(((states - low) / (high - low) * side).astype(int), side - 1)
-    return np.array([len(np.unique(p, axis=0)) for p in place])
+    return np.asarray(swept.states[-1, -1])
 
 
 if __name__ == "__main__":

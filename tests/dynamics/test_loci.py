@@ -14,7 +14,7 @@ from dynamics import (
     find_orbit,
     find_orbits,
 )
-from tests.validation.article_motion import starved
+from tests.validation.article_motion import lubricated, starved
 
 
 def test_locus_of_a_bubble_closes_however_small_it_is():
@@ -80,3 +80,21 @@ def integrated(point) -> tuple[np.ndarray, np.ndarray]:
         events=turning,
     )
     return found.y[:, -1], found.y_events[0][:, 0]
+
+
+def test_locus_ends_where_motion_grows_without_bound():
+    """From the fold at 0.9342 the saddle nodes of 6.1 lead to infinity, in frequency and amplitude of the stiffness."""
+    osc = lubricated(0.96)
+    orbits = find_orbits(osc, (1,)).orbits
+    folds = [p for o in orbits for p in continue_branch(o, "frequency", (0.6, 1.2)).special("saddle-node")]
+    fold = next(p for p in folds if abs(p.parameter - 0.9342) < 1e-3)
+    names = ("frequency", "stiffness.amplitudes[0]")
+    found = continue_locus(osc, fold, names, ((0.3, 2.2), (0.0, 0.9)))
+    assert found.converged
+    assert set(found.ended) == {"the motion grows without bound", "bound"}
+    far = np.max(np.abs(found.states), axis=1)
+    assert far.max() > 1e3
+    # where it does, D no longer counts: the parameters come to their limit as one over the size of the motion
+    place = found.values[[int(np.argmin(np.abs(far - size))) for size in (1e2, 1e3, 1e4)]]
+    off = np.linalg.norm(place[:2] - place[2], axis=1)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.3)
