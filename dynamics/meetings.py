@@ -4,18 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from base import Array
 from dynamics.branch import SpecialPoint
 from dynamics.branch_problem import BranchProblem, MapPoint
 from dynamics.special_orbits import Condition
 
-FLAT = np.array([0.0, 0.0, 1.0])  # across which the parameter is held
-FIRST, LAST = (
-    1e-13,
-    1e-2,
-)  # of the range: distances from the last doubled orbit at which the parent is looked at
+FIRST, LAST = 1e-11, 1e-2  # of the range: from the last doubled orbit to where the parent is looked at
 WIDER = 10.0
 DOUBLING = (Condition("period-doubling"),) * 2
 
@@ -35,8 +29,8 @@ def meeting(problem: BranchProblem, last: MapPoint) -> SpecialPoint | None:
     """
     parent = replace(problem, periods=problem.periods // 2)
     guess = last.u.copy()
-    guess[:2] += 0.5 * (problem.half_way(last) - last.u[:2])
-    start = parent.correct(guess, FLAT)
+    guess[: last.size] += 0.5 * (problem.half_way(last) - last.u[: last.size])
+    start = parent.correct(guess, parent.flat)
     if start is None:
         return None
     for way in (1.0, -1.0):
@@ -56,9 +50,9 @@ def meeting(problem: BranchProblem, last: MapPoint) -> SpecialPoint | None:
 
 def _beside(parent: BranchProblem, start: MapPoint, before: MapPoint, off: float) -> MapPoint | None:
     """Orbit of the parent's branch a distance of the parameter away from the start."""
-    along: Array = start.tangent(FLAT) if before is start else before.tangent(FLAT)
-    step = start.u[2] + off - before.u[2]
-    guess = before.u + (step / along[2] if along[2] else 0.0) * along
-    guess[2] = start.u[2] + off
-    found: MapPoint | None = parent.correct(guess, FLAT)
+    along: Array = before.tangent(parent.flat)
+    step = start.u[-1] + off - before.u[-1]
+    guess = before.u + (step / along[-1] if along[-1] else 0.0) * along
+    guess[-1] = start.u[-1] + off
+    found: MapPoint | None = parent.correct(guess, parent.flat)
     return found
