@@ -50,6 +50,7 @@ def films(quick: bool) -> tuple[Case, ...]:
         film_starved("layer", "layer of half the flooded film", OilLayer(half)),
         film_mixed(),
         film_path(),
+        *(film_path_fed(*kind) for kind in fed_kinds()),
         film_over_time(),
         film_relaxed("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
         film_relaxed("pitch", "pitch point", pitch),
@@ -203,6 +204,51 @@ def film_path() -> Levels:
 
     series = over((0.02, 0.005, 0.001), percent, along, all_of, name="tolerances")
     return Levels((series,), level("0.05 %", along, all_of, 5e-4))
+
+
+def fed_kinds() -> tuple[tuple[str, str, OilLayer | None, bool], ...]:
+    """Films along the path that are starved, by a layer or by menisci where no layer is given, rough, or both."""
+    from ehl import OilLayer
+
+    layer = OilLayer(0.11e-6)
+    return (
+        ("layer", "a layer of 0.11 um", layer, False),
+        ("meniscus", "menisci 0.03 half-widths ahead", None, False),
+        ("layer_rough", "a layer of 0.11 um, Ra 0.4 um", layer, True),
+        ("meniscus_rough", "menisci 0.03 half-widths ahead, Ra 0.4 um", None, True),
+    )
+
+
+@case("Films along the path of contact, {words}", "nodes in the mean", "film_path_{short}")
+def film_path_fed(short: str, words: str, layer: OilLayer | None, rough: bool) -> Levels:
+    """Starved and rough films along a path by their tolerance.
+
+    41 contacts from A to E with two jumps of the load share, {words}, each from its neighbour. Error and
+    estimate are the largest of all.
+    """
+    from ehl import Meniscus, MixedFilm, Roughness, solve, solve_mixed
+
+    ground = Roughness.from_drawing(mean=0.4e-6)
+
+    def along(tolerance: float) -> list[Film | MixedFilm]:
+        found: list[Any] = []
+        for contact in contacts_along_path(41):
+            supply = layer or Meniscus(-1.03 * contact.half_width)
+            start = found[-1] if found else None
+            if rough:
+                found.append(solve_mixed(contact, ground, tolerance, supply, start))
+            else:
+                found.append(solve(contact, tolerance, supply=supply, start=start))
+        return found
+
+    def all_of(found: list[Film | MixedFilm]) -> Answer:
+        inside = [f.film if isinstance(f, MixedFilm) else f for f in found]
+        heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
+        values = {"central and least films": value(heights, max(f.error for f in found))}
+        return answer(float(np.mean([f.x.size for f in inside])), values, *found)
+
+    series = over((0.005, 0.001, 2e-4), percent, along, all_of, name="tolerances")
+    return Levels((series,), level("0.01 %", along, all_of, 1e-4))
 
 
 @case("Film under a falling load", "nodes")

@@ -155,9 +155,9 @@ def test_derivatives_by_the_load_against_differences(u, rough):
     )
     change = 2 * step * contact.load
     by_difference = (heavy.central_thickness - light.central_thickness) / change
-    assert mixed.central_slope == pytest.approx(by_difference, rel=0.05)
+    assert mixed.central_slope == pytest.approx(by_difference, rel=0.02)
     by_difference = (heavy.separation - light.separation) / change
-    assert mixed.separation_slope == pytest.approx(by_difference, rel=0.05)
+    assert mixed.separation_slope == pytest.approx(by_difference, rel=0.02)
 
 
 def test_parallel_springs_leave_out_that_the_contact_widens():
