@@ -15,7 +15,7 @@ from ehl.contact import LineContact
 from ehl.discrete import Fluid, Grid, Groups, plain_oil
 
 _COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
-_INLET = 150.0  # gap over the central film ahead of which heat stays with the oil that turns back there
+INLET_GAP = 30.0  # gap over the central film ahead of which heat stays with the oil that turns back there
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
 _LEAST_STRESS = 1e3  # of the limiting stress where hardly any pressure stands [Pa]
@@ -222,7 +222,7 @@ class Heated:
         self.gradient = np.diff(p) / self.lengths
         self.response = np.zeros((shear.gap.size, 2))
         first = self.first = max(
-            1, int(np.argmax(shear.gap < _INLET * np.interp(0.0, self.middles, shear.gap)))
+            1, int(np.argmax(shear.gap < INLET_GAP * np.interp(0.0, self.middles, shear.gap)))
         )
         before = self.temperature.copy()
         back = np.flatnonzero(self.carried.min(axis=1) < 0.0)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
-from base import Array, Faults, Limit, Stopwatch, part, quantity, record, unclocked
+from base import Array, Faults, Limit, RangeWarning, Stopwatch, part, quantity, record, unclocked
 from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
 from ehl.film import Film, FilmErrors, unsolved
@@ -16,6 +17,10 @@ from ehl.options import warn_of_range
 from ehl.thermal_search import Compared, Search
 
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
+_HOTTEST = 1000.0  # [K]
+_DECOMPOSING = 620.0  # [K]
+_STRONGEST = 0.15  # mean shear stress over the greatest pressure
+_YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
 _TOLERANCE = Limit.above(0.0, 0.2, remedy="0.01 is 1 %")
 
 
@@ -61,7 +66,9 @@ class ThermalFilm(Film):
         "Pa", "on the oil at the first and the second surface", "node surface", shown="MPa", default=None
     )
     traction_error: float = unsolved("1", "change of the traction between two grids")
-    temperature_error: float = unsolved("1", "change of the greatest oil temperature rise between two grids")
+    temperature_error: float = unsolved(
+        "1", "change of the greatest temperature rises between two grids, and what an unresolved spike leaves"
+    )
     oils: tuple[Heated, Heated] | None = part("what a next solution starts from", default=None)
 
     @property
@@ -112,6 +119,12 @@ def solve_thermal(
     InputError
         With every fault of the arguments.
 
+    Warns
+    -----
+    RangeWarning
+        As :func:`solve`; where the mean shear stress exceeds what oils bear (a Newtonian oil at gear pressures), and
+        where the oil is hotter than 620 K. Above 1000 K there is no solution.
+
     Notes
     -----
     Equations and limits: docs/theory/ehl.md.
@@ -136,7 +149,32 @@ def solve_thermal(
         found = search.from_neighbour(start.state, start.oils, nodes)
     if found is None:
         found = search.from_nothing(nodes)
-    return _failed(search, watch) if found is None else _film(search, found, watch)
+    if found is not None and found.oil.temperature.max() > _HOTTEST:
+        hottest = found.oil.temperature.max()
+        search.left, found = f"the oil would reach {hottest:.0f} K, which no liquid does", None
+    if found is None:
+        return _failed(search, watch)
+    _warn_of_range(found)
+    return _film(search, found, watch)
+
+
+def _warn_of_range(found: Compared) -> None:
+    """Warn where oils no longer are what the model takes them for."""
+    oil, hottest = found.oil, float(found.oil.temperature.max())
+    pressure = oil.groups.pressure * float(found.fine.found.P.max())
+    stress = float(np.abs(oil.shear.flow[: oil.last + 1, 0]).max())
+    if stress > _STRONGEST * pressure:
+        message = (
+            f"mean shear stress of {stress / 1e6:.3g} MPa, {stress / pressure:.2g} of the greatest pressure: "
+            f"oils yield at 0.03 to 0.06 of the pressure; {_YIELDING}"
+        )
+        warnings.warn(message, RangeWarning, stacklevel=3)
+    if hottest > _DECOMPOSING:
+        message = (
+            f"oil at {hottest:.0f} K: above some {_DECOMPOSING:g} K mineral oils decompose within hours; "
+            "friction and film are as if it stayed what it is"
+        )
+        warnings.warn(message, RangeWarning, stacklevel=3)
 
 
 def _checked(
@@ -196,7 +234,10 @@ def _film(search: Search, found: Compared, watch: Stopwatch) -> ThermalFilm:
 
 def _failed(search: Search, watch: Stopwatch) -> ThermalFilm:
     """Return a film without figures."""
-    x = search.places()
+    x, oil = search.places(), search.contact.lubricant
+    remedy = "allow a larger tolerance, or start from a similar contact"
+    if oil.eyring_stress is None and oil.limiting_shear_ratio is None and search.contact.sliding != 0.0:
+        remedy = f"a Newtonian oil stands for any stress, however large: {_YIELDING}"
     blank = np.full(x.size, math.nan)
     return ThermalFilm(
         contact=search.contact,
@@ -207,6 +248,6 @@ def _failed(search: Search, watch: Stopwatch) -> ThermalFilm:
         errors=FilmErrors(math.nan),
         cost=search.cost(watch.seconds),
         converged=False,
-        message=f"{search.left}: allow a larger tolerance, or start from a similar contact",
+        message=f"{search.left}: {remedy}",
         solids=search.solids,
     )

@@ -11,8 +11,8 @@ from base import Array, Cost
 from ehl.bodies import Solid
 from ehl.contact import LineContact
 from ehl.discrete import Groups
-from ehl.heated import Heated
-from ehl.levels import Level, State, transfer
+from ehl.heated import INLET_GAP, Heated
+from ehl.levels import Level, State, figures, transfer
 from ehl.newton import newton
 from ehl.options import Options
 from ehl.outcome import GRID_FACTOR, film_error
@@ -21,6 +21,11 @@ from ehl.solver import REACH, solve_checked
 
 _DONE = 0.05  # last step of the pressure over the tolerance; steps shrink by three and more each
 _MOST_STEPS = 60
+_LEAST = 0.6  # the least film under a spike falls with the cells' size, not with its square: as much more of its change
+_INLET_SHARE = (
+    0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
+)
+_CLIMB_LEFT = 0.25  # share of the climb to a spike that grids leave out
 _FIRST_NODES = 65
 _MOST_NODES = 513
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
@@ -41,22 +46,51 @@ def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
 class Compared:
     """Two levels with heat: the figures of the finer and their changes."""
 
-    def __init__(self, before: Solved, last: Solved, inlet: float) -> None:
+    def __init__(self, before: Solved, last: Solved, tolerance: float) -> None:
         (self.coarse, self.before), (self.fine, self.oil) = before, last
-        (mu_0, rise_0), (mu, rise) = ((o.traction, o.rises()[0]) for o in (self.before, self.oil))
-        self.inlet = inlet
-        self.traction_error = abs(mu_0 - mu) / max(abs(mu), 1e-4)
-        self.temperature_error = abs(rise_0 - rise) / max(rise, 1.0)
-        warmer = self.oil.contact.lubricant.viscosity_slope * abs(rise_0 - rise)
-        worst = max(
-            film_error(self.coarse, self.fine), GRID_FACTOR * self.traction_error, GRID_FACTOR * warmer
-        )
-        self.error = worst + inlet
+        rest = _DONE * tolerance / 3.0  # what further steps would still change
+        mu_0, mu = self.before.traction, self.oil.traction
+        warm_0, warm = np.array(self.before.rises()), np.array(self.oil.rises())
+        change = np.abs(warm_0 - warm)
+        self.inlet = self.fine.plan.inlet_error
+        self.traction_error = rest + abs(mu_0 - mu) / max(abs(mu), 1e-4)
+        self.temperature_error = rest + float(np.max(change / np.maximum(warm, 1.0)))
+        self.temperature_error += self._spike_left() / max(float(warm[0]), 1.0)
+        oil = self.oil.contact.lubricant
+        cut = 0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / INLET_GAP
+        lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
+        film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
+        warmer = oil.viscosity_slope * float(change[0])
+        others = GRID_FACTOR * max(self.traction_error, warmer)
+        self.error = max(film, others) + self.inlet + cut + rest
+
+    def _spike_left(self) -> float:
+        """What the oil under the spike may be hotter by than the hottest oil found [K].
+
+        Heat of compression follows the climb of the pressure, of which grids leave a quarter out, or twice what the
+        last doubling has changed.
+        """
+        top, climb = _climb(self.fine, self.oil)
+        change = climb - _climb(self.coarse, self.before)[1]
+        left = max(_CLIMB_LEFT * climb, 2.0 * change)
+        return max(0.0, top + left - float(self.oil.temperature.max()))
 
     @property
     def state(self) -> State:
         """What a next film starts from."""
         return State(self.coarse.bare(), self.fine.bare())
+
+
+def _climb(level: Level, oil: Heated) -> tuple[float, float]:
+    """Greatest temperature under the spike and its rise above the coldest oil between the middle and there [K]."""
+    P, hottest = level.found.P, oil.temperature.max(axis=1)
+    tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
+    middle = int(np.searchsorted(oil.middles, 0.0))
+    if tops.size == 0 or tops[-1] <= middle:
+        return 0.0, 0.0
+    tip = int(tops[-1])
+    top = float(hottest[max(tip - 3, middle) : tip + 2].max())
+    return top, top - float(hottest[middle : tip + 1].min())
 
 
 @dataclass(frozen=True)
@@ -126,7 +160,7 @@ class Search:
             fine = self._level(level, n)
             last = self._on(fine, oil, old if before is not None else None, before)
             if before is not None and last is not None:
-                found = Compared(before, last, base.plan.inlet_error)
+                found = Compared(before, last, self.tolerance)
                 if nodes is not None or found.error <= self.tolerance:
                     return found
                 self.left = f"error {found.error:.2g} left on {n} nodes"

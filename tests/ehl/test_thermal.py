@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from base import InputError
+from base import InputError, RangeWarning
 from ehl import STEEL, LineContact, Lubricant, Solid, solve, solve_thermal
 from tests.ehl.films import sound
 from tests.hard.random_contacts import refused
 
-pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure")
+pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure", "ignore:mean shear stress")
 
 OIL = Lubricant(
     0.075,
@@ -76,10 +76,13 @@ def test_without_thinning_and_heat_it_is_the_isothermal_film():
     near = replace(OIL, eyring_stress=1e11)
     cool = replace(plain, viscosity_slope=0.0, expansion=0.0)
     still = replace(SLIDING, sliding=0.0, lubricant=replace(plain, expansion=0.0, viscosity_slope=1e-9))
+    # a Newtonian oil bears stresses that no oil bears
+    with pytest.warns(RangeWarning, match="mean shear stress"):
+        film = sound_enough(solve_thermal(replace(SLIDING, lubricant=plain), None, nodes=129))
+    assert film.central_thickness == pytest.approx(iso.central_thickness, rel=0.5 * iso.error)
     for contact, solids in (
-        (replace(SLIDING, lubricant=plain), None),
         (replace(SLIDING, lubricant=near), None),
-        (replace(SLIDING, lubricant=cool), (STEEL, STEEL)),
+        (replace(SLIDING, lubricant=cool, sliding=0.02), (STEEL, STEEL)),
         (still, (STEEL, STEEL)),
     ):
         film = sound_enough(solve_thermal(contact, solids, nodes=129))
@@ -148,9 +151,9 @@ def test_a_neighbour_is_a_start():
 def test_temperatures_settle_where_they_do_not_feed_back_on_the_film():
     """Viscosity that no heat changes: pressures stand at once, and the heat has still to go round."""
     oil = replace(OIL, viscosity_slope=0.0, expansion=0.0, eyring_stress=None)
-    film = sound_enough(solve_thermal(replace(SLIDING, lubricant=oil), nodes=129))
-    assert abs(film.losses.closure) < 0.01
-    assert film.temperature_error < 0.05
+    film = sound_enough(solve_thermal(replace(SLIDING, lubricant=oil, sliding=0.02), nodes=129))
+    assert film.oil_temperature_rise > 10.0
+    assert abs(film.losses.closure) < 0.002
 
 
 def test_bad_arguments_are_listed_at_once():
@@ -159,3 +162,14 @@ def test_bad_arguments_are_listed_at_once():
     assert [f.where for f in caught.value.faults] == ["solids", "bulk_temperatures", "tolerance"]
     with pytest.raises(InputError, match="eyring_stress"):
         replace(OIL, eyring_stress=-1.0)
+
+
+def test_a_newtonian_oil_at_gear_pressures_is_refused_by_name():
+    film = solve_thermal(replace(SLIDING, lubricant=replace(OIL, eyring_stress=None)))
+    assert "eyring_stress" in refused(film)
+
+
+def test_a_spike_that_no_grid_resolves_is_in_the_temperatures_estimate():
+    film = sound_enough(solve_thermal(at(12.013e-3, 4.43e5), nodes=129))
+    # 7.5 K by an independent solver, and 6.7 to 7.3 K on 129 to 513 nodes
+    assert abs(film.oil_temperature_rise / 7.5 - 1.0) < film.temperature_error < 0.25

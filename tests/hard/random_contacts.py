@@ -32,9 +32,9 @@ def random_contact(rng: np.random.Generator) -> LineContact:
 
 
 def random_gear_contact(rng: np.random.Generator) -> LineContact:
-    """Return a sliding contact of gears: p_H 0.3 to 2 GPa, u 0.5 to 30 m/s, sliding 0 to 1.5 u either way, VG 32 to 680.
+    """Return a sliding contact of gears: p_H 0.3 to 2 GPa, u 0.5 to 30 m/s, sliding 0 to 1.5 u either way.
 
-    Oils at 40 to 120 degC, mineral, with the slope of their grade; Eyring stress 5 to 10 MPa.
+    Oils of VG 32 to 680 at 40 to 120 degC, mineral, with the slope of their grade; Eyring stress 5 to 10 MPa.
     """
     grade = int(rng.choice([32, 46, 68, 100, 150, 220, 320, 460, 680]))
     temperature = 273.15 + rng.uniform(40.0, 120.0)

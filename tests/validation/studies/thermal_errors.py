@@ -56,7 +56,9 @@ def study(contacts: int, seed: int) -> None:
                 print(f"{k}: the grid twice as fine failed: {finer.message}")
     hot = sum(heat > 10.0 for _, heat, _, _ in lost)
     print(f"solved {contacts - len(lost)} of {contacts}; of the others {hot} with eta0 beta u^2/k above 10")
-    print(f"seconds: median {np.median(seconds):.3f}, 95 % {np.quantile(seconds, 0.95):.3f}, most {max(seconds):.2f}")
+    print(
+        f"seconds: median {np.median(seconds):.3f}, 95 % {np.quantile(seconds, 0.95):.3f}, most {max(seconds):.2f}"
+    )
     for k, heat, contact, message in lost:
         print(
             f"  {k}: p_H {contact.peak_pressure / 1e9:.2f} GPa, u {contact.entrainment:.1f}, "
