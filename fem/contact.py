@@ -18,7 +18,7 @@ from fem.edge_tables import EdgeTables
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
 from fem.face_loads import FaceLoads, face_load_factors
-from fem.face_setting import face_setting
+from fem.face_setting import FREE_ENDS, WALLS, face_setting
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
 from fem.model_error import LoadedContacts
@@ -96,7 +96,7 @@ def mesh_cycle(
     base_pitch_difference: float = 0.0,
     alignment: Alignment | None = None,
     cells: int | None = None,
-    free_ends: bool = True,
+    face_model: str = FREE_ENDS,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -184,7 +184,7 @@ def mesh_cycle(
         friction,
         moving_contact=moving_contact,
         base_pitch_difference=base_pitch_difference,
-        face=face_setting(pair, alignment, cells, free_ends),
+        face=face_setting(pair, alignment, cells, face_model),
     )
     _check(given, torque, compliance, reference, film, plane)
     watch = Stopwatch()
@@ -356,12 +356,13 @@ def _over_face(
     factors = face_load_factors(forces)
     few = 2 * (cells // 4)
     greatest = []
-    for ends in (given.face.free_ends, False):
-        coarse = replace(given, face=replace(given.face, cells=few, free_ends=ends))
+    models = (FREE_ENDS, WALLS) if given.face.model == FREE_ENDS else (given.face.model,)
+    for model in models:
+        coarse = replace(given, face=replace(given.face, cells=few, model=model))
         other = solve(coarse, bodies, np.array([abs(force)]), film, tables).face
         greatest.append(np.nan if other is None else float(np.max(face_load_factors(other.forces))))
     most = float(np.max(factors))
-    error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[1])
+    error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[-1])
     rho1, rho2 = contact.where.rho
     return FaceLoads(
         given.face.middles(pair.face_width),

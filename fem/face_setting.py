@@ -17,6 +17,9 @@ __all__ = ["FaceSetting", "face_setting"]
 USUAL = 64
 """Cells of the face unless they are given."""
 
+FREE_ENDS, WALLS, SLICES = "free-ends", "walls", "slices"
+"""What couples the cells of the face."""
+
 CELLS = Limit(4, 512, remedy="64 resolve what a face does", whole=True)
 
 
@@ -31,14 +34,14 @@ class FaceSetting:
     alignment : Alignment
     leads : (Lead, Lead)
         Of pinion and wheel.
-    free_ends : bool
-        Whether the faces' ends are free, or frictionless walls.
+    model : {"free-ends", "walls", "slices"}
+        What couples the cells: bodies with free ends, or between frictionless walls; nothing but the approach.
     """
 
     cells: int
     alignment: Alignment = ALIGNED
     leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
-    free_ends: bool = True
+    model: str = FREE_ENDS
 
     def middles(self, face_width: float) -> Array:
         """Middles of the cells (cells,) [m], 0 at mid-face."""
@@ -47,6 +50,7 @@ class FaceSetting:
     def check(self, found: Faults, face_width: float) -> None:
         """Note everything that is wrong."""
         found.number("cells", self.cells, CELLS)
+        found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
         if self.cells % 2:
             found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
         found.extend(self.alignment.faults("alignment"))
@@ -69,10 +73,10 @@ class FaceSetting:
 
 
 def face_setting(
-    pair: GearPair, alignment: Alignment | None, cells: int | None, free_ends: bool
+    pair: GearPair, alignment: Alignment | None, cells: int | None, model: str
 ) -> FaceSetting | None:
     """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
     leads = pair.pinion.lead, pair.wheel.lead
     if alignment is None and cells is None and leads == (STRAIGHT, STRAIGHT):
         return None
-    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, free_ends)
+    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model)

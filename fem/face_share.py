@@ -18,6 +18,7 @@ import numpy as np
 
 from base import Array, record
 from fem.face_compliance import pair_ends, pair_waves
+from fem.face_setting import FREE_ENDS, SLICES
 from fem.local_law import FilmLaw, PairLaws
 
 if TYPE_CHECKING:
@@ -126,15 +127,13 @@ def cell_matrix(
     """Compliance between cells of all pairs (positions, pairs cells, pairs cells) [m/N]; ``matrix`` is the plane's."""
     assert given.face is not None
     cells, (positions, pairs) = given.face.cells, where.place.shape
-    modes = _modes(cells)
+    modes, levers = _modes(cells), kappa[..., :, None] * kappa[..., None, :]
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
-    by_mode[..., 1:] += (
-        pair_waves(bodies, where.rho, cells) / (kappa[..., :, None] * kappa[..., None, :])[..., None]
-    )
+    if given.face.model != SLICES:
+        by_mode[..., 1:] += pair_waves(bodies, where.rho, cells) / levers[..., None]
     found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
-    if given.face.free_ends:
-        ends = pair_ends(bodies, where.rho, cells)
-        found += ends / (kappa[..., :, None] * kappa[..., None, :])[:, :, None, :, None]
+    if given.face.model == FREE_ENDS:
+        found += pair_ends(bodies, where.rho, cells) / levers[:, :, None, :, None]
     size = pairs * cells
     return np.asarray(found.reshape(positions, size, size))
 

@@ -4,6 +4,8 @@ from .contact_stress import Iso6336ContactStress as Iso6336ContactStress
 from .contact_stress import iso6336_2 as iso6336_2
 from .dynamic_factor import Iso6336DynamicFactor as Iso6336DynamicFactor
 from .dynamic_factor import iso6336_dynamic as iso6336_dynamic
+from .face_load import Iso6336FaceLoad as Iso6336FaceLoad
+from .face_load import iso6336_face_load as iso6336_face_load
 from .friction import schlenk_friction as schlenk_friction
 from .half_plane import weber_banaschek as weber_banaschek
 from .loss_factor import ohlendorf_loss_factor as ohlendorf_loss_factor
