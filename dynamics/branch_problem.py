@@ -76,7 +76,7 @@ class MapPoint:
     @cached_property
     def trace(self) -> float:
         """Trace of the Jacobian."""
-        return float(np.trace(self.derivative))
+        return float(sum(self.derivative.diagonal().tolist()))
 
     @property
     def multipliers(self) -> npt.NDArray[np.complex128] | Array:

@@ -118,7 +118,7 @@ class OrbitProblem(BranchProblem):
     def _cells(self, u: Array, refinement: int) -> int:
         """Cells of a period; 0 if the parameters are not allowed."""
         packed = self._packed(u)
-        if not (packed[4] > 0.0 and np.all(np.isfinite(packed))):
+        if not (packed[4] > 0.0 and math.isfinite(float(packed @ packed))):
             return 0
         cells = cells_per_period(packed)
         return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
@@ -127,7 +127,8 @@ class OrbitProblem(BranchProblem):
         self, u: Array, image: Array, lin: Array, bend: Array, counts: Integers, turns: Array, iterations: int,
         residual: float,
     ) -> Point:  # fmt: skip
-        damping, frequency, play = self._packed(u)[[1, 4, 6]].tolist()
+        packed = self._packed(u).tolist()
+        damping, frequency, play = packed[1], packed[4], packed[6]
         # log det = -4 pi zeta n / omega
         decay = 4.0 * math.pi * self.periods / frequency
         determinant = math.exp(-decay * damping)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -85,10 +85,9 @@ def push(series: Array, angle: Array) -> Array:
     return total
 
 
-def highest_harmonic(order: int, errors: Array) -> int:
+def highest_harmonic(order: int, errors: Iterable[float]) -> int:
     """Highest harmonic of stiffness and error that is there, at least 1; `errors` are amplitudes from the second on."""
-    present = np.flatnonzero(errors)
-    return max(order, 1 if len(present) == 0 else int(present[-1]) + 2, 1)
+    return max(order, 1, *(i + 2 for i, size in enumerate(errors) if size != 0.0))
 
 
 def largest(series: Array) -> float:

@@ -173,10 +173,11 @@ class GearOscillator(PlanarOscillator):
 
 def cells_per_period(packed: Array) -> float:
     """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
-    order = int(packed[_SERIES - 1])
-    further = packed[_SERIES + 2 * order :]
+    values: list[float] = packed.tolist()  # plain numbers: branches ask for every point
+    order = int(values[_SERIES - 1])
+    further = values[_SERIES + 2 * order :]
     highest = highest_harmonic(order, further[: len(further) // 2])
-    stiffest = abs(packed[0]) + float(np.sum(np.abs(packed[_SERIES : _SERIES + order])))
-    period = 2.0 * math.pi / float(packed[4])
-    drag = 2.0 * float(packed[1]) * period
+    stiffest = abs(values[0]) + sum(abs(size) for size in values[_SERIES : _SERIES + order])
+    period = 2.0 * math.pi / values[4]
+    drag = 2.0 * values[1] * period
     return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * highest, drag)

@@ -55,7 +55,7 @@ class Tracer(ABC):
             new = self.points[-1]
             if len(self.points) > 3 and passes(last.u, new.u, self.phases):  # however small the loop
                 self.ended = "closed"
-            elif np.any((new.u[new.size :] == 0.0) | (new.u[new.size :] == 1.0)):
+            elif not {0.0, 1.0}.isdisjoint(new.u[new.size :].tolist()):
                 self.ended = "bound"
 
     @abstractmethod
@@ -108,6 +108,8 @@ def passes(last: Array, new: Array, places: list[list[float]]) -> bool:
     chord = [b - a for a, b in zip(start, new.tolist(), strict=True)]
     square = sum(c * c for c in chord)
     for place in places:
+        if (place[-1] - start[-1]) ** 2 > 1.02 * square:
+            continue  # too far to look closer
         back = [p - u for p, u in zip(place, start, strict=True)]
         along = sum(b * c for b, c in zip(back, chord, strict=True)) / square
         if 0.0 < along <= 1.0:
