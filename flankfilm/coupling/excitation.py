@@ -73,7 +73,9 @@ class ErrorSeries:
         "1", "change of the amplitudes with half as many samples, over the largest amplitude"
     )
     cost: Cost
-    converged: bool = quantity("1", "whether an order that was to be found leaves out no more than the share")
+    converged: bool = quantity(
+        "1", "whether an order that was to be found leaves out no more than the share", no_error=ITSELF
+    )
     message: str = ""
 
     @described("1", no_error=EXACT)

@@ -16,7 +16,7 @@ import numpy as np
 import dynamics
 import gears
 from base import Array, Cost, InputError, Stopwatch, part, quantity, record
-from base.results import EXACT
+from base.results import EXACT, ITSELF
 from dynamics.stiffness import MAX_ORDER
 from dynamics.sweeps import settling_periods
 from fem.setting import Deviations
@@ -67,7 +67,7 @@ class MotionSpectrum:
     spectrum: dynamics.Spectrum = part("of the oscillator over its own period")
     error: float
     cost: Cost
-    converged: bool = quantity("1", "whether the motion repeats")
+    converged: bool = quantity("1", "whether the motion repeats", no_error=ITSELF)
     message: str = ""
 
 

@@ -80,7 +80,10 @@ OF_A_RUN = (
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
 OF_OTHERS = {"optimum", "optimum_map", "study", "verification"}
-ELSEWHERE = {"Frame", "animate_cycle", "film_families", "teeth_scene", "tooth_picture", "view_cycle"}
+ELSEWHERE = {
+    "Frame", "animate_cycle", "film_families", "losses_along_path", "teeth_scene", "temperature_field",
+    "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum",
+}  # fmt: skip
 
 PURE = {"motion n-p-q", "evaluation"}
 """Titles of axes that have no unit to show."""
