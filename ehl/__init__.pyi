@@ -37,5 +37,6 @@ from .supply import OilLayer as OilLayer
 from .thermal import Losses as Losses
 from .thermal import ThermalFilm as ThermalFilm
 from .thermal import solve_thermal as solve_thermal
+from .thermal_slopes import with_load_slopes as with_load_slopes
 from .transient import TransientFilm as TransientFilm
 from .transient import solve_transient as solve_transient

@@ -44,7 +44,7 @@ class Losses:
 class ThermalFilm(Film):
     """A steady line-contact film with heat and shear thinning; everything is per metre of face width.
 
-    The slopes by the load, and so the stiffnesses that need them, are NaN.
+    The slopes by the load, and so the stiffnesses that need them, are NaN until :func:`with_load_slopes` adds them.
     """
 
     headline = ("minimum_thickness", "traction_coefficient", "oil_temperature_rise")
