@@ -107,7 +107,7 @@ def followed_speed(scene: Scene, pair: gears.GearPair, series: MeshSeries) -> fl
     extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
     scales = pair_scales(pair, pinion_torque(scene), series.mean, extra, length)
     total = math.fsum(map(abs, series.stiffness.amplitudes)) / series.mean
-    least = scales.rpm(least_frequency(section.damping_ratio, total))
+    least = scales.rpm(least_frequency(section.known_damping, total))
     rpm = scene.operating.pinion_speed_rpm if scene.operating else None
     if rpm is not None and rpm > least:
         return rpm
@@ -140,7 +140,7 @@ def _bounds(
     """Starts of a range below which surely no motion is followed, and from which one surely is."""
     given = scene.stiffness.amplitudes
     sums = (0.0, MOST_HARMONICS) if given is None else (math.fsum(map(abs, given)),) * 2
-    surely, safely = (least_frequency(section.damping_ratio, total) for total in sums)
+    surely, safely = (least_frequency(section.known_damping, total) for total in sums)
     if not in_rpm or pair is None:
         return surely, safely
     from flankfilm.coupling import pair_scales

@@ -82,6 +82,7 @@ RECORDS = {
     "single_pair": "closed forms",
     "dry": "dry cycle",
     "reference": "references",
+    "damping": "film damping",
     "torque": "torques",
     "pair": "pair",
     "heat": "heat",

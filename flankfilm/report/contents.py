@@ -44,6 +44,7 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "fields": mesh_parts.fields,
     "fourier": motion_parts.fourier,
     "excitation": excitation_parts.excitation,
+    "film damping": motion_parts.film_damping,
     "scaling": motion_parts.scaling,
     "sweep": motion_parts.sweep,
     "diagram": motion_parts.diagram,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from dynamics.branch import Stretch
-    from flankfilm.coupling import MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
+    from flankfilm.coupling import FilmDamping, MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
     from flankfilm.coupling.jumps import Jump
 
 LONGEST = 40
@@ -81,6 +81,23 @@ def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
     table = Table(("quantity", "physical", "dimensionless"), stage.rows())
     notes = [said("measured_against", what=MEANINGS[stage.reference])] if stage.reference else []
     return Part("scaling", "Physical and dimensionless", tables=(table,), notes=tuple(notes))
+
+
+def film_damping(stage: FilmDamping, _: xr.Dataset) -> Part:
+    """Damping of the films, at which frequency, and what else damps."""
+    rows = (
+        ("damping ratio of the films", number(stage.damping_ratio), f"± {percent(stage.error)}"),
+        ("damping of the mesh by them [N s/m]", number(stage.damping), f"± {percent(stage.error)}"),
+        ("mean tangent stiffness, change by them [%]", number(100.0 * stage.stiffness_change), ""),
+        ("natural frequency, at which they answer [Hz]", number(stage.natural_frequency / (2.0 * np.pi)), ""),
+    )
+    notes = (said("film_damping"), f"{stage.message[:1].upper()}{stage.message[1:]}.")
+    return Part(
+        "film-damping",
+        "Damping by the films",
+        tables=(Table(("quantity", "value", "error"), rows),),
+        notes=notes,
+    )
 
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from base import Limit
 from dynamics.limits import OSCILLATOR as LIMITS
 from flankfilm.scene.error_curve import AMPLITUDE_UM, PHASE_DEG, ErrorCurveSection, harmonics
-from flankfilm.scene.key import key
+from flankfilm.scene.key import key, within
 from flankfilm.scene.section import Limits, Section, refused
 
 Positive = Annotated[float, Field(gt=0)]
@@ -36,6 +36,11 @@ OSCILLATOR = (
 
 _NUMBER = Limit(0.0, 1e6)
 """Of a dimensionless quantity, to catch a number with a unit."""
+
+_DAMPING = replace(LIMITS["damping_ratio"], high=5.0)
+
+BY_FILM = "film"
+"""Damping ratio that is the films'."""
 
 _INERTIA = Limit(0.0, 1e9, "kg m2")
 
@@ -96,7 +101,6 @@ class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
     ground: ClassVar[Limits] = {
-        "damping_ratio": replace(LIMITS["damping_ratio"], high=5.0),
         "length_scale": Limit.above(0.0, 1.0, "m"),
         "mean_force": _NUMBER,
         "half_backlash": _NUMBER,
@@ -114,7 +118,11 @@ class DynamicsSection(Section):
         None,
         such_as="bore",
     )
-    damping_ratio: float = key("damping of the mesh over the critical one", 0.05, shown=True)
+    damping_ratio: Annotated[float, within(_DAMPING)] | Literal["film"] = key(
+        'damping of the mesh over the critical one, or "film": what its oil films damp, and nothing else',
+        0.05,
+        shown=True,
+    )
     error_amplitude_um: Annotated[tuple[float, ...], harmonics(AMPLITUDE_UM)] | None = key(
         "unloaded transmission error, its first harmonic or a list of harmonics; the deflection is in the stiffness; 0 "
         "if left out",
@@ -167,6 +175,11 @@ class DynamicsSection(Section):
     portraits_frequency: Several = key(
         "mesh frequencies of phase portraits, of the dimensionless form", (), such_as=(0.6,), max_length=12
     )
+
+    @property
+    def known_damping(self) -> float:
+        """Damping ratio before anything is computed: 0 for that of films, too small to decide steps of time."""
+        return 0.0 if isinstance(self.damping_ratio, str) else self.damping_ratio
 
     @property
     def dimensionless(self) -> bool:

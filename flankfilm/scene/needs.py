@@ -68,6 +68,8 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
     if (geared or meshed) and not listed <= {"geometry", "report"}:
         yield from ((name, f"wants = [{_quoted(listed)}]") for name in ("material", "operating"))
     model = film.get("model", "auto")
+    if moving and _table(raw, "dynamics").get("damping_ratio") == "film":
+        yield "lubricant", "the damping of films"
     if "film" in listed or "losses" in listed:
         yield "lubricant", "the film" if "film" in listed else "the wanted losses"
     elif film and model not in ("none", "auto"):
@@ -83,7 +85,8 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     """Keys of sections that are there, needed by what is wanted."""
     operating, dynamics, stiffness = (_table(raw, n) for n in ("operating", "dynamics", "stiffness"))
     chosen = "film" in raw and _table(raw, "film").get("model", "auto") != "none"
-    lubricated = listed & {"film", "losses"} or ("lubricant" in raw and chosen)
+    damped = bool(listed & set(MOTIONS)) and dynamics.get("damping_ratio") == "film"
+    lubricated = listed & {"film", "losses"} or damped or ("lubricant" in raw and chosen)
     if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
         yield _required("operating.pinion_speed_rpm", "the film", "Give the pinion's speed")
     if (hot := _heated(raw, listed)) and "lubricant" in raw and not _known_temperature(raw):
@@ -123,6 +126,8 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     if (hot := _heated(raw, listed)) and film.get("supply", "flooded") != "flooded":
         remedy = 'Take supply = "flooded", or leave it out'
         yield Fault("film.supply", shorten(film["supply"]), f"excludes {hot}, of flooded films", remedy)
+    if listed & set(MOTIONS) and _table(raw, "dynamics").get("damping_ratio") == "film":
+        yield from _without_damping(raw)
     if "centre_distance_mm" in pair and "backlash_um" in pair:
         value = shorten(pair["backlash_um"])
         yield Fault("pair.backlash_um", value, "follows from centre_distance_mm", "Give one of them")
@@ -134,6 +139,27 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
         elif pairs != "coupled":
             remedy = "Independent pairs have no common field, nor one contact; or drop it"
             yield Fault("stiffness.pairs", shorten(pairs), f'must be "coupled" for {asked}', remedy)
+
+
+def _without_damping(raw: Raw) -> Iterator[Fault]:
+    """Models whose films have no damping, where the motion is damped by them."""
+    film = _table(raw, "film")
+    number = "or give damping_ratio a number"
+    if "mean_force" in _table(raw, "dynamics"):
+        allowed = "is of a pair's films, which the dimensionless form does not have"
+        yield Fault("dynamics.damping_ratio", "'film'", allowed, "Give a number")
+    elif _table(raw, "stiffness").get("model") == "given":
+        allowed = "has no load share, which the damping of films needs"
+        yield Fault("stiffness.model", "'given'", allowed, f'Take "fem" or a closed form, {number}')
+    if film.get("model") in ("none", "dowson"):
+        allowed = "gives no films that answer an oscillation, which damping_ratio asks for"
+        yield Fault("film.model", shorten(film["model"]), allowed, f'Take "ehl" or "auto", {number}')
+    if "roughness" in raw:
+        allowed = "excludes the damping of films: that of asperities is not known"
+        yield Fault("[roughness]", "", allowed, f"Drop it, {number}")
+    if film.get("supply") == "oil-layer":
+        allowed = "excludes the damping of films: behind a layer the meniscus moves and stores oil"
+        yield Fault("film.supply", "'oil-layer'", allowed, f'Take "flooded" or "meniscus", {number}')
 
 
 def _heated(raw: Raw, listed: set[str]) -> str:

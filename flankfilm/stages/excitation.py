@@ -9,13 +9,14 @@ from flankfilm.build import pinion_torque, tip_roundings
 from flankfilm.build_flanks import deviations
 from flankfilm.scene.section import required
 from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.ranges import deflection, frequency_range
 
 KEYS = "operating dynamics pair material heat stiffness.contact_beyond_path tolerance"
 
 
-@stage("excitation", "unloaded transmission error", f"{KEYS} wants", PAIR, MESH)
+@stage("excitation", "unloaded transmission error", f"{KEYS} wants", PAIR, MESH, FILM_DAMPING)
 def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
     """Harmonics of the scene's curve of the error; None where it gives harmonics."""
     scene = run.scene
@@ -29,7 +30,7 @@ def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
         "share": scene.tolerance,
         "deflection": 0.0 if given else deflection(run, section),
         "bounds": None if given else frequency_range(run, section),
-        "damping_ratio": section.damping_ratio,
+        "damping_ratio": damping_ratio(run),
     }
     if curve != "unloaded":
         about = "curve of the scene" if curve.file is None else f"curve of {curve.file}"

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from flankfilm.scene import Scene, needs
+from flankfilm.scene.dynamics import BY_FILM
 from flankfilm.stages import catalogue as of
 from flankfilm.stages import losses, motion
+from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
 
@@ -38,7 +40,11 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "root-stress" in wants:
         yield of.ROOT_STRESS
     if wants & {"fourier", *needs.MOTIONS}:
+        if "report" in wants and not given and scene.pair is not None:
+            yield of.DRY_CYCLE  # a film from the cache asks for none, and stands beside it in the report
         yield motion.FOURIER
+    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM and wants & {*needs.MOTIONS}:
+        yield FILM_DAMPING
     if scene.dynamics is not None and scene.dynamics.error_curve is not None and wants & {*needs.MOTIONS}:
         yield EXCITATION
     for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM):

@@ -17,6 +17,7 @@ from flankfilm.scene.operating import GIVEN
 from flankfilm.scene.section import required
 from flankfilm.slow_motion import followed_speed
 from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
+from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
 from flankfilm.stages.ranges import frequency_range, moving_mesh
@@ -27,6 +28,7 @@ from flankfilm.stages.ranges import frequency_range, moving_mesh
     "Fourier stiffness by its curve",
     "stiffness dynamics",
     MESH,
+    FILM_DAMPING,
     settings=decided(lambda plan: {"series": plan.series}),
 )
 def CURVE_SERIES(run: Engine) -> coupling.MeshSeries:
@@ -44,7 +46,7 @@ def _series(run: Engine) -> coupling.MeshSeries:
     order = None if section.fourier_order == "auto" else section.fourier_order
     share, bounds = run[PLAN].series or scene.tolerance, frequency_range(run, section)
     mesh = moving_mesh(run)
-    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, section.damping_ratio)
+    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, damping_ratio(run))
 
 
 @stage(
@@ -53,6 +55,7 @@ def _series(run: Engine) -> coupling.MeshSeries:
     "operating dynamics pair material heat wants",
     CURVE_SERIES,
     EXCITATION,
+    FILM_DAMPING,
     kept="dynamics flankfilm gears",
     settings=lambda run: {"tolerance": run.scene.tolerance} if _by_jumps(run) else {},
 )
@@ -71,6 +74,7 @@ def BRANCHES(run: Engine) -> coupling.OrderedJumps:
     MESH,
     CURVE_SERIES,
     BRANCHES,
+    FILM_DAMPING,
     settings=decided(lambda plan: {"series": plan.series}),
 )
 def FOURIER(run: Engine) -> coupling.MeshSeries:
@@ -92,7 +96,14 @@ def _by_jumps(run: Engine) -> bool:
     return section.fourier_order == "auto" and "diagram" in scene.wants
 
 
-@stage("scaling", "physical to dimensionless", "operating dynamics pair material heat", FOURIER, EXCITATION)
+@stage(
+    "scaling",
+    "physical to dimensionless",
+    "operating dynamics pair material heat",
+    FOURIER,
+    EXCITATION,
+    FILM_DAMPING,
+)
 def SCALING(run: Engine) -> coupling.PairOscillator:
     """Oscillator of the scene at its speed, or at the start of the sweep."""
     return _oscillator(run, run[FOURIER])
@@ -102,6 +113,7 @@ def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscill
     """Oscillator of the scene with a series of its stiffness."""
     section = _dynamics(run)
     ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
+    given["damping_ratio"] = damping_ratio(run)
     if given["error_phase"] == (0.0,):
         given["error_phase"] = 0.0  # of all harmonics
     if section.dimensionless:

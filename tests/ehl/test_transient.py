@@ -71,6 +71,7 @@ def test_speed_and_radius_may_change_too():
     assert film.central[-1] == pytest.approx(new.central_thickness, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_steps_of_time_are_of_second_order():
     times = np.linspace(0.0, 3.0, 4) * UNIT
     found = [

@@ -1,0 +1,76 @@
+"""The stage of the damping ratio: as the scene gives it, or of its films."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from base import InputError
+from flankfilm import coupling
+from flankfilm.build import pinion_speed, pinion_torque
+from flankfilm.build_film import film_model, lubricant
+from flankfilm.scene.dynamics import BY_FILM
+from flankfilm.scene.ground import under_keys
+from flankfilm.scene.section import required
+from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.stages.engine import Engine, stage
+
+_SECTIONS = ("film", "lubricant", "operating", "heat")
+
+
+def _asked(run: Engine) -> Mapping[str, Any]:
+    """Keys that decide the films' damping, where it is asked for."""
+    scene, section = run.scene, run.scene.dynamics
+    if section is None or section.damping_ratio != BY_FILM:
+        return {}
+    each = {name: getattr(scene, name) for name in _SECTIONS}
+    given = {name: one.model_dump() for name, one in each.items() if one is not None}
+    own = section.extra_inertia_kg_m2.each, section.stiffness_reference
+    return {**given, "dynamics": own, "tolerance": scene.tolerance}
+
+
+@stage(
+    "film damping",
+    "damping of the films",
+    "",
+    PAIR,
+    MESH,
+    kept="gears meshes fem ehl flankfilm",
+    settings=_asked,
+)
+def FILM_DAMPING(run: Engine) -> coupling.FilmDamping | None:
+    """What the films damp at the natural frequency of the pair; None where the scene gives a number."""
+    scene = run.scene
+    section = required(scene.dynamics, "[dynamics]", "the motion")
+    if section.damping_ratio != BY_FILM:
+        return None
+    with under_keys(scene.film, "film"):
+        found = coupling.film_damping(
+            run[MESH],
+            run[PAIR],
+            pinion_torque(scene),
+            pinion_speed(scene),
+            lubricant(scene),
+            film=film_model(scene, "ehl"),
+            extra_inertia=section.extra_inertia_kg_m2.each,
+            reference=section.stiffness_reference or "body",
+            tolerance=scene.tolerance,
+        )
+    if found.damping_ratio <= 0.0 or found.error >= 1.0:
+        off = abs(found.damping_ratio) * found.error
+        allowed = (
+            f"gives {found.damping_ratio:.2g} ± {off:.2g} at the natural frequency: loaded so, the films damp as good "
+            "as nothing"
+        )
+        raise InputError.at("dynamics.damping_ratio", f'"{BY_FILM}"', allowed, "give a number, such as 0.05")
+    return found
+
+
+def damping_ratio(run: Engine) -> float:
+    """Damping ratio of the motion."""
+    given = required(run.scene.dynamics, "[dynamics]", "the motion").damping_ratio
+    if not isinstance(given, str):
+        return given
+    found = run[FILM_DAMPING]
+    assert found is not None
+    return found.damping_ratio

@@ -1,0 +1,117 @@
+"""Scenes whose motion is damped by the films: the number, its error, what else damps, refusals with remedies."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+import ehl
+from base import InputError
+from flankfilm.cache import Cache
+from flankfilm.coupling import film_damping
+from flankfilm.running import run_scene
+from flankfilm.scene import parse_scene
+from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.stages.damping import FILM_DAMPING
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.motion import SCALING
+
+SCENE = """
+wants = ["spectrum", "report"]
+tolerance = 0.02
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+backlash_um = 50
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 20
+pinion_speed_rpm = 2000
+[stiffness]
+model = "ishikawa"
+[lubricant]
+viscosity_Pa_s = 0.075
+pressure_viscosity_per_GPa = 19.6
+[film]
+model = "ehl"
+[dynamics]
+damping_ratio = "film"
+error_amplitude_um = 5
+"""
+OIL = ehl.Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9)
+
+
+@pytest.fixture(scope="module")
+def engine() -> Engine:
+    return Engine(parse_scene(SCENE), Cache(None))
+
+
+def test_the_motion_has_the_films_damping(engine):
+    found = engine[FILM_DAMPING]
+    again = film_damping(engine[MESH], engine[PAIR], 20.0, 2000 * math.pi / 30, OIL, tolerance=0.02)
+    assert found is not None
+    assert found.damping_ratio == pytest.approx(again.damping_ratio, rel=1e-6)
+    assert 0.01 < found.damping_ratio < 0.3
+    motion = engine[SCALING]
+    assert motion.oscillator.damping_ratio == found.damping_ratio
+    assert motion.scales is not None
+    assert motion.scales.omega_n == pytest.approx(
+        found.natural_frequency, rel=0.01
+    )  # by a series of one harmonic
+
+
+@pytest.mark.slow
+def test_results_and_report_say_so_and_what_else_damps(tmp_path):
+    run_scene(parse_scene(SCENE), tmp_path / "first")
+    results = run_scene(parse_scene(SCENE), tmp_path)  # its film from the cache, without the dry cycle
+    ratio = results.dataset["damping_ratio"]
+    assert float(ratio) == pytest.approx(results.values["scaling"].oscillator.damping_ratio)
+    assert 0.0 < ratio.attrs["error"] < 1.0
+    page = (tmp_path / "report.html").read_text()
+    text = re.sub(r"\s+", " ", page)
+    assert "Damping by the films" in text
+    assert "What else damps is not known and not counted" in text
+
+
+@pytest.mark.slow
+def test_films_that_damp_nothing_are_refused_with_a_remedy():
+    heavy = Engine(parse_scene(SCENE.replace("_Nm = 20", "_Nm = 300")), Cache(None))
+    with pytest.raises(InputError, match=r"as good as nothing. Give a number"):
+        _ = heavy[SCALING]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ('[film]\nmodel = "ehl"', '[film]\nmodel = "dowson"', "film.model"),
+        ('[film]\nmodel = "ehl"', '[film]\nmodel = "none"', "film.model"),
+        ('model = "ehl"', 'model = "ehl"\nsupply = "oil-layer"\noil_layer_um = 0.2', "film.supply"),
+        ("pinion_speed_rpm = 2000", "", "operating.pinion_speed_rpm"),
+        (
+            '"film"\nerror_amplitude_um = 5',
+            '"film"\nmean_force = 0.1\nhalf_backlash = 0.1\nerror_amplitude = 0.1',
+            "damping_ratio",
+        ),
+        ('damping_ratio = "film"', 'damping_ratio = "oil"', "damping_ratio"),
+        ('damping_ratio = "film"', "damping_ratio = 6.0", "damping_ratio"),
+    ],
+)
+def test_scenes_without_films_that_damp_are_refused(old, new, where):
+    assert old in SCENE
+    with pytest.raises(InputError, match=where):
+        parse_scene(SCENE.replace(old, new))
+
+
+def test_a_number_asks_for_no_film():
+    scene = parse_scene(
+        SCENE.replace('"film"\nerror', "0.07\nerror").replace('model = "ehl"', 'model = "none"')
+    )
+    engine = Engine(scene, Cache(None))
+    assert engine[FILM_DAMPING] is None
+    assert engine[SCALING].oscillator.damping_ratio == 0.07
