@@ -16,6 +16,9 @@ from flankfilm.coupling.films import contacts_of
 
 T = TypeVar("T")
 
+LOOSER = 5.0
+"""Times the tolerance that a single film may err by where it has no better solution; its own error says so."""
+
 
 @dataclass(frozen=True)
 class HeatedOil:
@@ -183,13 +186,33 @@ def _film(
     near: ehl.ThermalFilm | None,
     rho1: float,
 ) -> ehl.ThermalFilm:
-    """Solve a film from its neighbour, from nothing where that fails."""
-    found = ehl.solve_thermal(contact, oil.solids, bulk, oil.tolerance, start=near)
-    if not found.converged and near is not None:
-        found = ehl.solve_thermal(contact, oil.solids, bulk, oil.tolerance)
+    """Solve a film from its neighbour; where that fails from nothing, less sharply, or by way of one half as far."""
+    starts = (None,) if near is None else (near, None)
+    for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
+        for start in starts:
+            found = ehl.solve_thermal(contact, oil.solids, bulk, tolerance, start=start)
+            if found.converged:
+                return found
+    if near is not None:
+        half = ehl.solve_thermal(
+            _halfway(near.contact, contact), oil.solids, bulk, LOOSER * oil.tolerance, start=near
+        )
+        if half.converged:
+            found = ehl.solve_thermal(contact, oil.solids, bulk, LOOSER * oil.tolerance, start=half)
     if not found.converged:
         raise _none_at(rho1, found.message)
     return found
+
+
+def _halfway(one: ehl.LineContact, other: ehl.LineContact) -> ehl.LineContact:
+    """Contact between two, with the oil of the second."""
+    return replace(
+        other,
+        load=float(np.sqrt(one.load * other.load)),
+        entrainment=0.5 * (one.entrainment + other.entrainment),
+        radius=0.5 * (one.radius + other.radius),
+        sliding=0.5 * (one.sliding + other.sliding),
+    )
 
 
 def _none_at(rho1: float, why: str) -> SolverError:
