@@ -37,7 +37,9 @@ FIRST_FRICTION = 0.03
 
 MOST_ROUNDS = 12
 
-WARMER = 0.5
+MORE = "more positions, or a smaller tolerance of the films, lower it"
+
+WARMER = 0.2
 """Change of bulk temperatures that is left where they are balanced [K]."""
 
 
@@ -175,6 +177,7 @@ class _Run:
         left_out = abs(sampled.mesh_loss / means.mesh_loss - 1.0) if means.mesh_loss else 0.0
         lost = path.sliding_loss
         by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
+        error = float(by_films) + left_out + agreed.shares
         return MeshLosses(
             cycle=agreed.cycle,
             path=path,
@@ -193,7 +196,8 @@ class _Run:
             rounds=first.rounds + agreed.rounds,
             share_mismatch=agreed.shares,
             temperature_mismatch=agreed.warmer,
-            error=float(by_films) + left_out + agreed.shares,
+            error=error,
+            message=f"errs by {error:.1e}: {MORE}" if error > self.oil.tolerance else "",
             cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
         )
 

@@ -58,8 +58,8 @@ def article() -> None:
             print(
                 f"  {name}: oil {path.oil_temperature_rise[at]:.1f} K, flanks "
                 f"{path.surface_temperature_rise[:, at].round(1)} K, Blok {path.flash_temperature[at]:.1f} K, "
-                f"least film {1e6 * path.minimum_thickness[at]:.3f} um, mu {path.friction_coefficient[at]:.4f}, closure "
-                f"{100 * path.closure[at]:.1f} %"
+                f"least film {1e6 * path.minimum_thickness[at]:.3f} um, mu {path.friction_coefficient[at]:.4f}, "
+                f"closure {100 * path.closure[at]:.1f} %"
             )
 
 
