@@ -186,10 +186,10 @@ def _film(
     near: ehl.ThermalFilm | None,
     rho1: float,
 ) -> ehl.ThermalFilm:
-    """Solve a film from its neighbour; where that fails from nothing, less sharply, or by way of one half as far."""
+    """Solve a film from its neighbour; where that fails less sharply, from nothing, or by way of one half as far."""
     starts = (None,) if near is None else (near, None)
-    for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
-        for start in starts:
+    for start in starts:
+        for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
             found = ehl.solve_thermal(contact, oil.solids, bulk, tolerance, start=start)
             if found.converged:
                 return found

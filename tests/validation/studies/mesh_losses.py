@@ -33,8 +33,8 @@ HELD = Flanks(beyond_path=False)
 ROUGHNESS = 0.4e-6
 RELIEF_LENGTHS = (2e-3, 3e-3, 4e-3, 5e-3)
 FZG_TORQUES = (13.0, 61.0, 94.0, 135.0, 183.0, 239.0, 302.0)
-SPEEDS = (500.0, 1000.0, 2000.0, 4000.0, 8000.0)
-TORQUES = (60.0, 150.0, 300.0, 600.0)
+SPEEDS = (250.0, 500.0, 1000.0, 2000.0, 3000.0, 4000.0, 6000.0)
+TORQUES = (30.0, 60.0, 100.0, 150.0, 300.0, 600.0, 900.0)
 
 
 def losses(stress: float, **options) -> MeshLosses:
