@@ -31,6 +31,9 @@ from .results import part as part
 from .results import quantities as quantities
 from .results import quantity as quantity
 from .results import record as record
+from .threads import cores as cores
+from .threads import in_blocks as in_blocks
+from .threads import side_by_side as side_by_side
 from .views import has_picture as has_picture
 from .views import plot as plot
 from .views import show_with as show_with

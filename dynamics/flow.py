@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, Integers, Stopwatch
+from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
 from dynamics.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, exact_only, lost_motion
@@ -127,7 +127,10 @@ class Tables(Flow):
         """Follow starts until they stay near known attractors."""
         from dynamics.kernels.searching import settle
 
-        return int(settle(self.arrays, starts, homes, radius, limit, labels))
+        def some(first: int, last: int) -> int:
+            return int(settle(self.arrays, starts[first:last], homes, radius, limit, labels[first:last]))
+
+        return in_blocks(len(starts), some, int(np.count_nonzero(labels == -1)))
 
 
 def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Cost, Integers, Stopwatch
+from base import Array, Cost, Integers, Stopwatch, in_blocks
 from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import REASONS
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, lost_motion
@@ -152,7 +152,11 @@ class DriveFlow(Flow):
         places = np.hstack([osc.lowered(homes[:, :n], np.zeros(len(homes))), homes[:, n:]])
         # so near in the coordinates of the flow that states are as near as asked
         near = radius / float(np.max(np.sum(np.abs(osc.coordinates.up), axis=1)))
-        used = int(settle(self.arrays, moved, places, near, limit, labels))
+
+        def some(first: int, last: int) -> int:
+            return int(settle(self.arrays, moved[first:last], places, near, limit, labels[first:last]))
+
+        used = in_blocks(len(moved), some, int(np.count_nonzero(labels == -1)))
         starts[:] = osc.lifted(moved, np.zeros(len(moved)))
         return used
 
