@@ -48,7 +48,7 @@ class DriveFlow(Flow):
 
     def finer(self) -> DriveFlow:
         """Tables with half the cell."""
-        return tabulated(self.oscillator, 2 * self.cells)
+        return tabulated(self.oscillator, 2 * self.cells, self.arrays[3].shape[2] - 1)
 
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the Jacobian covers the periods skipped, too."""
@@ -166,7 +166,7 @@ def drive_flow(oscillator: DriveOscillator) -> DriveFlow:
     return tabulated(oscillator, math.ceil(oscillator.cells))
 
 
-def tabulated(oscillator: DriveOscillator, cells: int) -> DriveFlow:
+def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> DriveFlow:
     """Tables of a drive train, with so many cells per period."""
     from dynamics.kernels.drives.expanding import tabulate
 
@@ -184,7 +184,7 @@ def tabulated(oscillator: DriveOscillator, cells: int) -> DriveFlow:
     own = np.zeros(9)
     own[2], own[4], own[6] = oscillator.load[0], oscillator.frequency, oscillator.half_backlash
     own[7] = 1.0 if oscillator.one_sided else 2.0
-    tables = tabulate(mesh, oscillator.error_series, cells, DEGREE, systems, load)
+    tables = tabulate(mesh, oscillator.error_series, cells, degree, systems, load)
     return DriveFlow(oscillator, (own, systems, load, *tables))
 
 

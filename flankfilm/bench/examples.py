@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from dynamics import GearOscillator
+    from dynamics import DriveOscillator, GearOscillator
     from ehl import LineContact
     from gears import GearPair
 
@@ -55,3 +55,23 @@ def oscillator(frequency: float = 0.6) -> GearOscillator:
     from dynamics import FourierStiffness, GearOscillator
 
     return GearOscillator(FourierStiffness(1.0, (0.2,), (0.0,)), 0.05, 0.1, 0.2, frequency, half_backlash=0.2)
+
+
+def drive_train() -> DriveOscillator:
+    """Motor, pinion, wheel and load on soft shafts, that leave and meet the flanks in every period."""
+    from dynamics import DriveOscillator, FourierStiffness
+
+    mass = np.diag([2.0, 0.9, 1.3, 3.0])
+    stiffness = np.array([[0.85, -0.8, 0, 0], [-0.8, 0.8, 0, 0], [0, 0, 0.6, -0.6], [0, 0, -0.6, 0.7]])
+    return DriveOscillator(
+        mass=mass,
+        damping=0.02 * mass + 0.03 * stiffness,
+        stiffness=stiffness,
+        direction=[0.0, 1.0, 1.0, 0.0],
+        mesh_stiffness=FourierStiffness(1.0, (0.2,), (0.0,)),
+        mesh_damping=0.03,
+        mean_force=[0.1, 0.0, 0.0, 0.12],
+        error_amplitude=0.4,
+        frequency=0.9,
+        half_backlash=0.15,
+    )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Levels, PeerWork, Series, answer, case, level, over, value
-from flankfilm.bench.examples import PERIODS, START, oscillator
+from flankfilm.bench.examples import PERIODS, START, drive_train, oscillator
 from flankfilm.bench.stepwise_cases import stepwise
 from flankfilm.bench.work_cases import work_motion
 
@@ -24,7 +25,7 @@ STATE = "state"
 
 def motions(quick: bool) -> tuple[Case, ...]:
     """All cases of the motion."""
-    few = (motion_flow(quick), motion_orbit(quick))
+    few = (motion_flow(quick), motion_drive(quick), motion_orbit(quick))
     if quick:
         return few
     return (*few, motion_branch(), motion_sweep(), motion_exponents(), *stepwise(), work_motion())
@@ -73,6 +74,47 @@ def motion_flow(quick: bool) -> Levels:
         tuple(over(degrees, label, follow, state, r, name=words) for r, words in refinements.items()),
         level("degree 30, a quarter of the cells", follow, state, 4, 30),
         peers=tuple(PeerWork(f"{peer}_motion", given, STATE) for peer in ("scipy", "heyoka", "dop853")),
+    )
+
+
+@case("Drive train of four freedoms", "degree of the Taylor polynomials")
+def motion_drive(quick: bool) -> Levels:
+    """Exact flow in four freedoms by the degree of its polynomials.
+
+    Time of {MANY} excitation periods with all impacts, states alone, tables at hand; error of the state after {PERIODS}
+    periods, over its largest component. Motor, pinion, wheel and load, omega 0.9, D 0.15. The estimate is the change
+    with half the cells, as the sweep has it.
+    """
+    from dynamics.drives.flow import DriveFlow, tabulated
+
+    osc = drive_train()
+    start, cells = osc.rest_state() + 0.3, math.ceil(osc.cells)
+    degrees = (8, 12, 16) if quick else (6, 8, 10, 12, 14, 16)
+
+    def follow(flow: DriveFlow, degree: int) -> tuple[DriveFlow, int]:
+        flow.follow(start, MANY, derivatives=False)
+        return flow, degree
+
+    def state(resolution: tuple[DriveFlow, int]) -> Answer:
+        flow, degree = resolution
+        finer = tabulated(osc, 2 * flow.cells, degree)
+        found, halved = (one.follow(start, PERIODS, derivatives=False).state for one in (flow, finer))
+        estimate = float(np.max(np.abs(found - halved)) / np.max(np.abs(halved)))
+        return Answer(degree, {STATE: value(found, estimate, over_largest=True)})
+
+    levels = (level(f"degree {d}", follow, state, tabulated(osc, cells, d), d) for d in degrees)
+    names = ("mass", "damping", "stiffness", "direction", "mean_force")
+    given = {
+        **{name: np.asarray(getattr(osc, name)).tolist() for name in names},
+        "mesh": [0.2, osc.mesh_damping, osc.error_amplitude, osc.frequency, osc.half_backlash],
+        "start": start.tolist(),
+        "periods": PERIODS,
+        "timed_periods": MANY,
+    }
+    return Levels(
+        (Series("exact flow", tuple(levels)),),
+        level("degree 24, a quarter of the cells", follow, state, tabulated(osc, 4 * cells, 24), 24),
+        peers=(PeerWork("dop853_drive", given, STATE),),
     )
 
 
