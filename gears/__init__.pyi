@@ -37,3 +37,6 @@ from .polygon import outline as outline
 from .profile import ToothProfile as ToothProfile
 from .rack import ISO_53_A as ISO_53_A
 from .rack import BasicRack as BasicRack
+from .shafts import Bearing as Bearing
+from .shafts import Shaft as Shaft
+from .shafts import ShaftSegment as ShaftSegment
