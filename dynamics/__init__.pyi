@@ -13,6 +13,8 @@ from .crises import boundary_crises as boundary_crises
 from .crises import boundary_crisis as boundary_crisis
 from .diagrams import Diagram as Diagram
 from .diagrams import diagram as diagram
+from .drives.damping import modal_damping as modal_damping
+from .drives.damping import rayleigh_damping as rayleigh_damping
 from .drives.oscillator import DriveOscillator as DriveOscillator
 from .edges import edge_saddles as edge_saddles
 from .escapes import ChaosEnd as ChaosEnd

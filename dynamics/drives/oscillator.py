@@ -114,10 +114,7 @@ class DriveOscillator(Oscillator):
             n = len(values["direction"])
             for name in (*MATRICES, "mean_force"):
                 values[name] = _array(faults, name, getattr(self, name), (n,) if name in VECTORS else (n, n))
-            if not np.array_equal(values["mass"], values["mass"].T):
-                faults.add(
-                    "mass", values["mass"].tolist(), "must be symmetric", "take the mean with its transpose"
-                )
+            values["mass"] = _symmetric(faults, values["mass"])
             check_stiffness(faults, self.mesh_stiffness, "mesh_stiffness")
             for name in ("frequency", "half_backlash"):
                 values[name] = faults.number(name, getattr(self, name), OSCILLATOR[name])
@@ -299,3 +296,12 @@ def _array(faults: Faults, name: str, given: npt.ArrayLike, shape: tuple[int, ..
         values = np.zeros(shape or (1,))
     values.flags.writeable = False
     return values
+
+
+def _symmetric(faults: Faults, mass: Array) -> Array:
+    """The mass without the rounding of its two halves; a fault is noted where they differ by more."""
+    if np.max(np.abs(mass - mass.T)) > 1e-12 * np.max(np.abs(mass)):
+        faults.add("mass", mass.tolist(), "must be symmetric", "take the mean with its transpose")
+    halves = np.asarray(0.5 * (mass + mass.T))
+    halves.flags.writeable = False
+    return halves

@@ -1,5 +1,10 @@
 from .along_path import FilmAlongPath as FilmAlongPath
 from .cycle import MeshCycle as MeshCycle
+from .drive import DriveOutput as DriveOutput
+from .drive import PairDrive as PairDrive
+from .drive import pair_drive as pair_drive
+from .drive_sweep import DriveSweep as DriveSweep
+from .drive_sweep import drive_sweep as drive_sweep
 from .excitation import ErrorSeries as ErrorSeries
 from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error

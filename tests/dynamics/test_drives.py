@@ -352,3 +352,30 @@ def test_basins_on_a_plane_of_choice():
         dynamics.basins(drive, x=(-1, 1, 2), v=(-1, 1, 2), plane=np.ones((2, 8)))
     with pytest.raises(InputError, match="must be 8 finite numbers, 4 displacements"):
         find_orbit(drive, (0.1, 0.2))
+
+
+def test_modal_damping_gives_each_mode_its_ratio():
+    """Eigenvalues of the damped system lie at -zeta omega; a free train keeps its free rotation."""
+    mass = np.diag([1.0, 2.0, 3.0])
+    stiff = np.array([[2.0, -2.0, 0.0], [-2.0, 5.0, -3.0], [0.0, -3.0, 3.0]])
+    damping = dynamics.modal_damping(mass, stiff, (0.02, 0.05))
+    assert damping @ np.ones(3) == pytest.approx(np.zeros(3), abs=1e-14)
+    inverse = np.linalg.inv(mass)
+    system = np.block([[np.zeros((3, 3)), np.eye(3)], [-inverse @ stiff, -inverse @ damping]])
+    values = [v for v in np.linalg.eigvals(system) if v.imag > 1e-3]
+    values.sort(key=abs)
+    assert [-v.real / abs(v) for v in values] == pytest.approx([0.02, 0.05], abs=1e-12)
+    with pytest.raises(InputError, match="must be one, or 2"):
+        dynamics.modal_damping(mass, stiff, (0.1, 0.1, 0.1))
+    with pytest.raises(InputError, match="must be symmetric"):
+        dynamics.modal_damping(mass, stiff + np.triu(stiff), 0.1)
+
+
+def test_rayleigh_damping_by_frequency():
+    """A mode of frequency omega has alpha / (2 omega) + beta omega / 2."""
+    damping = dynamics.rayleigh_damping([[2.0]], [[18.0]], of_mass=0.12, of_stiffness=0.02)
+    assert damping[0, 0] / (2.0 * np.sqrt(2.0 * 18.0)) == pytest.approx(
+        0.12 / 6.0 + 0.02 * 3.0 / 2.0, rel=1e-14
+    )
+    with pytest.raises(InputError, match="of_stiffness"):
+        dynamics.rayleigh_damping([[2.0]], [[18.0]], of_stiffness=-1.0)
