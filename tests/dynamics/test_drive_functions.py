@@ -31,6 +31,7 @@ REFUSED = {
     "basin_boundary": ((), ((0.0, 1.0), (0.0, 1.0))),
     "boundary_crisis": ("frequency", (0.8, 0.9)),
     "carried_point": ("frequency", None, "mean_force", 0.1),
+    "chaos_end": ("frequency", (0.1, 0.2), (0.5, 0.6)),
     "contact_grazing": (),
     "continue_locus": (None, ("frequency", "mean_force")),
     "diagram": (),
