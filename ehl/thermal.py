@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from ehl.contact import LineContact
 from ehl.film import Film, FilmErrors, unsolved
 from ehl.heated import Heated
 from ehl.levels import figures
-from ehl.options import warn_of_range
+from ehl.options import Options, warn_of_range
+from ehl.supply import Meniscus, OilLayer, Supply
 from ehl.thermal_search import Compared, Search
 
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
@@ -84,8 +86,9 @@ def solve_thermal(
     tolerance: float = 0.01,
     nodes: int | None = None,
     start: ThermalFilm | None = None,
+    supply: Supply | None = None,
 ) -> ThermalFilm:
-    """Solve the steady flooded line contact with shear thinning, and heat in oil and bodies.
+    """Solve the steady line contact with shear thinning, and heat in oil and bodies.
 
     Generalised Reynolds' equation with a viscosity that varies across the film, Eyring's shear in closed form, the
     energy equation across and along the film, and both surfaces as half-spaces under a moving source are solved
@@ -106,7 +109,10 @@ def solve_thermal(
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     start : ThermalFilm, optional
-        A film of a similar contact to start from.
+        A flooded film of a similar contact to start from.
+    supply : Meniscus or OilLayer, optional
+        How oil comes to the contact, as for :func:`ehl.solve`; flooded if not given. A layer keeps its thickness: the
+        meniscus moves until the warm film carries away what it brings.
 
     Returns
     -------
@@ -138,16 +144,21 @@ def solve_thermal(
     (True, '0.030')
     """
     bulk = _checked(contact, solids, bulk_temperatures, tolerance)
+    Options(tolerance, nodes, supply=supply).checked(contact)
     with unclocked():
         import ehl.heat_kernels
         import ehl.shear_kernels  # noqa: F401  numba
     warn_of_range(contact)
     watch = Stopwatch()
-    search = Search(contact, solids, bulk, tolerance)
+    search = Search(contact, solids, bulk, tolerance, supply if isinstance(supply, Meniscus) else None)
     found = None
-    if start is not None and start.state is not None and start.oils is not None:
+    if search.supply is None and start is not None and start.state is not None and start.oils is not None:
         found = search.from_neighbour(start.state, start.oils, nodes)
     if found is None:
+        found = search.from_nothing(nodes)
+    layer = supply.thickness if isinstance(supply, OilLayer) else math.inf
+    if found is not None and layer < found.fine.flow * (1.0 - found.error):
+        search.supply = supply
         found = search.from_nothing(nodes)
     if found is not None and found.oil.temperature.max() > _HOTTEST:
         hottest = found.oil.temperature.max()
@@ -155,7 +166,7 @@ def solve_thermal(
     if found is None:
         return _failed(search, watch)
     _warn_of_range(found)
-    return _film(search, found, watch)
+    return replace(_film(search, found, watch), supply=supply)
 
 
 def _warn_of_range(found: Compared) -> None:

@@ -13,11 +13,13 @@ from ehl.contact import LineContact
 from ehl.discrete import Groups
 from ehl.heated import INLET_GAP, Heated
 from ehl.levels import Level, State, figures, transfer
+from ehl.meniscus import MeniscusSearch
 from ehl.newton import newton
 from ehl.options import Options
 from ehl.outcome import GRID_FACTOR, film_error
 from ehl.plan import Plan
 from ehl.solver import REACH, solve_checked
+from ehl.supply import OilLayer, Supply
 
 _DONE = 0.05  # last step of the pressure over the tolerance; steps shrink by three and more each
 _MOST_STEPS = 60
@@ -25,6 +27,8 @@ _LEAST = 0.6  # the least film under a spike falls with the cells' size, not wit
 _INLET_SHARE = (
     0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
 )
+_FED = 0.02  # miss of a layer's flow over the tolerance
+_MOST_PLACES = 20  # of a meniscus on one grid
 _CLIMB_LEFT = 0.25  # share of the climb to a spike that grids leave out
 _FIRST_NODES = 65
 _MOST_NODES = 513
@@ -122,8 +126,10 @@ class Search:
         solids: tuple[Solid, Solid] | None,
         bulk: tuple[float, float],
         tolerance: float,
+        supply: Supply | None = None,
     ) -> None:
         self.contact, self.solids, self.bulk, self.tolerance = contact, solids, np.array(bulk), tolerance
+        self.supply = supply
         self.isothermal = at_bulk(contact, bulk)
         self.reach = max(REACH, (10.0 / tolerance) ** (1.0 / 3.0))
         self.iterations, self.restarts, self.nodes, self.left = 0, 0, 0, ""
@@ -132,7 +138,7 @@ class Search:
         """Start from the isothermal, Newtonian film."""
         tolerance = max(self.tolerance, 0.01)
         for n in (_FIRST_NODES, None) if nodes is None else (nodes,):
-            film = solve_checked(self.isothermal, Options(tolerance, n), None)
+            film = solve_checked(self.isothermal, Options(tolerance, n, supply=self.supply), None)
             self.iterations += film.run.iterations
             if film.converged:
                 base = film.state.bare().fine if n == _FIRST_NODES else film.state.bare().coarse
@@ -154,11 +160,11 @@ class Search:
         """Double the grid until the estimate meets what is asked; a grid that fails is passed over."""
         n = 2 * _FIRST_NODES - 1 if nodes is None else nodes
         known = None if old is None else old.coarse[1]
-        before = self._on(self._level(base, (n + 1) // 2), known)
+        before = self._fed(self._on(self._level(base, (n + 1) // 2), known))
         while True:
             level, oil = (base, known) if before is None else before
             fine = self._level(level, n)
-            last = self._on(fine, oil, old if before is not None else None, before)
+            last = self._fed(self._on(fine, oil, old if before is not None else None, before))
             if before is not None and last is not None:
                 found = Compared(before, last, self.tolerance)
                 if nodes is not None or found.error <= self.tolerance:
@@ -170,6 +176,31 @@ class Search:
             if nodes is not None or n > _MOST_NODES:
                 return None
             before, old = last or before, None
+
+    def _fed(self, solved: Solved | None) -> Solved | None:
+        """Move the meniscus of a layer until the film carries away what the layer brings."""
+        if solved is None or not isinstance(self.supply, OilLayer) or not solved[0].plan.fixed:
+            return solved
+        layer, level = self.supply.thickness, solved[0]
+        search = MeniscusSearch.at(-1.0 - level.plan.domain[0], math.log(level.flow / layer))
+        for _ in range(_MOST_PLACES):
+            level, oil = solved
+            if abs(search.miss) < _FED * self.tolerance:
+                return solved
+            if search.stuck:
+                break
+            plan = level.plan.with_inlet(-1.0 - search.distance)
+            grid = plan.grid(level.grid.nodes.size)
+            P, H0 = transfer(level, self.contact, plan, grid)
+            moved = Level(self.contact, plan, grid, replace(level.found, P=P, H0=H0))
+            trial = self._newton(moved, self._oil(moved, 1.0, oil))
+            if trial is None:
+                self.restarts += 1
+                search.failed()
+            else:
+                solved = trial
+                search.solved(math.log(trial[0].flow / layer))
+        return None
 
     def _level(self, base: Level, n: int) -> Level:
         """Carry pressures to a grid of n nodes, as a start."""

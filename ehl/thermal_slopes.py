@@ -55,6 +55,10 @@ def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
     with Faults() as found:
         if not isinstance(film, ThermalFilm) or film.state is None or film.oils is None:
             found.add("film", film, "must be a solved ThermalFilm", "solve_thermal makes one")
+        elif film.state is not None and film.state.plan.fixed:
+            found.add(
+                "film", film, "must be flooded", "slopes of starved films with heat are not known: use solve"
+            )
     assert film.state is not None
     assert film.oils is not None
     before, after = (

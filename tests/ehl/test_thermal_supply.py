@@ -1,0 +1,51 @@
+"""Starved films with heat: the isothermal limit, what a layer holds, and what starvation does to friction."""
+
+from dataclasses import replace
+
+import pytest
+
+from base import InputError
+from ehl import Meniscus, OilLayer, solve, solve_thermal, with_load_slopes
+from tests.ehl.test_thermal import OIL, SLIDING
+
+pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure", "ignore:mean shear stress")
+
+NEAR = Meniscus(-1.5 * SLIDING.half_width)
+THIN = OilLayer(2e-7)
+
+
+@pytest.mark.parametrize("supply", [NEAR, THIN, OilLayer(2e-6)])
+def test_without_heat_it_is_the_starved_isothermal_film(supply):
+    cool = replace(SLIDING, lubricant=replace(OIL, eyring_stress=None), sliding=0.0)
+    iso = solve(cool, nodes=129, supply=supply)
+    film = solve_thermal(cool, None, nodes=129, supply=supply)
+    assert film.supply == supply
+    assert film.central_thickness == pytest.approx(iso.central_thickness, rel=3e-4)
+    assert film.minimum_thickness == pytest.approx(iso.minimum_thickness, rel=3e-4)
+    assert film.flow == pytest.approx(iso.flow, rel=3e-4)
+
+
+def test_a_layer_passes_whatever_the_heat():
+    full = solve_thermal(SLIDING)
+    for layer in (2e-8, 2e-7, 0.9 * full.flow):
+        film = solve_thermal(SLIDING, supply=OilLayer(layer))
+        assert film.converged, film.message
+        assert film.flow == pytest.approx(layer, rel=2e-4)
+        assert abs(film.losses.closure) < 0.002
+        assert abs(film.traction_coefficient) > abs(full.traction_coefficient)
+    assert solve_thermal(SLIDING, supply=OilLayer(1.1 * full.flow)).central_thickness == pytest.approx(
+        full.central_thickness, rel=1e-9
+    )
+
+
+def test_a_near_meniscus_thins_the_film_and_keeps_its_place():
+    film, full = solve_thermal(SLIDING, supply=NEAR), solve_thermal(SLIDING)
+    assert film.inlet == pytest.approx(NEAR.position, rel=1e-9)
+    assert film.central_thickness < 0.8 * full.central_thickness
+
+
+def test_slopes_and_bad_supplies_are_refused():
+    with pytest.raises(InputError, match="flooded"):
+        with_load_slopes(solve_thermal(SLIDING, supply=NEAR))
+    with pytest.raises(InputError, match="edge of the dry contact"):
+        solve_thermal(SLIDING, supply=Meniscus(-0.5 * SLIDING.half_width))
