@@ -33,6 +33,7 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
     "flankfilm.coupling.loads:TorqueCurves": "curves",
     "flankfilm.coupling.film_damping:FilmDamping": "curves",
+    "flankfilm.coupling.passage:PassageFilm": "curves",
     "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",
     "flankfilm.coupling.jumps:SpeedDiagram": "speed_diagram",
     "flankfilm.coupling.excitation:ErrorSeries": "error_series",

@@ -42,6 +42,8 @@ from .motion import speed_sweep as speed_sweep
 from .oscillator import PairOscillator as PairOscillator
 from .oscillator import pair_oscillator as pair_oscillator
 from .oscillator import pair_scales as pair_scales
+from .passage import PassageFilm as PassageFilm
+from .passage import passage_film as passage_film
 from .references import StiffnessReferences as StiffnessReferences
 from .references import stiffness_references as stiffness_references
 from .resolution import Resolution as Resolution

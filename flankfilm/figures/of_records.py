@@ -42,6 +42,7 @@ CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
     "FilmAlongPath": ("rho1", (("central_thickness", "minimum_thickness"), ("hertz_pressure",))),
     "Film": ("x", (("pressure",), ("thickness",))),
     "TransientFilm": ("time", (("load",), ("central", "least"), ("greatest_pressure",))),
+    "PassageFilm": ("rho1", (("load",), ("least", "steady_least"), ("central", "steady_central"))),
     "FilmDamping": ("position", (("damping_curve",),)),
     "PathOfContact": ("rho1", (("rho1", "rho2", "radius"),)),
 }
@@ -56,6 +57,8 @@ WORDS = {
     "rho2": "radius of the wheel's flank",
     "central": "central film",
     "least": "least film",
+    "steady_central": "central film, steady",
+    "steady_least": "least film, steady",
 }
 """Names of curves that are not their field's."""
 
