@@ -41,6 +41,8 @@ from .motions import trajectory as trajectory
 from .multi_sweeps import MultiSweep as MultiSweep
 from .multi_sweeps import multi_sweep as multi_sweep
 from .oscillator import GearOscillator as GearOscillator
+from .run_ups import RunUp as RunUp
+from .run_ups import run_up as run_up
 from .scaling import Scaling as Scaling
 from .shooting import Orbit as Orbit
 from .shooting import find_orbit as find_orbit

@@ -179,7 +179,7 @@ class HomoclinicSearch:
         if not self.holds(orbit):
             return None
         along, _ = _directions(orbit.jacobian, float(np.real(orbit.multipliers[0])))
-        size = _size(orbit)
+        size = float(np.max(np.abs(orbit.points)))
         return np.asarray(orbit.state + side * distance * size * along)
 
 

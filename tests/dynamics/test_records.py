@@ -73,6 +73,7 @@ RESULTS = {
     "MultiSweep": lambda: dynamics.multi_sweep(OSC, "frequency", [0.6, 0.61], seeds=1, starts=3),
     "Orbit": lambda: dynamics.find_orbit(OSC, (0.35, 0.0)),
     "OrbitSet": orbits,
+    "RunUp": lambda: dynamics.run_up(OSC, (0.6, 0.61), 64),
     "Spectrum": lambda: dynamics.motion_spectrum(OSC, dynamics.find_orbit(OSC, (0.35, 0.0)).state),
     "SweepResult": lambda: dynamics.sweep(OSC, "frequency", [0.6, 0.61]),
     "Trajectory": lambda: dynamics.trajectory(OSC, (0.35, 0.0)),

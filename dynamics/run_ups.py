@@ -1,0 +1,213 @@
+r"""Slow run-up and coast-down: the motion under a frequency that changes, and its orders on the way.
+
+The frequency is held for one excitation period and changed between periods, so that the exact flow serves. With
+:math:`\theta` the angle of the excitation, a shaft that gains speed evenly in time has
+:math:`\omega^2 = \omega_0^2 + (\omega_1^2 - \omega_0^2)\,\theta/\theta_1`. X is what the gears' approach has beyond the
+error e, so that a step of the frequency by :math:`\delta` changes V by :math:`-\delta\,e'(\theta)`: these impulses are
+the term :math:`e'\dot\omega` of the equation with a varying frequency.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Cost, Faults, Stopwatch, described, quantity, record
+from base.results import EXACT
+from dynamics.arrays import AsArray
+from dynamics.flow import tabulated
+from dynamics.limits import POSITIVE, Whole
+from dynamics.oscillator import GearOscillator, cells_per_period
+from dynamics.protocol import exact_only
+from dynamics.states import checked_state
+from dynamics.sweeps import settling_periods
+
+SAMPLES = 64
+"""Samples of a period, enough for order 8 and for the greatest force to a part in a thousand."""
+
+BLOCK = 16
+"""Periods of a block, of which orders are taken: lines lie at multiples of 1/16."""
+
+HIGHEST = 6
+"""Highest order of a block's lines."""
+
+FAST = 0.1
+"""Change of the frequency in one decay time, over the width of a resonance, above which motion lags behind."""
+
+STEADY = "rounding of the exact flow between steps of the frequency, whose error is that of the result"
+
+
+@record
+class RunUp(AsArray):
+    """Motion under a slowly changing frequency, by blocks of 16 excitation periods."""
+
+    headline = ("periods", "rate")
+
+    frequency: Array = quantity("1", "mean frequency of each block", "block", no_error=EXACT)
+    tau: Array = quantity("1", "time at which each block begins", "block", no_error=EXACT)
+    rms: Array = quantity("1", "root mean square of X about its mean in each block", "block", error="error")
+    peak: Array = quantity("1", "greatest X of each block", "block", error="error")
+    force_rms: Array = quantity(
+        "1", "root mean square of the mesh force k f(X) about its mean, dimensionless", "block", error="error"
+    )
+    force_peak: Array = quantity("1", "greatest mesh force of each block", "block", error="error")
+    separated: Array = quantity(
+        "1", "part of each block without contact of the driving flanks", "block", shown="%", error="error"
+    )
+    order: Array = quantity("1", "orders of the lines, cycles per excitation period", "line", no_error=EXACT)
+    displacement_order: Array = quantity(
+        "1", "amplitude of X by block and order", "block line", error="error"
+    )
+    force_order: Array = quantity(
+        "1", "amplitude of the mesh force by block and order", "block line", error="error"
+    )
+    state: Array = quantity("1", "X and V at the end", "state", no_error=STEADY)
+    periods: int = quantity("1", "excitation periods in all", no_error=EXACT)
+    rate: float = quantity(
+        "1",
+        "greatest change of the frequency in one decay time over the width of a resonance, dw/dtau / (2 zeta^2); where "
+        "it is small the motion follows",
+        no_error=EXACT,
+    )
+    error: float = quantity(
+        "1", "median relative difference of the blocks' root mean square from a run with steps twice as long"
+    )
+    cost: Cost
+    converged: bool = quantity("1", "whether the motion stayed bounded")
+    message: str
+
+    @described("", no_error=EXACT)
+    def direction(self) -> str:
+        """Up or down."""
+        return "up" if len(self.frequency) < 2 or self.frequency[-1] > self.frequency[0] else "down"
+
+    def columns(self) -> Array:
+        """Columns frequency, root mean square, peak, greatest force."""
+        return np.column_stack([self.frequency, self.rms, self.peak, self.force_peak])
+
+
+@exact_only
+def run_up(
+    oscillator: GearOscillator,
+    bounds: tuple[float, float],
+    periods: int = 8000,
+    *,
+    state: npt.ArrayLike | None = None,
+) -> RunUp:
+    """Follow the motion while the frequency rises or falls evenly in time.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its own frequency is not used.
+    bounds : (float, float)
+        Frequency at the start and at the end; the second may be the lower one: coast-down.
+    periods : int
+        Excitation periods, cut to whole blocks of 16; the more, the slower.
+    state : array_like, shape (2,), optional
+        X and V at the start. Left out: what the motion from rest settles to at the first frequency.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or a period has too many cells.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, run_up
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = run_up(osc, (0.6, 0.7), periods=3200)
+    >>> at = found.frequency[int(np.argmax(np.diff(found.rms)))]
+    >>> found.direction, 0.65 < at < 0.67
+    ('up', True)
+    """
+    watch = Stopwatch()
+    with Faults() as faults:
+        first, last = (faults.number(f"bounds[{k}]", bounds[k], POSITIVE) for k in range(2))
+        number = faults.whole("periods", periods, *Whole(BLOCK, 10**8, "some thousand are slow")) // BLOCK
+    here = oscillator.with_parameter("frequency", float(first))
+    _ = oscillator.with_parameter("frequency", float(min(first, last)))  # refused where it has too many cells
+    if state is None:
+        from dynamics.motions import period_map
+
+        at = period_map(here, here.rest_state(), 1, settling_periods(here)).state
+    else:
+        at = checked_state(state)
+    fine = _ramp(oscillator, (first, last), number, at, 1)
+    coarse = _ramp(oscillator, (first, last), number, at, 2)
+    rms = fine[0][:, 0]
+    off = np.abs(coarse[0][:, 0] - rms) / np.maximum(rms, 1e-300)
+    good = bool(np.all(np.isfinite(fine[0])))
+    decay = max(oscillator.damping_ratio, 1e-300)
+    change = abs(last**2 - first**2) / (4.0 * math.pi * number * BLOCK)  # dw/dtau = w dw/dtheta
+    rate = change / (2.0 * decay**2)
+    turns = BLOCK * (np.arange(number) + 0.5) / (BLOCK * number)
+    said = (
+        f"{number} blocks"
+        if good
+        else f"{number} blocks; the motion grows without bound: check the parameters"
+    )
+    if rate > FAST:
+        said += "; faster than the motion follows: jumps come late and peaks are lower than steady ones"
+    return RunUp(
+        np.sqrt(first**2 + (last**2 - first**2) * turns),
+        fine[2],
+        *(fine[0][:, k].copy() for k in range(5)),
+        np.arange(1, HIGHEST * BLOCK + 1) / BLOCK,
+        fine[1][:, 0],
+        fine[1][:, 1],
+        fine[3],
+        number * BLOCK,
+        rate,
+        float(np.nanmedian(off)) if np.any(np.isfinite(off)) else math.inf,
+        Cost(watch.seconds, periods=2 * number * BLOCK),
+        good,
+        said,
+    )
+
+
+def _ramp(
+    oscillator: GearOscillator, bounds: tuple[float, float], number: int, state: Array, held: int
+) -> tuple[Array, Array, Array, Array]:
+    """Figures (blocks, 5), lines (blocks, 2, orders), starts of the blocks and last state; steps of so many periods."""
+    first, last = bounds
+    turns = held * (np.arange(number * BLOCK // held) + 0.5) / (number * BLOCK)
+    frequencies = np.repeat(np.sqrt(first**2 + (last**2 - first**2) * turns), held)
+    packed, at = oscillator.packed(), np.array(state, dtype=np.float64)
+    slope = _slope_of_error(oscillator)
+    angle = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
+    stiffness = np.tile(oscillator.stiffness(angle), BLOCK)
+    figures, lines = np.full((number, 5), np.nan), np.full((number, 2, HIGHEST * BLOCK), np.nan)
+    starts, tau, before = np.zeros(number), 0.0, first
+    for block in range(number):
+        starts[block], parts = tau, []
+        for frequency in frequencies[block * BLOCK : (block + 1) * BLOCK].tolist():
+            at[1] -= (frequency - before) * slope
+            packed[4], before = frequency, frequency
+            flow = tabulated(packed.copy(), math.ceil(cells_per_period(packed)))
+            samples, _, _ = flow.sampled(at, 1, SAMPLES)
+            parts.append(samples[:-1, 0])
+            at = samples[-1].copy()
+            tau += 2.0 * math.pi / frequency
+        if not (np.all(np.isfinite(at)) and np.max(np.abs(at)) < LOST):
+            break
+        x = np.concatenate(parts)
+        force = stiffness * oscillator.deflection(x)
+        free = float(np.mean(x <= oscillator.half_backlash))
+        figures[block] = np.std(x), np.max(x), np.std(force), np.max(force), free
+        for row, values in zip(lines[block], (x, force), strict=True):
+            row[:] = 2.0 / len(x) * np.abs(np.fft.rfft(values))[1 : HIGHEST * BLOCK + 1]
+    return figures, lines, starts, at
+
+
+LOST = 1e6
+"""Size at which a motion counts as grown without bound."""
+
+
+def _slope_of_error(oscillator: GearOscillator) -> float:
+    """Derivative of the error to the angle of the excitation at the angle 0."""
+    amplitudes, phases = oscillator.error_series
+    j = np.arange(1, len(amplitudes) + 1)
+    return float(-np.sum(j * amplitudes * np.sin(phases)))

@@ -1,0 +1,89 @@
+"""Slow run-ups against an independent integrator with a varying frequency, and against the folds of steady motions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from base import InputError
+from dynamics import FourierStiffness, GearOscillator, find_orbit, run_up
+from tests.validation.article_motion import lubricated
+
+
+@pytest.mark.slow
+def test_a_ramp_is_that_of_the_equation_with_a_varying_frequency():
+    """Without backlash and with a phase, so that the impulses between periods count; scipy knows no steps."""
+    osc = GearOscillator(
+        FourierStiffness(1.0, (0.1,), (0.3,)), 0.05, 0.2, (0.05, 0.02), 0.5, 0.0, (0.8, -1.1)
+    )
+    first, last, periods = 0.5, 0.55, 320
+    found = run_up(osc, (first, last), periods, state=(0.2, 0.0))
+    growth = (last**2 - first**2) / (2.0 * math.pi * periods)  # of w^2 by angle
+
+    def motion(tau, y):
+        theta = y[2]
+        w = math.sqrt(first**2 + growth * theta)
+        force = 0.2
+        for j, (e, phi) in enumerate(zip((0.05, 0.02), (0.8, -1.1), strict=True), start=1):
+            force += e * (
+                j * j * w * w * math.cos(j * theta + phi) + j * 0.5 * growth * math.sin(j * theta + phi)
+            )
+        k = 1.0 + 0.1 * math.cos(theta + 0.3)
+        return [y[1], force - 2 * 0.05 * y[1] - k * y[0], w]
+
+    end = 2.0 * math.pi * periods
+    done = solve_ivp(
+        motion, (0.0, 1e6), [0.2, 0.0, 0.0], events=_reached(end), rtol=1e-9, atol=1e-11, max_step=0.5
+    )
+    theta, x = done.y[2], done.y[0]
+    blocks = (theta // (32.0 * math.pi)).astype(int)
+    for block in (2, 10, 18):
+        mine = blocks == block
+        spread = _rms(done.t[mine], x[mine])
+        assert found.rms[block] == pytest.approx(spread, rel=2e-3)
+        assert found.peak[block] == pytest.approx(x[mine].max(), rel=2e-3)
+    assert found.error < 2e-3
+
+
+def _reached(end):
+    def event(tau, y):
+        return y[2] - end
+
+    event.terminal = True
+    return event
+
+
+def _rms(t, x):
+    mean = np.trapezoid(x, t) / (t[-1] - t[0])
+    return math.sqrt(np.trapezoid((x - mean) ** 2, t) / (t[-1] - t[0]))
+
+
+@pytest.mark.parametrize(("bounds", "fold"), [((0.6, 0.7), 0.65556), ((0.7, 0.55), 0.56940)])
+def test_jumps_come_behind_the_folds_of_the_steady_motions(bounds, fold):
+    start = find_orbit(lubricated(bounds[0]), (0.35, 0.0) if bounds[0] < 0.65 else (1.0, 0.5)).state
+    found = run_up(lubricated(0.6), bounds, 8_000, state=start)
+    at = found.frequency[1 + int(np.argmax(np.abs(np.diff(found.rms))))]
+    late = (at - fold) * np.sign(bounds[1] - bounds[0])
+    assert -1e-3 < late < 1e-2
+
+
+def test_orders_hold_the_motion():
+    """Lines of a block at whole orders add up to its root mean square while the motion has the period."""
+    found = run_up(lubricated(0.6), (0.3, 0.45), 3200)
+    whole = found.displacement_order[:, 15::16]
+    settled = slice(5, None)  # at the start the ramp itself sets in
+    by_lines = np.sqrt(0.5 * np.sum(whole**2, axis=1))
+    assert by_lines[settled] == pytest.approx(found.rms[settled], rel=2e-2)
+    assert found.order[15] == 1.0
+    assert np.all(found.separated == 0.0)
+
+
+def test_too_fast_is_said():
+    found = run_up(lubricated(0.6), (0.3, 1.2), 64)
+    assert found.rate > 0.1
+    assert "faster" in found.message
+    with pytest.raises(InputError, match="bounds"):
+        run_up(lubricated(0.6), (-0.1, 1.0))
