@@ -212,6 +212,13 @@ def mesh_force(oscillator: GearOscillator | DriveOscillator, motion: Trajectory)
 
 
 @exact_only
+def share_below(clearance: Array) -> float:
+    """Part of the time in which a curve is below zero, straight between its samples."""
+    low, high = np.minimum(clearance[:-1], clearance[1:]), np.maximum(clearance[:-1], clearance[1:])
+    crossing = np.divide(-low, high - low, out=np.zeros_like(low), where=high > low)
+    return float(np.mean(np.where(high <= 0.0, 1.0, np.where(low >= 0.0, 0.0, crossing))))
+
+
 def force_range(
     oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
 ) -> ForceRange:

@@ -19,6 +19,7 @@ from base.results import EXACT
 from dynamics.arrays import AsArray
 from dynamics.flow import tabulated
 from dynamics.limits import POSITIVE, Whole
+from dynamics.motions import share_below
 from dynamics.oscillator import GearOscillator, cells_per_period
 from dynamics.protocol import exact_only
 from dynamics.states import checked_state
@@ -120,7 +121,7 @@ def run_up(
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
     >>> found = run_up(osc, (0.6, 0.7), periods=3200)
     >>> at = found.frequency[int(np.argmax(np.diff(found.rms)))]
-    >>> found.direction, 0.65 < at < 0.67
+    >>> found.direction, bool(0.65 < at < 0.67)
     ('up', True)
     """
     watch = Stopwatch()
@@ -151,10 +152,15 @@ def run_up(
     )
     if rate > FAST:
         said += "; faster than the motion follows: jumps come late and peaks are lower than steady ones"
+    rms, peak, force_rms, force_peak, separated = np.ascontiguousarray(fine[0].T)
     return RunUp(
         np.sqrt(first**2 + (last**2 - first**2) * turns),
         fine[2],
-        *(fine[0][:, k].copy() for k in range(5)),
+        rms,
+        peak,
+        force_rms,
+        force_peak,
+        separated,
         np.arange(1, HIGHEST * BLOCK + 1) / BLOCK,
         fine[1][:, 0],
         fine[1][:, 1],
@@ -195,7 +201,7 @@ def _ramp(
             break
         x = np.concatenate(parts)
         force = stiffness * oscillator.deflection(x)
-        free = float(np.mean(x <= oscillator.half_backlash))
+        free = share_below(x - oscillator.half_backlash)
         figures[block] = np.std(x), np.max(x), np.std(force), np.max(force), free
         for row, values in zip(lines[block], (x, force), strict=True):
             row[:] = 2.0 / len(x) * np.abs(np.fft.rfft(values))[1 : HIGHEST * BLOCK + 1]

@@ -1,4 +1,5 @@
 from . import figures as figures
+from .coupling.dynamic_map import dynamic_map as dynamic_map
 from .coupling.excitation import error_series as error_series
 from .coupling.excitation import unloaded_error as unloaded_error
 from .coupling.films import FilmModel as FilmModel
@@ -9,6 +10,7 @@ from .coupling.lubricated import lubricated_cycle as lubricated_cycle
 from .coupling.mesh_cycles import mesh_cycle as mesh_cycle
 from .coupling.motion import speed_sweep as speed_sweep
 from .coupling.oscillator import pair_oscillator as pair_oscillator
+from .coupling.run_ups import speed_run_up as speed_run_up
 from .coupling.sidebands import mesh_spectrum as mesh_spectrum
 from .coupling.sidebands import revolution_error as revolution_error
 from .coupling.single_pairs import single_pair_stiffness as single_pair_stiffness

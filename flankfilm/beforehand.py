@@ -23,7 +23,7 @@ from gears.hertz import half_width
 LEAST_SHARE = 0.5
 """Load of a pair at the pitch point, over that of pairs which share equally, that no pair there falls below."""
 
-MOTIONS = {"sweep", "diagram", "spectrum"}
+MOTIONS = {"sweep", "diagram", "spectrum", "run-up", "dynamic-map"}
 
 ROUNDING = 1e-12
 """Overlap of flanks that is rounding [modules]."""

@@ -64,8 +64,8 @@ def faults_of_ranges(scene: Scene, pair: gears.GearPair | None) -> Iterator[Faul
         surely, _ = _bounds(scene, section, pair, in_rpm=True)
         if (rpm := operating.pinion_speed_rpm) is not None and rpm < surely:
             _warn_of_speed(rpm, surely)
-    for want in ("sweep", "diagram"):
-        ranged = getattr(section, want) if want in scene.wants and section is not None else None
+    for want, name in (("sweep", "sweep"), ("diagram", "diagram"), ("run-up", "run_up")):
+        ranged = getattr(section, name) if want in scene.wants and section is not None else None
         if section is None or ranged is None:
             continue
         in_rpm = ranged.speed_rpm is not None
@@ -76,11 +76,11 @@ def faults_of_ranges(scene: Scene, pair: gears.GearPair | None) -> Iterator[Faul
         if low < surely:
             value = f"[{low:g}, {high:g}]"
             yield Fault(
-                f"dynamics.{want}.{key}", value, said, remedy + (", and end above" if safely >= high else "")
+                f"dynamics.{name}.{key}", value, said, remedy + (", and end above" if safely >= high else "")
             )
         elif low < safely:
             warnings.warn(
-                f"dynamics.{want}.{key} = [{low:g}, {high:g}] may begin too far below the resonance for a motion to be "
+                f"dynamics.{name}.{key} = [{low:g}, {high:g}] may begin too far below the resonance for a motion to be "
                 f"followed, which the stiffness decides; at {_up(safely):g}{unit} it surely is",
                 RangeWarning,
                 stacklevel=2,

@@ -27,6 +27,7 @@ PICTURES: Mapping[str, str] = {
     "dynamics.exponents:LyapunovScan": "exponents",
     "dynamics.loci:Locus": "locus",
     "dynamics.spectra:Spectrum": "spectrum",
+    "dynamics.run_ups:RunUp": "run_up",
     "flankfilm.coupling.cycle:MeshCycle": "curves",
     "flankfilm.coupling.along_path:FilmAlongPath": "curves",
     "flankfilm.coupling.losses_along_path:LossesAlongPath": "losses_along_path",
@@ -38,6 +39,8 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.jumps:SpeedDiagram": "speed_diagram",
     "flankfilm.coupling.excitation:ErrorSeries": "error_series",
     "flankfilm.coupling.sidebands:MotionSpectrum": "motion_spectrum",
+    "flankfilm.coupling.run_ups:SpeedRunUp": "speed_run_up",
+    "flankfilm.coupling.dynamic_map:DynamicMap": "dynamic_map",
     "flankfilm.coupling.roots:RootStresses": "root_stresses",
     "flankfilm.coupling.oscillator:PairOscillator": "series_of",
     "flankfilm.coupling.series:MeshSeries": "series",
@@ -47,6 +50,9 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.optimisation.optimum:Optimum": "optimum",
 }
 """Record to the function that draws it, in `flankfilm.figures.of_records` or, for runs and rows, `of_runs`."""
+
+OF_SPEEDS = ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map")
+"""Pictures of what drives the motion and of its orders, in `flankfilm.figures.of_speeds`."""
 
 RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")
 
@@ -62,6 +68,9 @@ VIEWS: Mapping[str, str] = {
 
 def register() -> None:
     """Register views and pictures; the entry point ``base.views`` of the distribution."""
-    module = {place: "of_runs" if place.startswith(RUNS) else "of_records" for place in PICTURES}
+    module = {
+        place: "of_runs" if place.startswith(RUNS) else "of_speeds" if name in OF_SPEEDS else "of_records"
+        for place, name in PICTURES.items()
+    }
     pictures = {place: f"flankfilm.figures.{module[place]}:{name}" for place, name in PICTURES.items()}
     show_with(VIEWS, pictures)

@@ -5,6 +5,8 @@ from .drive import PairDrive as PairDrive
 from .drive import pair_drive as pair_drive
 from .drive_sweep import DriveSweep as DriveSweep
 from .drive_sweep import drive_sweep as drive_sweep
+from .dynamic_map import DynamicMap as DynamicMap
+from .dynamic_map import dynamic_map as dynamic_map
 from .excitation import ErrorSeries as ErrorSeries
 from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error
@@ -53,6 +55,8 @@ from .roots import RootStresses as RootStresses
 from .roots import fillets_of as fillets_of
 from .roots import pitch_point_fields as pitch_point_fields
 from .roots import root_stresses as root_stresses
+from .run_ups import SpeedRunUp as SpeedRunUp
+from .run_ups import speed_run_up as speed_run_up
 from .series import MeshSeries as MeshSeries
 from .series import given_series as given_series
 from .series import mesh_series as mesh_series

@@ -71,7 +71,7 @@ def vibrations(
 
 def vibration(oscillator: dynamics.GearOscillator, state: Array, periods: int) -> Vibration:
     """Figures of the settled motion from a state at tau = 0; `periods` 0 where it does not repeat."""
-    from dynamics.motions import mesh_force, trajectory
+    from dynamics.motions import mesh_force, share_below, trajectory
 
     if not np.all(np.isfinite(state)):
         return _NONE
@@ -81,16 +81,9 @@ def vibration(oscillator: dynamics.GearOscillator, state: Array, periods: int) -
     change = max(abs(there / here - 1.0) if here else 0.0 for here, there in zip(fine, coarse, strict=True))
     mean = oscillator.mean_force
     greatest = fine[0] / mean if mean else np.nan
-    return Vibration(greatest, _below(motion.x - oscillator.half_backlash), fine[1], change)
+    return Vibration(greatest, share_below(motion.x - oscillator.half_backlash), fine[1], change)
 
 
 def _figures(force: Array, x: Array) -> tuple[float, float]:
     """Greatest force, and root mean square of the displacement about its mean over whole periods."""
     return float(np.max(force)), float(np.std(x[:-1]))
-
-
-def _below(clearance: Array) -> float:
-    """Part of the time in which a curve is below zero, straight between its samples."""
-    low, high = np.minimum(clearance[:-1], clearance[1:]), np.maximum(clearance[:-1], clearance[1:])
-    crossing = np.divide(-low, high - low, out=np.zeros_like(low), where=high > low)
-    return float(np.mean(np.where(high <= 0.0, 1.0, np.where(low >= 0.0, 0.0, crossing))))

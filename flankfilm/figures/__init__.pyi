@@ -25,6 +25,9 @@ from .motion import resonance as resonance
 from .motion import sweep as sweep
 from .optima import optimum as optimum
 from .optima import optimum_map as optimum_map
+from .speeds import dynamic_map as dynamic_map
+from .speeds import run_up as run_up
+from .speeds import waterfall as waterfall
 from .stiffness import fourier as fourier
 from .stiffness import load_share as load_share
 from .stiffness import mesh_stiffness as mesh_stiffness

@@ -23,11 +23,9 @@ if TYPE_CHECKING:
     from ehl import FilmResponse, MixedFilm
     from fem import RootStress
     from flankfilm.coupling import (
-        ErrorSeries,
         LossesAlongPath,
         MeshLosses,
         MeshSeries,
-        MotionSpectrum,
         PairOscillator,
         RootStresses,
         SpeedDiagram,
@@ -411,40 +409,6 @@ def series(found: MeshSeries) -> Figure:
             )
         axes.plot(turn, scale * stiffness, color=colours(1)[0], label=name)
         axes.set(xlabel="position, base pitches from A [-]", ylabel=f"mesh stiffness, {found.kind} [{shown}]")
-    return drawn
-
-
-def error_series(found: ErrorSeries) -> Figure:
-    """Draw the unloaded transmission error over its period, with its series."""
-    turn = np.linspace(0.0, found.meshes, 801)
-    order = np.arange(1, found.order + 1) / found.meshes
-    shown = found.curve.mean() + np.cos(2 * np.pi * turn[:, None] * order + found.phase) @ found.amplitude
-    with sheet(None, height=3.2) as (drawn, (axes,)):
-        axes.plot(found.position, 1e6 * found.curve, color="#999999", linewidth=2.2, label=found.source)
-        axes.plot(turn, 1e6 * shown, color=colours(1)[0], label=f"series of order {found.order}")
-        axes.set(xlabel="position, base pitches from A [-]", ylabel="error [µm]")
-    return drawn
-
-
-def spectrum(found: dynamics.Spectrum) -> Figure:
-    """Draw the lines of displacement and force over the order of the excitation."""
-    return _lines(
-        found.order, found.displacement, found.force, "order of the excitation [-]", "mesh force [-]"
-    )
-
-
-def motion_spectrum(found: MotionSpectrum) -> Figure:
-    """Draw the lines of displacement and force over the mesh order."""
-    return _lines(found.order, found.displacement, found.force, "mesh order [-]", "force over the mean [-]")
-
-
-def _lines(order: Array, displacement: Array, force: Array, across: str, forces: str) -> Figure:
-    with sheet(None, 2, height=4.2, legend=0) as (drawn, panels):
-        for axes, values, label in zip(panels, (force, displacement), (forces, STATE[0]), strict=True):
-            low = 1e-5 * max(float(np.nanmax(values, initial=0.0)), 1e-300)
-            axes.vlines(order, low, np.maximum(values, low), color=colours(1)[0], linewidth=1.0)
-            axes.set(yscale="log", ylim=(low, None), ylabel=label)
-        panels[-1].set_xlabel(across)
     return drawn
 
 

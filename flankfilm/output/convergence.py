@@ -22,6 +22,8 @@ STAGES: Mapping[str, str] = {
     "fourier": "fourier",
     "excitation": "excitation",
     "spectrum": "spectrum",
+    "run_up": "run-up",
+    "dynamic_map": "dynamic-map",
     **dict.fromkeys(("sweep", "portrait"), "sweep"),
     **dict.fromkeys(("diagram", "special", "jump", "missed", "stable", "force"), "diagram"),
     "field": "fields",

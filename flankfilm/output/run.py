@@ -121,6 +121,10 @@ TABLES: Mapping[str, Table] = {
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
     "excitation": Table("excitation", "amplitude", axis="harmonic"),
     "spectrum": Table("spectrum", "force", axis="line"),
+    "run_up": Table("run_up", "force_factor_up", axis="block"),
+    "dynamic_map": Table(
+        "dynamic_map", "factor", ("torque", "speed", "factor", "factor_up", "factor_down", "iso")
+    ),
     "resonance": Table("sweep", "force_factor_up", RESONANCE),
     "diagram": Table("diagram", "frequency", axis="point"),
     "special_points": Table("special", "frequency", axis="point"),
@@ -221,6 +225,10 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         yield from _sweep(sweep)
     if (spectrum := values.get("spectrum")) is not None:
         yield of_record("spectrum", spectrum)
+    if (ramps := values.get("run-up")) is not None:
+        yield of_record("run_up", ramps)
+    if (over := values.get("dynamic-map")) is not None:
+        yield of_record("dynamic_map", over)
     if (diagram := values.get("diagram")) is not None:
         yield from branch_tables(diagram)
     if (fields := values.get("fields")) is not None and pair is not None:

@@ -17,6 +17,7 @@ from flankfilm.report import (
     motion_parts,
     pair_parts,
     run_parts,
+    speed_parts,
 )
 from flankfilm.report.page import Fact, Headline, Part, said, write_page
 from flankfilm.report.text import counted, percent, seconds
@@ -34,6 +35,7 @@ HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "fourier": motion_parts.fourier_headlines,
     "sweep": motion_parts.sweep_headlines,
     "diagram": motion_parts.diagram_headlines,
+    "dynamic-map": speed_parts.map_headlines,
 }
 """Stages with numbers for the page's head, after those of the mesh cycle."""
 
@@ -49,6 +51,8 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "sweep": motion_parts.sweep,
     "diagram": motion_parts.diagram,
     "spectrum": excitation_parts.spectrum,
+    "run-up": speed_parts.run_up,
+    "dynamic-map": speed_parts.dynamic_map,
 }
 """Stages with a section of their own, after geometry, stiffness and film."""
 

@@ -97,6 +97,28 @@ class DiagramSection(SpeedRange):
     )
 
 
+class RunUpSection(SpeedRange):
+    """Run-up, evenly in time, and coast-down."""
+
+    seconds: float | None = key(
+        "time of the run-up; of 8000 mesh periods if neither is given",
+        None,
+        such_as=5,
+        limit=Limit.above(0.0, 1e5, "s"),
+    )
+    periods: int | None = key(
+        "mesh periods of the run-up, instead", None, such_as=8000, limit=Limit(16, 2_000_000, whole=True)
+    )
+
+    @model_validator(mode="after")
+    def _one_time(self) -> RunUpSection:
+        if len(self.given("seconds", "periods")) == 2:
+            raise refused("must have seconds or periods, not both")
+        if self.seconds is not None and self.frequency is not None:
+            raise refused("must have periods with frequency = [from, to], which knows no seconds")
+        return self
+
+
 class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
@@ -169,6 +191,9 @@ class DynamicsSection(Section):
         None,
         example={"speed_rpm": (500, 30000), "max_period": 4, "searches": 9},
     )
+    run_up: RunUpSection | None = key(
+        "range of the wanted run-up and coast-down", None, such_as={"speed_rpm": (500, 30000), "seconds": 5}
+    )
     portraits_rpm: Several = key(
         "speeds of phase portraits; chosen from the sweep if left out", (), such_as=(9000,), max_length=12
     )
@@ -208,7 +233,7 @@ class DynamicsSection(Section):
             raise refused(f"must have {', '.join(missing)} too in the dimensionless form")
         if physical := self.given(*PHYSICAL):
             raise refused(f"must not have {', '.join(physical)} beside the dimensionless {', '.join(own)}")
-        for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram)):
+        for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram), ("run_up", self.run_up)):
             if ranged is not None and ranged.speed_rpm is not None:
                 raise refused(
                     f"must have {name} = {{ frequency = [from, to] }} in the dimensionless form, not speed_rpm"

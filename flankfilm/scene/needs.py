@@ -10,10 +10,10 @@ from base import Fault, shorten
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
 
-RANGED = ("sweep", "diagram")
+RANGED = ("sweep", "diagram", "run-up")
 """Wants of motions over a range, which is a key of its own in [dynamics]."""
 
-MOTIONS = (*RANGED, "spectrum")
+MOTIONS = (*RANGED, "spectrum", "dynamic-map")
 """Wants that need the oscillator."""
 
 Raw = Mapping[str, Any]
@@ -96,9 +96,16 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
         remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
         yield _required("operating.torques_Nm", "the wanted torques", remedy)
     for want in RANGED:
-        if want in listed and "dynamics" in raw and want not in dynamics:
-            remedy = f"Add {want} = {{ speed_rpm = [500, 30000] }}"
-            yield _required(f"dynamics.{want}", f"the wanted {want}", remedy)
+        name = want.replace("-", "_")
+        if want in listed and "dynamics" in raw and name not in dynamics:
+            remedy = f"Add {name} = {{ speed_rpm = [500, 30000] }}"
+            yield _required(f"dynamics.{name}", f"the wanted {want}", remedy)
+    if "dynamic-map" in listed and "operating" in raw and not operating.get("torques_Nm"):
+        remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
+        yield _required("operating.torques_Nm", "the wanted dynamic-map", remedy)
+    if "dynamic-map" in listed and "dynamics" in raw and "speed_rpm" not in _table(dynamics, "sweep"):
+        remedy = "Add sweep = { speed_rpm = [500, 30000], points = 60 }"
+        yield _required("dynamics.sweep.speed_rpm", "the wanted dynamic-map", remedy)
     given = stiffness.get("model") == "given" and "mean_N_per_m" not in stiffness
     if listed & set(MOTIONS) and given and "mean_force" not in dynamics:
         yield _required("stiffness.mean_N_per_m", "a [dynamics] in physical units", "Give the mean")

@@ -34,6 +34,8 @@ Want = Literal[
     "sweep",
     "diagram",
     "spectrum",
+    "run-up",
+    "dynamic-map",
     "vtk",
     "report",
 ]

@@ -12,6 +12,7 @@ from flankfilm.stages import losses, motion
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
 
 
 def goals(scene: Scene) -> tuple[Stage[Any], ...]:
@@ -47,7 +48,7 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
         yield FILM_DAMPING
     if scene.dynamics is not None and scene.dynamics.error_curve is not None and wants & {*needs.MOTIONS}:
         yield EXCITATION
-    for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM):
+    for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM, RUN_UP, DYNAMIC_MAP):
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)
     if "vtk" in wants:

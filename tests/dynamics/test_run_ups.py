@@ -61,6 +61,7 @@ def _rms(t, x):
     return math.sqrt(np.trapezoid((x - mean) ** 2, t) / (t[-1] - t[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("bounds", "fold"), [((0.6, 0.7), 0.65556), ((0.7, 0.55), 0.56940)])
 def test_jumps_come_behind_the_folds_of_the_steady_motions(bounds, fold):
     start = find_orbit(lubricated(bounds[0]), (0.35, 0.0) if bounds[0] < 0.65 else (1.0, 0.5)).state

@@ -1,0 +1,133 @@
+"""Dynamic factor over speed and torque: each torque with the stiffness that the mesh has under it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import dynamics
+from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base.results import EXACT, ITSELF
+from dynamics.limits import NUMBER, checked_grid
+from flankfilm.coupling.oscillator import PairOscillator
+from flankfilm.coupling.resonance import vibrations
+from flankfilm.coupling.speed_ranges import standard_factors
+
+
+@record
+class DynamicMap:
+    """Greatest force over the mean one, over speed and torque, of settled motions up and down in speed."""
+
+    headline = ("greatest", "sampling_error")
+
+    speed: Array = quantity("rad/s", "pinion speed", "speed", shown="rpm", no_error=EXACT)
+    torque: Array = quantity("N m", "torque of the pinion", "torque", no_error=EXACT)
+    resonance: Array = quantity(
+        "rad/s",
+        "pinion speed at which the mesh frequency is the natural one",
+        "torque",
+        shown="rpm",
+        no_error="half that of the mean stiffness",
+    )
+    factor: Array = quantity(
+        "1",
+        "K_v: greatest force over the mean force, of the sweeps up and down the greater",
+        "torque speed",
+        error="sampling_error",
+    )
+    factor_up: Array = quantity("1", "the same of the sweep up", "torque speed", error="sampling_error")
+    factor_down: Array = quantity("1", "the same of the sweep down", "torque speed", error="sampling_error")
+    separated: Array = quantity(
+        "1",
+        "part of the time without contact, of both sweeps the greater",
+        "torque speed",
+        shown="%",
+        no_error="not estimated: crossings between samples are taken as straight",
+    )
+    iso: Array = quantity(
+        "1", "K_v after ISO 6336-1, method B; nan where it does not hold", "torque speed", no_error=ITSELF
+    )
+    sampling_error: float = quantity("1", "largest relative change of the factors with half as many samples")
+    cost: Cost
+    converged: bool = quantity("1", "whether every motion could be followed")
+    message: str = ""
+
+    @property
+    def error(self) -> float:
+        """Relative error of the factors by samples; what the series leaves out is not in it."""
+        return self.sampling_error
+
+    @property
+    def greatest(self) -> float:
+        """Greatest factor of the map."""
+        return float(np.nanmax(self.factor))
+
+
+def dynamic_map(
+    motion_at: Callable[[float], PairOscillator], torques: Sequence[float], speeds: ArrayLike
+) -> DynamicMap:
+    """Greatest force over the mean one, over speed and torque.
+
+    Parameters
+    ----------
+    motion_at : callable
+        Gives the oscillator of a pair under a torque of the pinion [N m], with the stiffness that it has then.
+    torques : sequence of float
+        [N m]
+    speeds : array_like, shape (n,)
+        Pinion speeds, rising [rad/s].
+
+    Raises
+    ------
+    InputError
+        For torques and speeds that are none, or an oscillator without physical scales.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from flankfilm.coupling import given_series, pair_oscillator
+    >>> pair = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(50e-6)
+    >>> series = given_series(4e8, [0.2])
+    >>> found = dynamic_map(lambda torque: pair_oscillator(pair, series, torque, 500.0), [50.0, 100.0], [500.0, 900.0])
+    >>> found.factor.shape, found.greatest > 1.0
+    ((2, 2), True)
+    """
+    watch = Stopwatch()
+    with Faults() as faults:
+        at = checked_grid(faults, "speeds", speeds)
+        loads = [faults.number(f"torques[{k}]", one, NUMBER) for k, one in enumerate(torques)]
+        if not loads:
+            faults.add("torques", "none", "must be at least one", "give a list of torques")
+    rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso")}
+    resonances, lost, off, used = [], 0, 0.0, 0
+    for torque in loads:
+        motion = motion_at(torque)
+        assert motion.scales is not None
+        values = np.array([motion.scales.frequency(one) for one in at.tolist()])
+        parts = []
+        for way in ("up", "down"):
+            swept = dynamics.sweep(motion.oscillator, "frequency", values, way)
+            force, separated, _, change = vibrations(motion.oscillator, swept)
+            rows[way].append(force)
+            parts.append(separated)
+            off, used, lost = max(off, change), used + swept.cost.periods, lost + (not swept.converged)
+        rows["separated"].append(np.fmax(*parts))
+        rows["iso"].append(standard_factors(motion, values))
+        resonances.append(motion.scales.speed(1.0))
+    found = {name: np.array(values) for name, values in rows.items()}
+    return DynamicMap(
+        at,
+        np.array(loads),
+        np.array(resonances),
+        np.fmax(found["up"], found["down"]),
+        found["up"],
+        found["down"],
+        found["separated"],
+        found["iso"],
+        off,
+        Cost(watch.seconds, periods=used),
+        lost == 0,
+        "" if lost == 0 else "some motions grow without bound; their factors are nan",
+    )

@@ -1,0 +1,173 @@
+"""Run-up and coast-down of a pair: rms, peaks and orders of its motion over the speed, as a test rig shows them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+import dynamics
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from base.results import EXACT
+from dynamics.limits import PERIODS, POSITIVE
+from flankfilm.coupling.oscillator import PairOscillator
+
+
+@record
+class SpeedRunUp:
+    """Motion of a pair while its speed rises evenly in time, and while it falls; blocks of 16 mesh periods.
+
+    Mappings go by direction, ``"up"`` and ``"down"``.
+    """
+
+    headline = ("periods", "rate")
+
+    frequency: Mapping[str, Array] = quantity(
+        "1", "mesh frequency over natural frequency of each block", "block", no_error=EXACT
+    )
+    speed: Mapping[str, Array] | None = quantity(
+        "rad/s", "pinion speed of each block", "block", shown="rpm", no_error=EXACT
+    )
+    spread: Mapping[str, Array] = quantity(
+        "1",
+        "root mean square of the displacement about its mean, over the length scale",
+        "block",
+        error="error",
+    )
+    peak: Mapping[str, Array] = quantity(
+        "1", "greatest displacement over the length scale", "block", error="error"
+    )
+    force_factor: Mapping[str, Array] = quantity(
+        "1", "greatest force over the mean force", "block", error="error"
+    )
+    force_rms: Mapping[str, Array] = quantity(
+        "1", "root mean square of the force about its mean, over the mean force", "block", error="error"
+    )
+    separated: Mapping[str, Array] = quantity(
+        "1", "part of each block without contact of the driving flanks", "block", shown="%", error="error"
+    )
+    order: Array = quantity("1", "mesh order of the lines", "line", no_error=EXACT)
+    order_force: Mapping[str, Array] = quantity(
+        "1", "amplitude of the force over the mean force by block and order", "block line", error="error"
+    )
+    order_displacement: Mapping[str, Array] = quantity(
+        "1",
+        "amplitude of the displacement over the length scale by block and order",
+        "block line",
+        error="error",
+    )
+    periods: int = quantity("1", "mesh periods of each direction", no_error=EXACT)
+    seconds: float | None = quantity("s", "time of each direction", no_error=EXACT)
+    rate: float = quantity(
+        "1",
+        "change of the frequency in one decay time over the width of a resonance; where it is small the motion follows",
+        no_error=EXACT,
+    )
+    error: float
+    cost: Cost
+    converged: bool = quantity("1", "whether the motion stayed bounded in both directions")
+    message: str
+
+
+def speed_run_up(
+    motion: PairOscillator,
+    speed: tuple[float, float] | None = None,
+    *,
+    frequency: tuple[float, float] | None = None,
+    seconds: float | None = None,
+    periods: int = 8000,
+) -> SpeedRunUp:
+    """Run a pair up through a range of speeds, evenly in time, and down again.
+
+    Parameters
+    ----------
+    motion : PairOscillator
+    speed : (float, float)
+        Pinion speeds, from and to, rising [rad/s].
+    frequency : (float, float)
+        Instead of them: mesh frequencies over the natural one.
+    seconds : float, optional
+        Time of a run-up [s], for a pair with physical scales.
+    periods : int
+        Mesh periods of a run-up where no time is given.
+
+    Raises
+    ------
+    InputError
+        With what is out of range.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from flankfilm.coupling import given_series, pair_oscillator
+    >>> pair = GearPair(pinion=Gear(teeth=20), wheel=Gear(teeth=30), module=2e-3, face_width=20e-3)
+    >>> motion = pair_oscillator(pair.with_backlash(50e-6), given_series(4e8, [0.2]), 100.0, 500.0)
+    >>> found = speed_run_up(motion, (500.0, 700.0), periods=320)
+    >>> sorted(found.force_factor), len(found.force_factor["up"]), found.seconds > 0.0
+    (['down', 'up'], 20, True)
+    """
+    watch, scales = Stopwatch(), motion.scales
+    if (speed is None) == (frequency is None):
+        raise InputError.at("speed", "", "or frequency must be given, one of both")
+    if scales is None and (speed is not None or seconds is not None):
+        raise InputError.at(
+            "speed", "", "requires an oscillator with physical scales", "give frequency and periods"
+        )
+    with Faults() as faults:
+        given = speed or frequency or (0.0, 0.0)
+        low, high = (faults.number(f"range[{k}]", given[k], POSITIVE) for k in range(2))
+        if not low < high:
+            faults.add("range", tuple(given), "must rise", "the way down is run as well")
+        number = faults.whole("periods", periods, *PERIODS)
+        if seconds is not None:
+            faults.number("seconds", seconds, POSITIVE.in_unit(1.0, "s"))
+    ends = (low, high) if speed is None or scales is None else (scales.frequency(low), scales.frequency(high))
+    per_tau = 0.5 * (ends[0] + ends[1]) / (2.0 * math.pi)  # mesh periods in a unit of dimensionless time
+    if seconds is not None and scales is not None:
+        number = faults_of_time(seconds * scales.omega_n * per_tau)
+    up = dynamics.run_up(motion.oscillator, ends, number)
+    down = dynamics.run_up(motion.oscillator, ends[::-1], number)
+    each, mean = {"up": up, "down": down}, motion.oscillator.mean_force or np.nan
+    said = [f"{way}: {one.message}" for way, one in each.items()]
+    return SpeedRunUp(
+        frequency={way: one.frequency for way, one in each.items()},
+        speed=None
+        if scales is None
+        else {way: scales.speed(1.0) * one.frequency for way, one in each.items()},
+        spread={way: one.rms for way, one in each.items()},
+        peak={way: one.peak for way, one in each.items()},
+        force_factor={way: one.force_peak / mean for way, one in each.items()},
+        force_rms={way: one.force_rms / abs(mean) for way, one in each.items()},
+        separated={way: one.separated for way, one in each.items()},
+        order=up.order,
+        order_force={way: one.force_order / abs(mean) for way, one in each.items()},
+        order_displacement={way: one.displacement_order for way, one in each.items()},
+        periods=up.periods,
+        seconds=None if scales is None else up.periods / per_tau / scales.omega_n,
+        rate=max(up.rate, down.rate),
+        error=max(up.error, down.error),
+        cost=Cost(watch.seconds, periods=up.cost.periods + down.cost.periods),
+        converged=up.converged and down.converged,
+        message="; ".join(said),
+    )
+
+
+MOST = 2_000_000
+"""Mesh periods of a run-up: a quarter of an hour of computing."""
+
+
+def faults_of_time(periods: float) -> int:
+    """Whole number of mesh periods of a time.
+
+    Raises
+    ------
+    InputError
+        Where these are fewer than a block, or too many.
+    """
+    if not 16 <= periods <= MOST:
+        allowed = f"must be 16 to {MOST} mesh periods (this is {periods:.3g})"
+        raise InputError.at(
+            "seconds", "", allowed, "give another time: slower than a few seconds changes little"
+        )
+    return round(periods)

@@ -1,0 +1,93 @@
+"""Sections of the report about run-ups and about the dynamic factor over speed and torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.figures.motion import scale
+from flankfilm.report.page import Headline, Part, Table, pictures, said
+from flankfilm.report.text import number, percent
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from flankfilm.coupling import DynamicMap, SpeedRunUp
+
+RPM = 30.0 / np.pi
+
+
+def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
+    """Draw run-up and coast-down with their orders, and list where the force is greatest and changes most."""
+    force = scale(results, "force")
+    heads = ("run", force.named("greatest force"), "at", "largest jump at", "from", "to")
+    rows = tuple((way, *_extremes(stage, way, float(force.values))) for way in ("up", "down"))
+    seconds = "" if stage.seconds is None else f" in {number(stage.seconds)} s"
+    note = said(
+        "run_up",
+        periods=f"{stage.periods:,}",
+        seconds=seconds,
+        rate=number(stage.rate),
+        error=percent(stage.error),
+    )
+    drawn = pictures(results, "run_up", "waterfall")
+    return Part("run-up", "Run-up and coast-down", figures=drawn, tables=(Table(heads, rows),), notes=(note,))
+
+
+def _extremes(stage: SpeedRunUp, way: str, unit: float) -> tuple[str, ...]:
+    """Greatest force and where; the largest change of the root mean square between blocks, and where."""
+    factor, spread = stage.force_factor[way], stage.spread[way]
+    at = stage.frequency[way] if stage.speed is None else RPM * stage.speed[way]
+    rpm = "" if stage.speed is None else " rpm"
+    most = int(np.nanargmax(factor))
+    jump = int(np.nanargmax(np.abs(np.diff(spread)))) if len(spread) > 1 else 0
+    after = min(jump + 1, len(spread) - 1)
+    ends = (
+        number(unit * float(factor[max(jump - 1, 0)])),
+        number(unit * float(factor[min(after + 1, len(at) - 1)])),
+    )
+    return number(unit * float(factor[most])), f"{at[most]:.5g}{rpm}", f"{at[after]:.5g}{rpm}", *ends
+
+
+def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
+    """Draw the map, and list the greatest factor at each torque."""
+    rows = []
+    for torque, resonance, factors, iso, apart in zip(
+        stage.torque, stage.resonance, stage.factor, stage.iso, stage.separated, strict=True
+    ):
+        most = int(np.nanargmax(factors))
+        beside = number(float(iso[most])) if np.isfinite(iso[most]) else "-"
+        rows.append(
+            (
+                number(float(torque)),
+                f"{RPM * resonance:.0f}",
+                number(float(factors[most])),
+                f"{RPM * stage.speed[most]:.0f}",
+                beside,
+                number(100.0 * float(np.nanmax(apart))),
+            )
+        )
+    heads = (
+        "torque [N m]",
+        "resonance [rpm]",
+        "greatest K_v [-]",
+        "at [rpm]",
+        "ISO 6336-1, B, there [-]",
+        "most time without contact [%]",
+    )
+    note = said("dynamic_map", error=percent(stage.sampling_error))
+    notes = (note,) if stage.converged else (note, stage.message)
+    drawn = pictures(results, "dynamic_map")
+    table = Table(heads, tuple(rows))
+    return Part(
+        "dynamic-map", "Dynamic factor over speed and torque", figures=drawn, tables=(table,), notes=notes
+    )
+
+
+def map_headlines(stage: DynamicMap) -> list[Headline]:
+    """Greatest factor of the map."""
+    row, column = np.unravel_index(int(np.nanargmax(stage.factor)), stage.factor.shape)
+    error = percent(stage.sampling_error)
+    note = f"at {RPM * stage.speed[column]:.0f} rpm and {stage.torque[row]:g} N m; ± {error} by samples"
+    return [Headline("greatest dynamic factor K_v of the map", f"{stage.greatest:.3g}", note)]

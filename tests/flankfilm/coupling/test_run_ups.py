@@ -1,0 +1,67 @@
+"""Run-ups of a pair and the map over speed and torque, against the sweeps and sizes that they are made of."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import flankfilm as ff
+from base import InputError
+from flankfilm.coupling import given_series, speed_sweep
+from gears import Gear, GearPair
+
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(50e-6)
+SERIES = given_series(4e8, [0.2])
+RPM = math.pi / 30.0
+
+
+def motion_at(torque: float):
+    return ff.pair_oscillator(PAIR, SERIES, torque, 500.0, error_amplitude=(4e-6, 1e-6))
+
+
+def test_seconds_are_mesh_periods():
+    motion = motion_at(100.0)
+    found = ff.speed_run_up(motion, (300.0, 420.0), seconds=0.4)
+    # revolutions of 0.4 s at the mean speed, 20 meshes each, in whole blocks of 16
+    assert found.periods == pytest.approx(0.4 * 360.0 / (2 * math.pi) * 20, abs=16)
+    assert found.seconds == pytest.approx(0.4, rel=0.05)
+    assert found.speed["up"][0] < found.speed["up"][-1]
+    assert found.speed["down"] == pytest.approx(found.speed["up"][::-1], rel=1e-12)
+
+
+def test_a_slow_run_up_holds_the_forces_of_the_sweep():
+    motion = motion_at(100.0)
+    low, high = (motion.scales.speed(w) for w in (0.3, 0.4))  # no jump on the way
+    found = ff.speed_run_up(motion, (low, high), periods=3200)
+    at = found.frequency["up"][[40, 100, 160]]
+    steady = speed_sweep(motion, frequency=at)
+    assert found.force_factor["up"][[40, 100, 160]] == pytest.approx(steady.force_factor["up"], rel=1e-2)
+    assert found.spread["up"][[40, 100, 160]] == pytest.approx(steady.spread["up"], rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({}, "one of both"),
+        ({"speed": (500.0, 400.0)}, "rise"),
+        ({"speed": (300.0, 400.0), "seconds": 1e-4}, "mesh periods"),
+    ],
+)
+def test_ranges_that_are_none(keys, said):
+    with pytest.raises(InputError, match=said):
+        ff.speed_run_up(motion_at(100.0), **keys)
+
+
+def test_each_cell_of_the_map_is_the_greatest_force_of_the_sweeps_there():
+    speeds = np.linspace(1500.0, 2500.0, 5)
+    found = ff.dynamic_map(motion_at, [50.0, 200.0], speeds)
+    assert found.factor.shape == found.iso.shape == (2, 5)
+    for k, torque in enumerate((50.0, 200.0)):
+        swept = speed_sweep(motion_at(torque), speeds)
+        greatest = np.fmax(*swept.force_factor.values())
+        assert found.factor[k] == pytest.approx(greatest, rel=1e-12)
+    # a given stiffness does not know the load
+    assert found.resonance[0] == pytest.approx(found.resonance[1], rel=1e-12)
+    assert found.greatest == found.factor.max()

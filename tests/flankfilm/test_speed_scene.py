@@ -1,0 +1,57 @@
+"""Scenes that want a run-up or a map over speed and torque: variables, pictures, report, faults."""
+
+from __future__ import annotations
+
+import pytest
+
+from base import InputError
+from flankfilm import figures
+from flankfilm.report.contents import PARTS
+from flankfilm.running import run_scene
+from flankfilm.scene import parse_scene
+from tests.flankfilm.scenes import ARTICLE
+
+HEAD = ARTICLE.replace("pinion_torque_Nm = 600", "pinion_torque_Nm = 600\ntorques_Nm = [300, 600]")
+SCENE = f"""
+wants = ["run-up", "dynamic-map"]
+tolerance = 0.02
+{HEAD}
+[stiffness]
+model = "potential-energy"
+[dynamics]
+error_amplitude_um = [5, 1]
+sweep = {{ speed_rpm = [3000, 12000], points = 6 }}
+run_up = {{ speed_rpm = [3000, 4000], periods = 320 }}
+"""
+
+
+def test_run_up_and_map_of_a_scene():
+    found = run_scene(parse_scene(SCENE), None)
+    data = found.dataset
+    assert found.failures == ()
+    assert data.dynamic_map_factor.shape == (2, 6)
+    assert data.dynamic_map_torque.values.tolist() == [300.0, 600.0]
+    assert data.run_up_force_factor_up.size == 20
+    assert data.run_up_order_force_down.shape == (20, 96)
+    for draw in (figures.run_up, figures.waterfall, figures.dynamic_map):
+        assert draw(data).axes
+    for name in ("run-up", "dynamic-map"):
+        part = PARTS[name](found.values[name], data)
+        assert part.figures
+        assert part.tables[0].rows
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ("run_up = {", "# run_up = {", "dynamics.run_up"),
+        ("torques_Nm", "# torques_Nm", "operating.torques_Nm"),
+        ("sweep = {", "# sweep = {", "dynamics.sweep.speed_rpm"),
+        ("periods = 320", "periods = 320, seconds = 1", "dynamics.run_up"),
+        ("periods = 320", "periods = 3", "dynamics.run_up.periods"),
+    ],
+)
+def test_faults_name_what_is_missing(old: str, new: str, where: str):
+    with pytest.raises(InputError) as caught:
+        parse_scene(SCENE.replace(old, new))
+    assert where in {fault.where for fault in caught.value.faults}
