@@ -13,6 +13,7 @@ from flankfilm.build_film import film_model, lubricant
 from flankfilm.scene.dynamics import OSCILLATOR
 from flankfilm.scene.section import required
 from flankfilm.stages.catalogue import DRY_CYCLE, FILM, MESH, PAIR, PLAN, TEETH, loaded_teeth, with_arcs
+from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.motion import FOURIER, SCALING
@@ -39,6 +40,7 @@ def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     FILM,
     FOURIER,
     EXCITATION,
+    FILM_DAMPING,
     kept="dynamics flankfilm gears fem meshes ehl",
 )
 def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
@@ -47,7 +49,7 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
     section = required(scene.dynamics, "[dynamics]", "the dynamic map")
     operating = required(scene.operating, "[operating]", "the dynamic map")
     asked = required(section.sweep, "dynamics.sweep", "the dynamic map", "add the range")
-    given = section.si(*OSCILLATOR)
+    given = section.si(*OSCILLATOR) | {"damping_ratio": damping_ratio(run)}
     if given["error_phase"] == (0.0,):
         given["error_phase"] = 0.0
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
