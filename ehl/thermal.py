@@ -103,9 +103,9 @@ def solve_thermal(
     bulk_temperatures : tuple of float, optional
         Of the first and the second body [K], which the oil arrives with; those of the lubricant's data if not given.
     tolerance : float
-        Wanted relative error of the film (central, minimum and between), of the traction, and of the viscosity by
-        the error of the greatest oil temperature. That temperature has an error of its own, `temperature_error`:
-        where little slides it stands at the pressure spike, which grids resolve last.
+        Wanted relative error of the film (central, minimum and between) and of the traction. The greatest
+        temperatures have an error of their own, `temperature_error`: where little slides they stand at the pressure
+        spike, which grids resolve last.
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     start : ThermalFilm, optional

@@ -64,9 +64,8 @@ class Compared:
         cut = 0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / INLET_GAP
         lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
         film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
-        warmer = oil.viscosity_slope * float(change[0])
-        others = GRID_FACTOR * max(self.traction_error, warmer)
-        self.error = max(film, others) + self.inlet + cut + rest
+        # what the hottest oil does to film and traction is in these; itself it may stand at the spike
+        self.error = max(film, GRID_FACTOR * self.traction_error) + self.inlet + cut + rest
 
     def _spike_left(self) -> float:
         """What the oil under the spike may be hotter by than the hottest oil found [K].

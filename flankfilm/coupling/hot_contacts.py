@@ -68,6 +68,18 @@ def heat_screen(
     ------
     SolverError
         Where a film has no solution.
+
+    Examples
+    --------
+    >>> from ehl import STEEL, Lubricant
+    >>> from flankfilm.coupling import FilmModel, film_along_path
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> oil = Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, eyring_stress=5e6)
+    >>> path = film_along_path(pair, 600.0, 209.44, oil, model="ishikawa", film=FilmModel("dowson"))
+    >>> screen = heat_screen(pair, path, 209.44, oil, solids=(STEEL, STEEL))
+    >>> -0.3 < screen.change < -0.1
+    True
     """
     slid = path.load * np.abs(pair.path_at(path.rho1).sliding(speed))
     rho1, load = _at(path.rho1, path.load, int(np.argmax(slid)))
@@ -102,6 +114,18 @@ def hottest_film(
     losses : MeshLosses
     tolerance : float
         Of the film, relative.
+
+    Examples
+    --------
+    >>> from ehl import STEEL, Lubricant
+    >>> from flankfilm import mesh_losses
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> oil = Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, eyring_stress=5e6)
+    >>> losses = mesh_losses(pair, 300.0, 209.44, oil, model="potential-energy", positions=4)
+    >>> film = hottest_film(pair, losses, oil, (STEEL, STEEL))
+    >>> abs(film.oil_temperature_rise / losses.path.oil_temperature_rise.max() - 1.0) < 0.05
+    True
     """
     path = losses.path
     rho1, load = _at(path.rho1, path.load, int(np.argmax(path.oil_temperature_rise)))

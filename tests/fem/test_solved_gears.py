@@ -19,7 +19,7 @@ from fem.ring import mesh_and_factor, ring_of
 from fem.solved_gear import MOST_RECORDS, Gears
 from fem.support import FIXED, Support, held_profiles
 from fem.tip_strips import tip_strips
-from gears import BasicRack, Blank, Gear, GearPair, Material, TipRelief
+from gears import BasicRack, Blank, Gear, GearPair, Lead, Material, TipRelief
 from meshes import Sizes, mesh_sector
 
 COARSE = Sizes().scaled(1.5)
@@ -130,7 +130,7 @@ OTHER = {
     "tip_chamfer": 1.1e-4,
     "blank": Blank(4e-3, 5e-3),
 }
-LIKE = {"tip_relief": TipRelief(2e-5, 1e-3)}
+LIKE = {"tip_relief": TipRelief(2e-5, 1e-3), "lead": Lead(crowning=1e-5)}
 """What no flexibility depends on."""
 
 
