@@ -21,7 +21,7 @@ from ehl.thermal_search import Compared, Search
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
 _HOTTEST = 1000.0  # [K]
 _DECOMPOSING = 620.0  # [K]
-_STRONGEST = 0.15  # mean shear stress over the greatest pressure
+_STRONGEST = 0.06  # mean shear stress over the greatest pressure
 _YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
 _TOLERANCE = Limit.above(0.0, 0.2, remedy="0.01 is 1 %")
 
