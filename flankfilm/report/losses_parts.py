@@ -51,7 +51,12 @@ def headlines(found: MeshLosses) -> list[Headline]:
             "efficiency of the mesh", f"{100 * found.efficiency:.3f}", plus_minus(found.loss_error), "%"
         ),
         Headline("mean coefficient of friction", f"{found.mean_friction:.4f}", off),
-        Headline("greatest temperature of the flanks", f"{hottest:.1f}", _bulk(found), "°C"),
+        Headline(
+            "greatest temperature of the flanks",
+            f"{hottest:.1f}",
+            f"± {_warmer(found):.1g} K; {_bulk(found)}",
+            "°C",
+        ),
         Headline("least film with heat", f"{float(least.values):.3g}", plus_minus(film_error), least.unit),
     ]
 
@@ -99,6 +104,13 @@ def _warm(found: MeshLosses, scene: Scene) -> str:
 def _bulk(found: MeshLosses) -> str:
     first, second = found.bulk_temperatures - ZERO_CELSIUS
     return f"bulk {first:.1f} and {second:.1f} °C"
+
+
+def _warmer(found: MeshLosses) -> float:
+    """Error of the hottest flank's temperature, as its contact's rise errs [K]."""
+    path = found.path
+    at = int(np.argmax(path.contact_temperature))
+    return float(path.temperature_error[at] * path.surface_temperature_rise[:, at].max())
 
 
 def _rise(found: MeshLosses) -> str:
