@@ -14,8 +14,8 @@ from flankfilm.plan.heat_choice import heat_choice
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, PAIR, TEETH, decided, loaded_teeth
 from flankfilm.stages.engine import Engine, stage
 
-FINEST = 0.01
-"""Tolerance of films with heat at least: their greatest oil temperatures err by more on the finest grids."""
+FINEST = 0.02
+"""Tolerance of films with heat at least: near C the oil is hottest at the pressure spike, which grids resolve last."""
 
 _TEETH_DECIDED = decided(lambda plan: {"stiffness model": plan.stiffness.choice})
 
