@@ -325,6 +325,10 @@ WORDED = [
     ({"pair.pinion.deviations": {"single_pitch_um": [1.0, 2.0]}}, "pair.pinion.deviations.single_pitch_um",
      rf"one value for each of {NUMBER} teeth", lambda n: {"pair.pinion.deviations.single_pitch_um": [1.0] * int(n)}),
     ({"pair.modul_mm": 2.0}, "pair.modul_mm", r"Did you mean (module_mm)", lambda n: {"pair.modul_mm": None}),
+    ({"wants": ["losses"]}, "lubricant.temperature_C", r"Give the oil's (temperature)",
+     lambda n: {"lubricant.temperature_C": 80.0}),
+    ({"wants": ["losses"], "lubricant.temperature_C": 80.0, "film": {"supply": "oil-layer", "oil_layer_um": 0.2}},
+     "film.supply", r'Take supply = "(flooded)"', lambda n: {"film": {"supply": n}}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip
