@@ -157,6 +157,17 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
 
 
 @app.command
+def warm_up() -> int:
+    """Compile now, on all cores, what would be compiled when it is first used."""
+    _prepare()
+    from flankfilm.studies.executors import default_workers
+    from flankfilm.warming import warm_up as compile_all
+
+    compile_all(default_workers(), lambda part: print(printable(str(part)), flush=True))
+    return 0
+
+
+@app.command
 def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
     """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
 

@@ -14,8 +14,18 @@ from base import heard_compiling
 Progress = Callable[[str, int, int], None]
 """Called with what is being done, steps done, and steps in all."""
 
-COMPILING = "compiling, once: later runs load what is kept"
-"""Said when code is compiled for the first time on a machine, which takes up to a minute."""
+COMPILING = "compiling{}, once: later runs load what is kept"
+"""Said when code is compiled for the first time on a machine, which takes up to half a minute."""
+
+COMPILED = {
+    "dynamics.kernels.stepwise": "motions in steps",
+    "dynamics.kernels.drives": "motions of drive trains",
+    "dynamics.kernels.correcting": "branches of orbits",
+    "dynamics.kernels": "motions with backlash",
+    "ehl.shear_kernels": "films with heat",
+    "ehl": "films",
+}
+"""What compiled functions are for, by the beginning of their module's name; the first that fits."""
 
 TENTHS = 10
 """Lines that a log has of rows."""
@@ -46,6 +56,18 @@ def in_steps(progress: Progress, total: int) -> Callable[[str], None]:
     return announce
 
 
+def compiling_line(module: str) -> str:
+    """What is said when a function of a module is compiled.
+
+    Examples
+    --------
+    >>> compiling_line("ehl.kernels")
+    'compiling for films, once: later runs load what is kept'
+    """
+    kinds = [kind for start, kind in COMPILED.items() if module.startswith(start)]
+    return COMPILING.format(f" for {kinds[0]}" if kinds else "")
+
+
 @contextmanager
 def console_progress() -> Iterator[Progress]:
     """Show a bar with the time left on a terminal, and a line for each stage elsewhere."""
@@ -53,10 +75,11 @@ def console_progress() -> Iterator[Progress]:
         shown = advance or lines(sys.stderr)
         said: list[str] = []
 
-        def compiling(_what: str) -> None:
-            if not said:
-                said.append(COMPILING)
-                shown(COMPILING, 0, 1)
+        def compiling(module: str) -> None:
+            line = compiling_line(module)
+            if line not in said:
+                said.append(line)
+                shown(line, 0, 1)
 
         with heard_compiling(compiling):
             yield shown

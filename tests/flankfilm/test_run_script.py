@@ -208,6 +208,22 @@ def test_second_call_only_looks(sandbox: Sandbox) -> None:
     assert len(sandbox.calls()) == 6  # each time: is the Python still the same, and pytest
 
 
+def test_set_up_compiles_once_and_goes_on_where_that_fails(sandbox: Sandbox) -> None:
+    done = sandbox.run("setup", JOB_STATUS="1")
+    assert done.returncode == 0
+    assert sandbox.calls("flankfilm") == ["flankfilm warm-up"]
+    assert "warning: compiling failed" in done.stderr
+    assert sandbox.run("demo").returncode == 0
+    assert len(sandbox.calls("warm-up")) == 1
+
+
+@pytest.mark.parametrize("job", ["check", "docs"])
+def test_jobs_that_compute_nothing_compile_nothing(sandbox: Sandbox, job: str) -> None:
+    sandbox.run(job)
+    assert sandbox.stamp.exists()
+    assert not sandbox.calls("warm-up")
+
+
 @pytest.mark.parametrize("name", ["requirements.txt", "pyproject.toml"])
 def test_changed_pins_update_in_place(sandbox: Sandbox, name: str) -> None:
     sandbox.run("setup")
@@ -495,13 +511,15 @@ def test_all_checks_run_even_when_one_fails(sandbox: Sandbox) -> None:
 def test_demo_says_where_the_report_is(sandbox: Sandbox) -> None:
     done = sandbox.run("demo", cwd=Path("/"))
     out = sandbox.root / "out" / "article"
-    assert sandbox.calls("flankfilm") == [f"flankfilm run {sandbox.root}/examples/article.toml --out {out}"]
+    assert sandbox.calls("flankfilm run") == [
+        f"flankfilm run {sandbox.root}/examples/article.toml --out {out}"
+    ]
     assert done.stderr.splitlines()[-1] == f"run: the report: {out}/report.html"
 
 
 def test_demo_with_options_only(sandbox: Sandbox) -> None:
     sandbox.run("demo", "--tolerance", "1%")
-    (call,) = sandbox.calls("flankfilm")
+    (call,) = sandbox.calls("flankfilm run")
     assert call.endswith(
         "/examples/article.toml --out " + str(sandbox.root / "out/article") + " --tolerance 1%"
     )
@@ -510,7 +528,7 @@ def test_demo_with_options_only(sandbox: Sandbox) -> None:
 @pytest.mark.parametrize("form", [("--out", "mine here"), ("--out=mine here",)])
 def test_demo_with_own_scene(sandbox: Sandbox, tmp_path: Path, form: tuple[str, ...]) -> None:
     done = sandbox.run("demo", "my scene.toml", *form, cwd=tmp_path)
-    assert sandbox.calls("flankfilm") == ["flankfilm run my scene.toml " + " ".join(form)]
+    assert sandbox.calls("flankfilm run") == ["flankfilm run my scene.toml " + " ".join(form)]
     assert done.stderr.splitlines()[-1] == f"run: the report: {tmp_path}/mine here/report.html"
 
 
