@@ -67,7 +67,6 @@ class _Walker(Tracer):
         self.states = [start.u[: start.size] * problem.scale]
         self.special: list[SpecialPoint] = []
         self.tangent, self.bend = start.tangent(along), np.zeros(len(along))
-        self.twist, self.before = np.zeros(len(along)), (self.bend, 0.0)
         self.half = self._half(start)
         self.refused = ""
         self.meeting: SpecialPoint | None = None
@@ -82,8 +81,7 @@ class _Walker(Tracer):
             return None
         if size > LARGE:
             last = self._magnified(last, size)
-        h = self.step
-        aim = self.aimed(last, last.u + h * (self.tangent + h * (self.bend + h * self.twist)))
+        aim = self.aimed(last, last.u + self.step * (self.tangent + self.step * self.bend))
         if aim is None:
             return None
         self.refused = "Newton's method did not arrive"
@@ -138,27 +136,10 @@ class _Walker(Tracer):
         self.problem, self.points[-1] = larger, again
         shrink = np.append(np.full(last.size, 1.0 / factor), 1.0)
         self.phases = (np.array(self.phases) * shrink).tolist()
-        self.bend = self.twist = np.zeros(len(shrink))
-        self.before = (self.bend, 0.0)
+        self.bend = np.zeros(len(shrink))
         self.half = self.half / factor
         self.tangent = again.tangent(self.tangent * shrink)
         return again
-
-    def _predict(self, found: _Step, length: float) -> None:
-        """Half the curvature, and a third of its change along the branch, for the predictor.
-
-        None from so short a step that the difference is rounding; no change from steps that met a corner.
-        """
-        mean, (earlier, before) = 0.0 * found.tangent, self.before
-        if length > 1e-5:
-            mean = 0.5 / length * (found.tangent - self.tangent)
-        self.bend, self.twist, self.before = mean, 0.0 * mean, (mean, 0.0)
-        if found.special or not length > 1e-5:
-            return
-        self.before = (mean, length)
-        if before > 1e-3 * length:
-            change = 2.0 / (length + before) * (mean - earlier)
-            self.bend, self.twist = mean + 0.5 * length * change, change / 3.0
 
     def _between(self, last: MapPoint, new: MapPoint, tangent: Array, patient: bool) -> _Step | None:
         """The step with its special points; None if one is not located and a shorter step may help."""
@@ -191,7 +172,8 @@ class _Walker(Tracer):
         self.points.append(new)
         self.states.append(new.u[: new.size] * self.problem.scale)
         self.iterations += new.iterations
-        self._predict(found, length)
+        # half the curvature, for the predictor: none from so short a step that the difference is rounding
+        self.bend = 0.5 / length * (found.tangent - self.tangent) if length > 1e-5 else 0.0 * found.tangent
         self.tangent, self.half = found.tangent, found.half
         if new.iterations <= 4:
             self.step = min(1.4 * self.step, self.steps.most)

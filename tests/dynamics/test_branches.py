@@ -242,3 +242,14 @@ def test_points_are_orbits_whatever_the_parameter_touches(parameter, reach):
     for value, state in zip(branch.values[::3], branch.states[::3], strict=True):
         image = period_map(osc.with_parameter(parameter, float(value)), state)
         assert image.state == pytest.approx(state, abs=1e-13)
+
+
+def test_points_far_apart_miss_no_pair_of_grazings():
+    """Two grazings between neighbours cancel in the counts: steps must be short enough to see both."""
+    osc = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05, 0.2, 0.3, 1.0)
+    start = find_orbit(osc, osc.rest_state(), transient=2000)
+    far, near = (continue_branch(start, "frequency", (0.3, 0.8), max_step=step) for step in (0.05, 0.01))
+    assert [(p.kind, p.label) for p in far.points] == [(p.kind, p.label) for p in near.points]
+    places = [np.array([p.parameter for p in branch.points]) for branch in (far, near)]
+    assert len(places[0]) == 12
+    np.testing.assert_allclose(*places, rtol=1e-9)
