@@ -108,11 +108,21 @@ class PathFilms:
         One for each contact.
     flooded : tuple of Film
         The smooth, flooded films of the same contacts; empty unless something is held at the inlet.
+    beside : tuple of int
+        Which of them are of pairs that hardly touch, see `with_light_ends`.
     """
 
     rho1: Array
     films: tuple[Solved, ...]
     flooded: tuple[ehl.Film, ...] = ()
+    beside: tuple[int, ...] = ()
+
+    @property
+    def loaded(self) -> PathFilms:
+        """Films of the pairs that carry load."""
+        kept = [i for i in range(len(self.films)) if i not in self.beside]
+        flooded = tuple(self.flooded[i] for i in kept) if self.flooded else ()
+        return PathFilms(self.rho1[kept], tuple(self.films[i] for i in kept), flooded)
 
 
 def touching(cycle: MeshCycle) -> tuple[Integers, Integers]:
@@ -147,6 +157,54 @@ def contacts_of(
         for w, u, r in each
     )
     return rho1, contacts
+
+
+def with_light_ends(
+    pair: gears.GearPair,
+    rho1: Array,
+    contacts: tuple[ehl.LineContact, ...],
+    speed: float,
+    step: float,
+    load: float,
+) -> tuple[Array, tuple[ehl.LineContact, ...], tuple[int, ...]]:
+    """Add a lightly loaded contact a step before the first and after the last, where these are on the path.
+
+    Where a pair comes or goes its film carries some load long before the flanks would touch, and falls nearly with the
+    inverse of that load, which heavier films do not know: a law of theirs alone has the pair let go at once, so that no
+    film is ever asked for there.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    rho1, contacts : ndarray, tuple
+        Of the loaded pairs, in the order of the path.
+    speed : float
+        Of the pinion [rad/s].
+    step : float
+        Between contacts of one pair [m].
+    load : float
+        Of the light contacts [N/m].
+
+    Returns
+    -------
+    ndarray, tuple, tuple of int
+        Places [m], contacts, and which of them were added.
+    """
+    ends = {0: float(rho1[0]) - step, -1: float(rho1[-1]) + step}
+    ends = {end: place for end, place in ends.items() if pair.points.A < place < pair.points.E}
+    every, places = list(contacts), list(rho1)
+    for end, place in ends.items():
+        path = pair.path_at(np.array([place]))
+        light = replace(
+            contacts[end],
+            load=min(load, contacts[end].load),
+            entrainment=float(path.entrainment(speed)[0]),
+            radius=float(path.radius[0]),
+        )
+        at = 0 if end == 0 else len(every)
+        every.insert(at, light)
+        places.insert(at, place)
+    return np.array(places), tuple(every), tuple(0 if end == 0 else len(every) - 1 for end in ends)
 
 
 def films_of(

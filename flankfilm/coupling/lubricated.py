@@ -24,6 +24,7 @@ from flankfilm.coupling.films import (
     held_the_other_way,
     law_of,
     off_by_errors,
+    with_light_ends,
 )
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.mesh_cycles import resolved
@@ -34,6 +35,9 @@ FILM_POSITIONS = 40
 """Positions of a base pitch at which films are solved and brought into agreement with the load share."""
 
 MOST_ROUNDS = 12
+
+LIGHT_SHARE = 5e-3
+"""Part of the force at which films are solved beside the loaded places, where pairs come and go."""
 
 SOFTER = (
     "films softer than the teeth draw the load to the pair that has most of it; raise the torque, or lower speed and "
@@ -245,7 +249,9 @@ def lubricate(
         rounds=agreed.rounds,
         mismatch=agreed.mismatch,
         dry=dry,
-        film=gathered(model, path, teeth.pair, dry, agreed.seconds, agreed.positions if profiles else None),
+        film=gathered(
+            model, path.loaded, teeth.pair, dry, agreed.seconds, agreed.positions if profiles else None
+        ),
         otherwise=run.otherwise(path),
     )
 
@@ -290,8 +296,9 @@ class _Run:
                 )
             rounds += 1
             watch = Stopwatch()
-            contacts = contacts_of(self.teeth.pair, cycle, self.speed, self.lubricant)
-            path = films_of(self.model, *contacts, path, self.resolution.films)
+            rho1, contacts, beside = self.contacts(cycle, positions)
+            path = films_of(self.model, rho1, contacts, path, self.resolution.films)
+            path = replace(path, beside=beside)
             law = self.law(path)
             seconds += watch.seconds
             try:
@@ -301,6 +308,17 @@ class _Run:
             mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
         assert path is not None
         return _Agreement(path, law, positions, rounds, mismatch, seconds)
+
+    def contacts(
+        self, cycle: MeshCycle, positions: int
+    ) -> tuple[Array, tuple[ehl.LineContact, ...], tuple[int, ...]]:
+        """Give the contacts of a cycle that have films, and which of them are for the law alone."""
+        pair = self.teeth.pair
+        rho1, contacts = contacts_of(pair, cycle, self.speed, self.lubricant)
+        if self.model.name != "ehl" or self.model.supply is not None:
+            return rho1, contacts, ()
+        light = LIGHT_SHARE * self.teeth.force / pair.face_width
+        return with_light_ends(pair, rho1, contacts, self.speed, pair.base_pitch / positions, light)
 
     def with_film(self, path: PathFilms, label: str) -> MeshCycle:
         """Give the mesh cycle with films, at the positions of the dry one."""
