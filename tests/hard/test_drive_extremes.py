@@ -79,6 +79,7 @@ def two_equal(frequency: float, damping: float = 1e-4) -> DriveOscillator:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_two_modes_of_one_frequency():
     """sqrt(2) twice: the multipliers coincide, the orbit and its branch past the resonance are found."""
     drive = two_equal(1.3, damping=0.02)
