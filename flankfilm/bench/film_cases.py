@@ -9,6 +9,7 @@ import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Level, Levels, answer, case, level, over, percent, value
 from flankfilm.bench.examples import DOMAIN, contacts_along_path, pitch_point
+from flankfilm.bench.thermal_cases import thermal_films
 from flankfilm.bench.work_cases import work_film
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def films(quick: bool) -> tuple[Case, ...]:
     pitch = pitch_point()
     at_pitch = film_nodes("pitch", "pitch point", pitch, FINEST[quick], quick)
     if quick:
-        return at_pitch, film_tolerance(quick)
+        return at_pitch, film_tolerance(quick), *thermal_films(quick)
     half = solve(pitch).central_thickness / 2
     return (
         film_nodes("light", "M 2, L 1", LineContact.from_moes(2.0, 1.0), (1e-5, None), quick),
@@ -52,6 +53,7 @@ def films(quick: bool) -> tuple[Case, ...]:
         film_path(),
         *(film_path_fed(*kind) for kind in fed_kinds()),
         film_over_time(),
+        *thermal_films(quick),
         film_relaxed("light", "M 5, L 5", LineContact.from_moes(5.0, 5.0)),
         film_relaxed("pitch", "pitch point", pitch),
         work_film(),
