@@ -56,7 +56,7 @@ class DriveSweep:
     )
     error: float = quantity("1", "relative error of one period map, the largest met")
     cost: Cost
-    converged: bool = quantity("1", "whether every motion could be followed")
+    converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = quantity("", "what the sweeps report")
 
 

@@ -51,7 +51,7 @@ class DynamicMap:
     )
     sampling_error: float = quantity("1", "largest relative change of the factors with half as many samples")
     cost: Cost
-    converged: bool = quantity("1", "whether every motion could be followed")
+    converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = ""
 
     @property

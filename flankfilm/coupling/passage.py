@@ -116,6 +116,17 @@ def passage_film(
         no oil can leave.
     SolverError
         Where a film has no solution.
+
+    Examples
+    --------
+    >>> from ehl import Lubricant
+    >>> from gears import Gear, GearPair
+    >>> from flankfilm.coupling import mesh_cycle
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
+    >>> passed = passage_film(mesh_cycle(pair, 300.0, model="fem"), pair, 209.44, oil, tolerance=0.05)
+    >>> passed.converged
+    True
     """
     with Faults() as faults:
         faults.number("speed", speed, _SPEED)

@@ -66,7 +66,7 @@ class SpeedRunUp:
     )
     error: float
     cost: Cost
-    converged: bool = quantity("1", "whether the motion stayed bounded in both directions")
+    converged: bool = quantity("1", "whether the motion stayed bounded in both directions", no_error=EXACT)
     message: str
 
 

@@ -40,6 +40,7 @@ REFUSED = {
     "manifold": (),
     "multi_sweep": ("frequency", [0.5]),
     "restoring_force": (0.0, 0.1),
+    "run_up": ((0.6, 0.9), 160),
     "special_sensitivities": ("frequency", None),
 }
 

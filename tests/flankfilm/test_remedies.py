@@ -279,6 +279,7 @@ OWN = {
     "stiffness": {"model": "given", "amplitudes": [0.2]},
 }
 FORM = {"mean_force": 0.1, "error_amplitude": 0.2, "half_backlash": 0.2}
+DAMPED = {"wants": ["sweep"], "dynamics": {"damping_ratio": "film", "sweep": {"speed_rpm": [500, 3000]}}}
 WORDED = [
     # what is changed, where the fault is, words with the numbers of the remedy, what they say
     ({**TURNING, "dynamics.sweep.speed_rpm": [0.01, 0.02]}, "dynamics.sweep.speed_rpm",
@@ -329,6 +330,14 @@ WORDED = [
      lambda n: {"lubricant.temperature_C": 80.0}),
     ({"wants": ["losses"], "lubricant.temperature_C": 80.0, "film": {"supply": "oil-layer", "oil_layer_um": 0.2}},
      "film.supply", r'Take supply = "(flooded)"', lambda n: {"film": {"supply": n}}),
+    ({**OWN, "dynamics": {**FORM, "damping_ratio": "film", "sweep": {"frequency": [0.4, 0.5]}}},
+     "dynamics.damping_ratio", r"Give a (number)", lambda n: {"dynamics.damping_ratio": 0.05}),
+    ({**DAMPED, "stiffness": {"model": "given", "amplitudes": [0.2]}}, "stiffness.model",
+     r'Take "(\w+)" or a closed form', lambda n: {"stiffness": {"model": n}}),
+    ({**DAMPED, "film": {"model": "dowson"}}, "film.model", r'Take "(ehl)"', lambda n: {"film.model": n}),
+    ({**DAMPED, "roughness": {"sigma_um": 0.4}}, "[roughness]", r"(Drop) it", lambda n: {"roughness": None}),
+    ({**DAMPED, "film": {"supply": "oil-layer", "oil_layer_um": 0.2}}, "film.supply", r'Take "(flooded)"',
+     lambda n: {"film": {"supply": n}}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip

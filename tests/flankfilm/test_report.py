@@ -82,7 +82,8 @@ OF_A_RUN = (
 OF_OTHERS = {"optimum", "optimum_map", "study", "verification"}
 ELSEWHERE = {
     "Frame", "animate_cycle", "film_families", "losses_along_path", "teeth_scene", "temperature_field",
-    "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum",
+    "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum", "run_up", "waterfall",
+    "dynamic_map",
 }  # fmt: skip
 
 PURE = {"motion n-p-q", "evaluation"}
