@@ -15,11 +15,13 @@ from dynamics.finding import find_orbits
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.inverse.refinement import Fit
+from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.tracking import marked
 
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
+THERE = 1e-3  # of its size: a motion so near to an orbit has settled on it
 STEP, MAX_POINTS, MOST = 0.05, 1500, 10**6  # largest step along a branch, its points, and branches at most
 CAPTURE = 0.02  # of the range: a point of the kind and label so near makes a search around the event needless
 BESIDE = (0.002, 0.015)  # of the range: how far beside an event its orbit is searched for
@@ -66,7 +68,8 @@ class Catalogue:
         asked_for = max((e.periods or LONGEST for e in problem.events), default=1)
         longest = asked_for if depth >= DOUBLED else 1
         gathered = BranchTree(here, problem.parameter, problem.bounds, longest, MOST, STEP, MAX_POINTS)
-        self._gather(gathered, [self._settled(here, problem.bounds[0], 0)])
+        lowest = here.with_parameter(problem.parameter, problem.bounds[0])
+        self._gather(gathered, [find_orbit(lowest, lowest.rest_state())])
         if depth >= DOUBLED:
             self._gather(gathered, self._upper(here, problem.bounds[1]))
         gathered.longest = (
@@ -125,16 +128,16 @@ class Catalogue:
             if orbit.converged:
                 gathered.follow(orbit, Origin(None, orbit.oscillator.get(self.problem.parameter)))
 
-    def _settled(self, here: GearOscillator, value: float, transient: int) -> Orbit:
-        start = here.with_parameter(self.problem.parameter, value)
-        return find_orbit(start, start.rest_state(), transient=transient)
-
     def _upper(self, here: GearOscillator, value: float) -> list[Orbit]:
         """Motion at the upper bound; where that is chaos, from which Newton's method may go anywhere, all orbits."""
-        settled = self._settled(here, value, SETTLED)
-        if settled.converged:
-            return [settled]
-        found = find_orbits(settled.oscillator, (1,))
+        there = here.with_parameter(self.problem.parameter, value)
+        motion = period_map(there, there.rest_state(), skip=SETTLED)
+        if not motion.message:
+            orbit = find_orbit(there, motion.state)
+            near = THERE * float(np.max(np.abs(motion.state)))
+            if orbit.converged and float(np.max(np.abs(orbit.state - motion.state))) <= near:
+                return [orbit]
+        found = find_orbits(there, (1,))
         self.tally.periods += found.cost.periods
         return list(found.orbits)
 
