@@ -170,7 +170,7 @@ class _Run:
         """Solve everything."""
         watch = Stopwatch()
         first = self._agree(FEW, FIRST_FRICTION, bulk)
-        agreed = self._agree(None, first.means.friction, first.bulk)
+        agreed = self._agree(None, first.means.friction, first.bulk, first.films)
         band = self._band(agreed)
         path, means = losses_along(self.teeth.pair, agreed.films, agreed.bulk), agreed.means
         sampled = self._means(self._cycle(means.friction, self.positions), agreed.films)
@@ -212,9 +212,15 @@ class _Run:
     def _means(self, cycle: MeshCycle, films: HeatedFilms, ratios: Carried | None = None) -> Means:
         return means_of(self.teeth.pair, cycle, self.speed, self._power, Carried.of(films, ratios))
 
-    def _agree(self, most: int | None, friction: float, bulk: tuple[float, float]) -> _Agreed:
-        """Iterate films, load share and temperatures, with so many films at most."""
-        balance, films, rounds = _Balance(), None, 0
+    def _agree(
+        self,
+        most: int | None,
+        friction: float,
+        bulk: tuple[float, float],
+        films: HeatedFilms | None = None,
+    ) -> _Agreed:
+        """Iterate films, load share and temperatures, with so many films at most, from some where they are as many."""
+        balance, rounds = _Balance(), 0
         cycle = self._cycle(friction, self.positions)
         while True:
             rounds += 1

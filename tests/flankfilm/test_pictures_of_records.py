@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import dynamics
+import ehl
 import flankfilm as ff
 from base import InputError, has_picture, plot
 from base.views import GROUP
@@ -52,6 +53,9 @@ def records():
     yield dynamics.multi_sweep(OSCILLATOR, parameter="frequency", values=np.linspace(0.5, 0.6, 3))
     yield dynamics.basins(OSCILLATOR, x=(-1, 1, 6), v=(-1, 1, 6))
     yield ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
+    oil = ehl.Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, eyring_stress=5e6)
+    losses = ff.mesh_losses(PAIR, 300.0, 209.44, oil, model="ishikawa", positions=4)
+    yield from (losses, losses.path)
 
 
 def test_every_name_of_a_picture_is_there():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import flankfilm as ff
+from base import SolverError
 from ehl import Lubricant, Roughness
 from flankfilm.coupling import MeshLosses
 from gears import Gear, GearPair
@@ -145,3 +146,38 @@ def test_thinner_and_hotter_oil_has_thinner_films_and_less_friction():
     assert warmer.least_film < 0.65 * found.least_film
     assert warmer.mean_friction < found.mean_friction
     assert warmer.rolling_loss < found.rolling_loss
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("torque", [2.0, 60.0])
+def test_light_loads_slide_on_thick_films(torque):
+    found = losses(torque)
+    # a Newtonian oil in the whole: friction grows with the load towards that of Eyring's
+    assert found.mean_friction < 0.012
+    assert found.least_film > 0.5e-6
+    assert found.rolling_loss > found.sliding_loss
+
+
+def test_hardly_any_load_is_refused_with_the_place():
+    with pytest.raises(SolverError, match=r"no film with heat at rho1 = [\d.]+ mm"):
+        losses(0.01)
+
+
+@pytest.mark.slow
+def test_few_teeth_slide_much():
+    pair = GearPair(Gear(9, 0.5), Gear(11, 0.5), module=3e-3, face_width=20e-3)
+    found = losses(60.0, pair)
+    assert found.ohlendorf_loss_factor == pytest.approx(found.loss_factor, rel=0.1)
+    assert found.loss_factor > 0.3
+    assert found.mesh_loss / found.input_power > 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("bulk", [(560.0, 560.0), (330.0, 330.0), (373.0, 333.0)])
+def test_bulk_temperatures_far_from_the_oil_s(bulk):
+    found = losses(bulk_temperatures=bulk)
+    assert found.bulk_temperatures.tolist() == list(bulk)
+    assert found.path.contact_temperature == pytest.approx(
+        np.max(np.array(bulk)[:, None] + found.path.surface_temperature_rise, axis=0)
+    )
+    assert 0.002 < found.mean_friction < 0.04
