@@ -73,6 +73,15 @@ RESULTS = {
     "MultiSweep": lambda: dynamics.multi_sweep(OSC, "frequency", [0.6, 0.61], seeds=1, starts=3),
     "Orbit": lambda: dynamics.find_orbit(OSC, (0.35, 0.0)),
     "OrbitSet": orbits,
+    "PairScan": lambda: dynamics.inverse.by_two_events(
+        OSC,
+        (
+            dynamics.inverse.Event("grazing", "1-0-0", 0.5, 2),
+            dynamics.inverse.Event("period-doubling", "1-1-0", 0.6, 2),
+        ),
+        dynamics.inverse.OneOf((0.4, 0.5)),
+        {},
+    ),
     "RunUp": lambda: dynamics.run_up(OSC, (0.6, 0.61), 64),
     "Spectrum": lambda: dynamics.motion_spectrum(OSC, dynamics.find_orbit(OSC, (0.35, 0.0)).state),
     "SweepResult": lambda: dynamics.sweep(OSC, "frequency", [0.6, 0.61]),
