@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -261,65 +260,3 @@ class Heated:
         self.temperature[self.last + 1 :] = self.temperature[self.last]
         change, warm = self.temperature - before, self.temperature - self.undisturbed
         self.unsettled = float(np.abs(change).sum() / max(np.abs(warm).sum(), warm.size * _COLD))
-
-    @property
-    def traction(self) -> float:
-        """Mean shear stress over the load, positive where the first surface is the faster."""
-        return -self._along(self.shear.flow[:, 0]) / self.contact.load
-
-    def _along(self, values: Array) -> float:
-        """Integrate values of cells along the film."""
-        to = self.last + 1
-        return float(values[:to] @ self.lengths[:to])
-
-    def rises(self) -> tuple[float, float]:
-        """Greatest rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
-        first, second = (float(np.max(self.temperature[:, j]) - self.bulk[j]) for j in (0, -1))
-        return float(np.max(self.temperature) - self.bulk.mean()), max(first, second)
-
-    def rolling(self, P: Array) -> float:
-        """Integral of h p'/2 [N/m]."""
-        return float(0.5 * np.sum(self.shear.gap * np.diff(P * self.groups.pressure)))
-
-    def stresses(self, P: Array) -> Array:
-        """Shear stress at both surfaces (n, 2) [Pa]; 0 behind the film."""
-        tilt = 0.5 * self.shear.gap * np.diff(P * self.groups.pressure) / self.lengths
-        mean = self.shear.flow[:, 0]
-        found = np.stack([mean - tilt, mean + tilt], axis=1)
-        found[self.last + 1 :] = 0.0
-        return self.at_nodes(found)
-
-    def losses(self) -> dict[str, float]:
-        """Where the power of one metre of face goes [W/m]."""
-        shear, weights = self.shear, self.across.weights
-        made = shear.gap * ((shear.across * shear.rate) @ weights)
-        sheared = self._along(made)
-        sliding = -self._along(shear.flow[:, 0]) * self.contact.sliding
-        if self.solids is None:
-            held = dict.fromkeys(("compression", "first_body", "second_body", "oil", "closure"), math.nan)
-            return {"dissipation": sheared, "sliding": sliding, "rolling": sheared - sliding} | held
-        made[self.first :] = 0.0
-        compression = (
-            self._along(shear.gap * ((shear.speed * self.temperature) @ weights) * self.gradient)
-            * self.contact.lubricant.expansion
-        )
-        first, second = (self._along(row) for row in self.into)
-        away = self._along(made) + self._carried_off()
-        return {
-            "dissipation": sheared,
-            "sliding": sliding,
-            "rolling": sheared - sliding,
-            "compression": compression,
-            "first_body": first,
-            "second_body": second,
-            "oil": away,
-            "closure": (first + second + away) / (sheared + compression) - 1.0 if sheared > 0.0 else 0.0,
-        }
-
-    def _carried_off(self) -> float:
-        """Heat that leaves with the oil at both ends of the cells where it is followed [W/m]."""
-        k, T, weights = self.last, self.temperature, self.across.weights
-        near = self.lengths[k] / (self.lengths[k] + self.lengths[k - 1])
-        behind = T[k] + near * (T[k] - T[k - 1]) - self.undisturbed
-        ahead = np.minimum(self.carried[self.first], 0.0) * (T[self.first] - self.undisturbed)
-        return float((self.carried[k + 1] * behind - ahead) @ weights)

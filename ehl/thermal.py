@@ -12,6 +12,7 @@ from base import Array, Faults, Limit, RangeWarning, Stopwatch, part, quantity, 
 from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
 from ehl.film import Film, FilmErrors, unsolved
+from ehl.heat_balance import losses, rises, rolling, stresses, traction
 from ehl.heated import Heated
 from ehl.levels import figures
 from ehl.options import Options, warn_of_range
@@ -213,7 +214,7 @@ def _checked(
 def _film(search: Search, found: Compared, watch: Stopwatch) -> ThermalFilm:
     """Return the film in SI."""
     level, oil, contact = found.fine, found.oil, search.contact
-    shown, rises = figures(level), oil.rises()
+    shown, warmer = figures(level), rises(oil)
     return ThermalFilm(
         contact=contact,
         x=oil.x,
@@ -230,13 +231,13 @@ def _film(search: Search, found: Compared, watch: Stopwatch) -> ThermalFilm:
         message="converged",
         state=found.state,
         solids=search.solids,
-        traction_coefficient=oil.traction,
-        oil_temperature_rise=rises[0],
-        surface_temperature_rise=rises[1],
-        rolling_friction=oil.rolling(level.found.P),
-        losses=Losses(**oil.losses()),
+        traction_coefficient=traction(oil),
+        oil_temperature_rise=warmer[0],
+        surface_temperature_rise=warmer[1],
+        rolling_friction=rolling(oil, level.found.P),
+        losses=Losses(**losses(oil)),
         temperature=oil.at_nodes(oil.temperature),
-        shear_stress=oil.stresses(level.found.P),
+        shear_stress=stresses(oil, level.found.P),
         traction_error=found.traction_error,
         temperature_error=found.temperature_error,
         oils=(found.before, oil),

@@ -11,6 +11,7 @@ from base import Array, Cost
 from ehl.bodies import Solid
 from ehl.contact import LineContact
 from ehl.discrete import Groups
+from ehl.heat_balance import rises, traction
 from ehl.heated import INLET_GAP, Heated
 from ehl.levels import Level, State, figures, transfer
 from ehl.meniscus import MeniscusSearch
@@ -53,8 +54,8 @@ class Compared:
     def __init__(self, before: Solved, last: Solved, tolerance: float) -> None:
         (self.coarse, self.before), (self.fine, self.oil) = before, last
         rest = _DONE * tolerance / 3.0  # what further steps would still change
-        mu_0, mu = self.before.traction, self.oil.traction
-        warm_0, warm = np.array(self.before.rises()), np.array(self.oil.rises())
+        mu_0, mu = traction(self.before), traction(self.oil)
+        warm_0, warm = np.array(rises(self.before)), np.array(rises(self.oil))
         change = np.abs(warm_0 - warm)
         self.inlet = self.fine.plan.inlet_error
         self.traction_error = rest + abs(mu_0 - mu) / max(abs(mu), 1e-4)

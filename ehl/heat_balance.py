@@ -1,0 +1,78 @@
+"""What a film with heat does to its surroundings: friction, temperatures, and where its power goes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from base import Array
+from ehl.heated import Heated
+
+
+def traction(oil: Heated) -> float:
+    """Mean shear stress over the load, positive where the first surface is the faster."""
+    return -_along(oil, oil.shear.flow[:, 0]) / oil.contact.load
+
+
+def _along(oil: Heated, values: Array) -> float:
+    """Integrate values of cells along the film."""
+    to = oil.last + 1
+    return float(values[:to] @ oil.lengths[:to])
+
+
+def rises(oil: Heated) -> tuple[float, float]:
+    """Greatest rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
+    first, second = (float(np.max(oil.temperature[:, j]) - oil.bulk[j]) for j in (0, -1))
+    return float(np.max(oil.temperature) - oil.bulk.mean()), max(first, second)
+
+
+def rolling(oil: Heated, P: Array) -> float:
+    """Integral of h p'/2 [N/m]."""
+    return float(0.5 * np.sum(oil.shear.gap * np.diff(P * oil.groups.pressure)))
+
+
+def stresses(oil: Heated, P: Array) -> Array:
+    """Shear stress at both surfaces (n, 2) [Pa]; 0 behind the film."""
+    tilt = 0.5 * oil.shear.gap * np.diff(P * oil.groups.pressure) / oil.lengths
+    mean = oil.shear.flow[:, 0]
+    found = np.stack([mean - tilt, mean + tilt], axis=1)
+    found[oil.last + 1 :] = 0.0
+    return oil.at_nodes(found)
+
+
+def losses(oil: Heated) -> dict[str, float]:
+    """Where the power of one metre of face goes [W/m]."""
+    shear, weights = oil.shear, oil.across.weights
+    made = shear.gap * ((shear.across * shear.rate) @ weights)
+    sheared = _along(oil, made)
+    sliding = -_along(oil, shear.flow[:, 0]) * oil.contact.sliding
+    if oil.solids is None:
+        held = dict.fromkeys(("compression", "first_body", "second_body", "oil", "closure"), math.nan)
+        return {"dissipation": sheared, "sliding": sliding, "rolling": sheared - sliding} | held
+    made[oil.first :] = 0.0
+    compression = (
+        _along(oil, shear.gap * ((shear.speed * oil.temperature) @ weights) * oil.gradient)
+        * oil.contact.lubricant.expansion
+    )
+    first, second = (_along(oil, row) for row in oil.into)
+    away = _along(oil, made) + _carried_off(oil)
+    return {
+        "dissipation": sheared,
+        "sliding": sliding,
+        "rolling": sheared - sliding,
+        "compression": compression,
+        "first_body": first,
+        "second_body": second,
+        "oil": away,
+        "closure": (first + second + away) / (sheared + compression) - 1.0 if sheared > 0.0 else 0.0,
+    }
+
+
+def _carried_off(oil: Heated) -> float:
+    """Heat that leaves with the oil at both ends of the cells where it is followed [W/m]."""
+    k, T, weights = oil.last, oil.temperature, oil.across.weights
+    near = oil.lengths[k] / (oil.lengths[k] + oil.lengths[k - 1])
+    behind = T[k] + near * (T[k] - T[k - 1]) - oil.undisturbed
+    ahead = np.minimum(oil.carried[oil.first], 0.0) * (T[oil.first] - oil.undisturbed)
+    return float((oil.carried[k + 1] * behind - ahead) @ weights)
