@@ -15,6 +15,7 @@ from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MEANS
 from flankfilm.coupling.sidebands import MotionSpectrum
 from flankfilm.stages.motion import DIAGRAM, SCALING, SPECTRUM, SWEEP
+from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
 from flankfilm.studies.output import Named, in_result, output_of, outputs_from
 
 if TYPE_CHECKING:
@@ -141,6 +142,24 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         figures(MotionSpectrum)["sidebands"],
         "spectrum",
         in_result(SPECTRUM, attrgetter("sidebands")),
+    ),
+    output_of(
+        "greatest_run_up_factor",
+        Figure("1", "greatest force over the mean force of run-up and coast-down"),
+        "run-up",
+        in_result(RUN_UP, lambda found: _greatest(found.force_factor)),
+    ),
+    output_of(
+        "greatest_map_factor",
+        Figure("1", "greatest dynamic factor over speeds and torques"),
+        "dynamic-map",
+        in_result(DYNAMIC_MAP, attrgetter("greatest")),
+    ),
+    output_of(
+        "greatest_map_factor_error",
+        Figure("1", "estimated relative error of that factor by samples of a period"),
+        "dynamic-map",
+        in_result(DYNAMIC_MAP, attrgetter("sampling_error")),
     ),
     *_jumps(),
     output_of(

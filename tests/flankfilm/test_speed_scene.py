@@ -6,9 +6,12 @@ import pytest
 
 from base import InputError
 from flankfilm import figures
+from flankfilm.cache import Cache
 from flankfilm.report.contents import PARTS
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
+from flankfilm.stages.engine import Engine
+from flankfilm.studies.outputs import OUTPUTS
 from tests.flankfilm.scenes import ARTICLE
 
 HEAD = ARTICLE.replace("pinion_torque_Nm = 600", "pinion_torque_Nm = 600\ntorques_Nm = [300, 600]")
@@ -39,6 +42,9 @@ def test_run_up_and_map_of_a_scene():
         part = PARTS[name](found.values[name], data)
         assert part.figures
         assert part.tables[0].rows
+    engine = Engine(parse_scene(SCENE), Cache(None))
+    assert OUTPUTS["greatest_map_factor"].value(engine) == float(data.dynamic_map_factor.max())
+    assert OUTPUTS["greatest_run_up_factor"].value(engine) > 1.0
 
 
 @pytest.mark.parametrize(

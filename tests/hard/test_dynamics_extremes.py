@@ -240,3 +240,49 @@ def test_chaos_by_its_statistics():
     a, b = (m.mean(axis=0) for m in means)
     spread = np.sqrt(sum(m.var(axis=0, ddof=1) / batches for m in means))
     assert np.all(np.abs(a - b) <= 5 * spread)  # the exits are one a period throughout
+
+
+def test_hardly_any_damping_takes_long_and_is_still_followed():
+    """zeta 1e-4: determinants of 1 - 1e-3, resonances a thousand times the static answer."""
+    osc = oscillator(damping_ratio=1e-4, error_amplitude=1e-4, frequency=0.9)
+    orbit = find_orbit(osc, osc.rest_state())
+    assert orbit.converged
+    assert abs(np.prod(orbit.multipliers)) == pytest.approx(np.exp(-4e-4 * np.pi / 0.9), rel=1e-12)
+    branch = continue_branch(orbit, "frequency", (0.9, 1.1))
+    assert branch.converged
+    assert {p.kind for p in branch.points} >= {"saddle-node", "grazing"}
+
+
+def test_rectangular_stiffness_of_101_harmonics_is_the_limit_of_two_constant_ones():
+    """Between two values of k the equation has solutions of its own: the series is held against them, in contact."""
+    high, low, n = 1.2, 0.8, 101
+    j = np.arange(1, n + 1)
+    amplitudes = 2.0 * (high - low) / (np.pi * j) * np.sin(0.5 * np.pi * j)
+    series = FourierStiffness(1.0, tuple(np.abs(amplitudes)), tuple(np.where(amplitudes < 0, np.pi, 0.0)))
+    osc = GearOscillator(series, 0.05, 0.1, 0.0, 0.7, 0.0)
+    half = np.pi / 0.7
+
+    def propagator(k: float, time: float) -> np.ndarray:
+        w = np.sqrt(k - 0.05**2)
+        c, s, decay = np.cos(w * time), np.sin(w * time), np.exp(-0.05 * time)
+        return decay * np.array([[c + 0.05 / w * s, s / w], [-k / w * s, c - 0.05 / w * s]])
+
+    # high in the first and the last quarter of a period
+    whole = propagator(high, 0.5 * half) @ propagator(low, half) @ propagator(high, 0.5 * half)
+    found = period_map(osc, osc.rest_state()).jacobian
+    # a harmonic left out, of frequency j w, moves X by its amplitude over (j w)^2, and V by that over j w
+    left = np.arange(n + 2, 100_000, 2)
+    off = 2.0 * (high - low) / np.pi * np.array([np.sum(1.0 / left**3) / 0.7**2, np.sum(1.0 / left**2) / 0.7])
+    assert np.all(np.abs(found - whole) < 3.0 * off[:, None] * np.max(np.abs(whole)))
+    assert np.linalg.det(found) == pytest.approx(np.linalg.det(whole), rel=1e-12)
+
+
+def test_fifty_harmonics_of_the_error_are_the_sum_of_their_answers():
+    """In contact with constant stiffness every harmonic answers by itself."""
+    w, j = 0.13, np.arange(1, 51)
+    errors, phases = 2e-4 / j, 0.37 * j
+    osc = GearOscillator(FourierStiffness(1.0), 0.05, 0.5, tuple(errors), w, 0.1, tuple(phases))
+    response = errors * (j * w) ** 2 * np.exp(1j * phases) / (1.0 - (j * w) ** 2 + 0.1j * j * w)
+    orbit = find_orbit(osc, osc.rest_state())
+    assert orbit.state[0] == pytest.approx(0.6 + np.sum(response.real), rel=1e-12)
+    assert orbit.state[1] == pytest.approx(np.sum((1j * j * w * response).real), rel=1e-10, abs=1e-14)
