@@ -13,10 +13,12 @@ from dynamics.kernels.compiling import (
     FREQUENCY,
     HALF_BACKLASH,
     MEAN,
+    NO,
     ORDER,
     PHASE,
     SERIES,
     TWO,
+    YES,
     ZERO,
     ZETA,
     FloatArray,
@@ -251,7 +253,7 @@ def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first:
     cells = series.shape[2]
     if first > 2:
         return
-    excite(par, par, False, series, room)
+    excite(par, par, NO, series, room)
     drag = 4.0 * math.pi / cells * par[ZETA] / par[FREQUENCY]
     for kind in range(2):
         for cell in range(cells):
@@ -312,7 +314,7 @@ def differentiate(
         first = first_touched(par, ways[p : p + 1])
         if first > 2:
             continue
-        excite(par, ways[p], True, dseries, room)
+        excite(par, ways[p], YES, dseries, room)
         ddrag = 2.0 * ways[p, ZETA] * h - drag * ways[p, FREQUENCY] / par[FREQUENCY]
         for kind in range(2):
             terms = series.shape[1] if kind == 0 else 0

@@ -363,3 +363,14 @@ def test_trials_are_counted(points):
     assert done == [(1, 2), (2, 2)]
     assert len(found) >= 2
     assert found[0].misfit <= found[-1].misfit
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("off", [0.0, 3.6e-9, 1e-8])
+def test_what_is_found_does_not_hang_on_last_digits(off):
+    """At the upper bound the motion is chaotic: where Newton's method goes from there, last digits decide."""
+    here = GearOscillator(FourierStiffness(1.0, (0.1,), (0.0,)), 0.01, 0.05 + off, 0.2, 0.4, 1.0)
+    doubling = Event("period-doubling", "1-1-0", 0.53961770, 8)
+    catalogue = Catalogue(Problem(here, "frequency", (doubling,), {}, (0.3, 0.8)), Tally())
+    partner = catalogue.partners(here, DOUBLED)[1][0]
+    assert partner.parameter == pytest.approx(doubling.value, abs=2e-7)
