@@ -138,7 +138,7 @@ def basins(
         labels[i] = found.follow(starts[i], wait)
         if progress is not None:
             progress(int(np.sum(labels != UNDECIDED)), len(labels))
-    for some in np.array_split(np.arange(len(starts)), min(len(starts), 50)):
+    for some in np.array_split(np.arange(len(starts)), min(len(starts), 16)):
         mine, there = labels[some], starts[some]
         found.settle(there, wait, mine)
         if any(orbit is not None for orbit in found.orbits):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record, side_by_side
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction import basins
 from dynamics.finding import reach
 from dynamics.limits import checked_grid
@@ -130,7 +129,8 @@ def multi_sweep(
         number = faults.whole("seeds", seeds, 0, 10_000, "9 is usual")
         side = faults.whole("starts", starts, 1, 1000, "6 is usual")
     met = _Met(oscillator, parameter, grid, max_period)
-    met.follow_whole()
+    for direction, i in (("up", 0), ("down", len(grid) - 1)):
+        met.follow(direction, i, met.at(i).rest_state(), whole=True)
     for done in range(number):
         i = int((done + 0.5) / number * len(grid))
         here = met.at(i)
@@ -140,7 +140,7 @@ def multi_sweep(
         for attractor in found.attractors:
             if attractor.share > 0.0 and not met.knows(i, attractor.label, attractor.states):
                 for direction in ("up", "down"):
-                    met.follow(direction, i, attractor.states[-1])
+                    met.follow(direction, i, attractor.states[-1], whole=False)
         if progress is not None:
             progress(done + 1, number)
     return met.result(watch)
@@ -160,52 +160,25 @@ class _Met:
         """Oscillator at a value."""
         return self.oscillator.with_parameter(self.parameter, float(self.grid[i]))
 
-    def follow_whole(self) -> None:
-        """Sweep the whole range up and down, on two cores if there are."""
-        ways = (("up", 0), ("down", len(self.grid) - 1))
-        for (direction, _), parts in zip(
-            ways, side_by_side([partial(self._whole, *way) for way in ways]), strict=True
-        ):
-            self.sweeps += 1
-            for part, found in parts:
-                self._take(part, found, direction)
-
-    def follow(self, direction: str, i: int, state: Array) -> None:
-        """Sweep from a value on, until a chunk of values brings nothing new."""
-        self.sweeps += 1
-        for part in self._parts(direction, i):
-            found = self._sweep(part, direction, state)
-            state = found.states[-1, -1]
-            if not (self._take(part, found, direction) and _bounded(state, self.size)):
-                return
-
-    def _whole(self, direction: str, i: int) -> list[tuple[Integers, SweepResult]]:
-        """Chunks of values from one end to the other, and what a sweep finds there; nothing is noted."""
-        state, chunks = self.at(i).rest_state(), []
-        for part in self._parts(direction, i):
-            chunks.append((part, self._sweep(part, direction, state)))
-            state = chunks[-1][1].states[-1, -1]
-            if not _bounded(state, self.size):
-                state = self.at(part[-1]).rest_state()
-        return chunks
-
-    def _parts(self, direction: str, i: int) -> list[Integers]:
-        """Values from one on, in chunks."""
+    def follow(self, direction: str, i: int, state: Array, whole: bool) -> None:
+        """Sweep from a value on; unless the whole range is wanted, until a chunk of values brings nothing new."""
         path = np.arange(i, len(self.grid)) if direction == "up" else np.arange(i, -1, -1)
-        return np.split(path, range(CHUNK, len(path), CHUNK))
-
-    def _sweep(self, part: Integers, direction: str, state: Array) -> SweepResult:
-        return sweep(
-            self.oscillator, self.parameter, self.grid[part], direction, initial=state, max_period=self.longest,
-            keep=max(64, 2 * self.longest),
-        )  # fmt: skip
-
-    def _take(self, part: Integers, found: SweepResult, direction: str) -> bool:
-        """Note what a sweep has found; whether anything is new."""
-        self.periods += found.cost.periods
-        self.error, self.bounded = max(self.error, found.error), self.bounded and found.converged
-        new = [self._note(int(k), found, j, direction) for j, k in enumerate(part)]
-        return any(new)
+        self.sweeps += 1
+        for part in np.split(path, range(CHUNK, len(path), CHUNK)):
+            found = sweep(
+                self.oscillator, self.parameter, self.grid[part], direction, initial=state, max_period=self.longest,
+                keep=max(64, 2 * self.longest),
+            )  # fmt: skip
+            self.periods += found.cost.periods
+            self.error, self.bounded = max(self.error, found.error), self.bounded and found.converged
+            new = [self._note(int(k), found, j, direction) for j, k in enumerate(part)]
+            if not (whole or any(new)):
+                return
+            state = found.states[-1, -1]
+            if not _bounded(state, self.size):
+                if not whole:
+                    return
+                state = self.at(part[-1]).rest_state()
 
     def knows(self, i: int, label: str, states: Array) -> bool:
         """Whether a motion has been met at a value."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import groupby
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import dynamics
-from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, side_by_side, unclocked
+from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.first_loss import grazing_budget
 from flankfilm.coupling.oscillator import PairOscillator
@@ -194,11 +193,10 @@ def speed_sweep(
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator
-    ways = ("up", "down")
-    swept = side_by_side(
-        [partial(sweep, oscillator, parameter="frequency", values=values, direction=way) for way in ways]
-    )
-    found = dict(zip(ways, swept, strict=True))
+    found = {
+        direction: sweep(oscillator, parameter="frequency", values=values, direction=direction)
+        for direction in ("up", "down")
+    }
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
     solved: list[Result] = [*found.values(), grazing]
     shaken = {direction: vibrations(oscillator, result) for direction, result in found.items()}

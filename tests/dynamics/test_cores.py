@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from base import threads
-from dynamics import FourierStiffness, GearOscillator, basins, multi_sweep
+from dynamics import FourierStiffness, GearOscillator, basins
 
 
 def oscillator(frequency: float) -> GearOscillator:
@@ -25,15 +25,3 @@ def test_basins(on):
     np.testing.assert_array_equal(found[0].labels, found[1].labels)
     assert found[0].cost.periods == found[1].cost.periods
     assert len(set(found[0].labels.ravel().tolist())) == 2
-
-
-def test_sweeps_up_and_down(on):
-    found = []
-    for number in (1, 2):
-        on(number)
-        found.append(multi_sweep(oscillator(0.6), "frequency", np.linspace(0.5, 0.7, 9), seeds=1, starts=3))
-    for one, other in zip(*(result.motions for result in found), strict=True):
-        assert [(m.label, m.directions) for m in one] == [(m.label, m.directions) for m in other]
-        for a, b in zip(one, other, strict=True):
-            np.testing.assert_array_equal(a.states, b.states)
-    assert max(len(here) for here in found[0].motions) == 2
