@@ -21,7 +21,14 @@ RPM = 30.0 / np.pi
 def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
     """Draw run-up and coast-down with their orders, and list where the force is greatest and changes most."""
     force = scale(results, "force")
-    heads = ("run", force.named("greatest force"), "at", "largest jump at", "from", "to")
+    heads = (
+        "run",
+        force.named("greatest force"),
+        "at",
+        "largest jump at",
+        force.named("before it"),
+        force.named("after it"),
+    )
     rows = tuple((way, *_extremes(stage, way, float(force.values))) for way in ("up", "down"))
     seconds = "" if stage.seconds is None else f" in {number(stage.seconds)} s"
     note = said(
