@@ -45,9 +45,10 @@ def test_friction_and_temperatures_of_the_article_s_pair(stress, friction, oil, 
     assert found.message == ""
     if stress == 5e6:
         middle = int(np.argmin(np.abs(path.rho1 - PAIR.points.C)))
-        # theirs is rounded, and at C the oil is hottest at the spike, which grids resolve last
-        spike = path.temperature_error[middle] * path.oil_temperature_rise[middle]
-        assert path.oil_temperature_rise[middle] == pytest.approx(6.0, abs=0.5 + 2.0 * spike)
+        # theirs is rounded; at C the oil is hottest at the spike, which grids resolve last: as neighbours scatter
+        scatter = np.ptp(path.oil_temperature_rise[middle - 1 : middle + 2])
+        assert scatter < 0.8
+        assert path.oil_temperature_rise[middle] == pytest.approx(6.0, abs=0.5 + scatter)
         assert path.surface_temperature_rise[:, middle].max() == pytest.approx(2.0, abs=0.5)
         assert found.band.mean_friction[1] == pytest.approx(0.039, rel=0.05)
         assert np.max(np.abs(path.closure)) < 0.02
