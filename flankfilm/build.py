@@ -15,6 +15,7 @@ import gears
 from base import InputError
 from flankfilm.scene.gears import GearSection, PairSection, RackSection
 from flankfilm.scene.ground import in_keys, under_keys
+from flankfilm.scene.heat import GROWTH
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import Section, required
 
@@ -60,7 +61,7 @@ def warm_pair(scene: Scene) -> gears.WarmPair:
         With every fault of the geometry and of the temperatures, each under the scene's key.
     """
     cold = _cold_pair(scene)
-    heat = gears.Heat() if scene.heat is None else gears.Heat(**scene.heat.si())
+    heat = gears.Heat() if scene.heat is None else gears.Heat(**scene.heat.si(*GROWTH))
     try:
         return gears.warm_pair(cold, heat)
     except InputError as error:

@@ -12,6 +12,7 @@ from ehl.grades import LIMITS as GRADE
 from flankfilm import coupling
 from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, SHEAR_AND_HEAT, LubricantSection, RoughnessSection
 from flankfilm.scene.ground import under_keys
+from flankfilm.scene.heat import GROWTH
 from flankfilm.scene.key import ZERO_CELSIUS
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import required
@@ -42,7 +43,7 @@ def flank_temperatures(scene: Scene) -> tuple[float, float] | None:
     """Temperatures of the flanks of pinion and wheel [K]; None where they have the oil's."""
     if scene.heat is None or not scene.heat.given("pinion_temperature_C", "wheel_temperature_C"):
         return None
-    heat = gears.Heat(**scene.heat.si())
+    heat = gears.Heat(**scene.heat.si(*GROWTH))
     return heat.pinion_temperature, heat.wheel_temperature
 
 

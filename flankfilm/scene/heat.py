@@ -11,6 +11,15 @@ from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 from gears.heat import LIMITS, TEMPERATURE
 
+GROWTH = (
+    "pinion_temperature_C",
+    "wheel_temperature_C",
+    "housing_temperature_C",
+    "reference_temperature_C",
+    "housing_expansion_per_K",
+)
+"""Keys by which gears and housing grow."""
+
 _TRANSFER = Limit(1e-3, 1e6, "W/K", "heat transfer coefficient times area of a gear; 1 to 100 W/K are usual")
 
 

@@ -103,7 +103,11 @@ def test_temperatures_of_the_flanks():
     found = warmth(parse_scene(changed(("[film]", balanced))))
     assert (found.bulk, found.transfer, found.ambient) == (None, (8.0, 9.0), 353.15)
     cooler = balanced.replace("[film]", "ambient_temperature_C = 40\n[film]")
-    assert warmth(parse_scene(changed(("[film]", cooler)))).ambient == pytest.approx(313.15)
+    scene = parse_scene(changed(("[film]", cooler)))
+    assert warmth(scene).ambient == pytest.approx(313.15)
+    assert gear_pair(scene) == gear_pair(
+        parse_scene(QUICK)
+    )  # nothing grows by temperatures that are looked for
 
 
 def test_an_oil_without_a_stress_thins_at_5_MPa():
