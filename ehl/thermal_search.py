@@ -11,7 +11,7 @@ from base import Array, Cost
 from ehl.bodies import Solid
 from ehl.contact import LineContact
 from ehl.discrete import Groups
-from ehl.heat_balance import rises, traction
+from ehl.heat_balance import losses, rises, traction
 from ehl.heated import INLET_GAP, Heated
 from ehl.levels import Level, State, figures, transfer
 from ehl.meniscus import MeniscusSearch
@@ -28,6 +28,7 @@ _LEAST = 0.6  # the least film under a spike falls with the cells' size, not wit
 _INLET_SHARE = (
     0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
 )
+_BALANCE = 0.1  # of heat that arrives over heat that is made, less 1, beyond which there is no solution
 _FED = 0.02  # miss of a layer's flow over the tolerance
 _MOST_PLACES = 20  # of a meniscus on one grid
 _CLIMB_LEFT = 0.25  # share of the climb to a spike that grids leave out
@@ -255,6 +256,8 @@ class Search:
         self.iterations += solved.iterations
         if not solved.converged or not np.isfinite(oil.temperature).all():
             return None
+        if oil.solids is not None and abs(losses(oil)["closure"]) > _BALANCE:
+            return None  # heat that goes round in the inlet has run away
         return replace(level, contact=self.contact, found=solved), oil
 
     def cost(self, seconds: float) -> Cost:
