@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -9,7 +10,7 @@ import numpy as np
 
 import ehl
 import gears
-from base import Array, Faults, InputError, Integers, SolverError
+from base import Array, Faults, InputError, Integers, RangeWarning, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 
@@ -213,8 +214,11 @@ def films_of(
     contacts: tuple[ehl.LineContact, ...],
     before: PathFilms | None,
     tolerance: float,
+    beside: tuple[int, ...] = (),
 ) -> PathFilms:
     """Films of all contacts, each solved from its neighbour, or from itself of the round before.
+
+    Films beside the loaded ones, which nothing shows, warn of nothing.
 
     Raises
     ------
@@ -230,7 +234,8 @@ def films_of(
         found = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
         flooded = tuple(map(film_inside, found))
     supplies = tuple(model.supply_of(contact) for contact in contacts)
-    return PathFilms(rho1, _solved(model, rho1, contacts, supplies, old.films, tolerance), flooded)
+    films = _solved(model, rho1, contacts, supplies, old.films, tolerance, beside)
+    return PathFilms(rho1, films, flooded, beside)
 
 
 def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> PathFilms:
@@ -251,18 +256,22 @@ def _solved(
     supplies: tuple[Supply, ...],
     before: tuple[Solved, ...],
     tolerance: float,
+    beside: tuple[int, ...] = (),
 ) -> tuple[Solved, ...]:
     """Solve contacts one after the other, each from what it was before, or from the last."""
     found: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
         near = before[i] if before else found[-1] if found else None
         film: ehl.Film | ehl.MixedFilm
-        if model.roughness is None:
-            start = None if near is None else film_inside(near)
-            film = ehl.solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
-        else:
-            assert not isinstance(near, ehl.FormulaFilm)  # rough flanks have solved films
-            film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, near)
+        with warnings.catch_warnings():
+            if i in beside:
+                warnings.simplefilter("ignore", RangeWarning)
+            if model.roughness is None:
+                start = None if near is None else film_inside(near)
+                film = ehl.solve(contact, tolerance, start=start, supply=supply, grid=model.grid)
+            else:
+                assert not isinstance(near, ehl.FormulaFilm)  # rough flanks have solved films
+                film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, near)
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
         found.append(film)

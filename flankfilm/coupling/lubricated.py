@@ -297,8 +297,7 @@ class _Run:
             rounds += 1
             watch = Stopwatch()
             rho1, contacts, beside = self.contacts(cycle, positions)
-            path = films_of(self.model, rho1, contacts, path, self.resolution.films)
-            path = replace(path, beside=beside)
+            path = films_of(self.model, rho1, contacts, path, self.resolution.films, beside)
             law = self.law(path)
             seconds += watch.seconds
             try:

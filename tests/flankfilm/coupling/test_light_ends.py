@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import flankfilm as ff
+from base import RangeWarning
 from ehl import LineContact, Lubricant
 from flankfilm.coupling import lubricated
-from flankfilm.coupling.films import PathFilms, with_light_ends
+from flankfilm.coupling.films import FilmModel, PathFilms, films_of, with_light_ends
 from gears import Gear, GearPair, TipRelief
 
 OIL = Lubricant(0.066, 20e-9, 910.0)
@@ -63,3 +64,15 @@ def test_pairs_that_let_go_slowly_have_films_until_they_do():
     force = TORQUE / FEW.base_radii[0] / FEW.face_width
     assert usual.film.load[-1] < 0.05 * force
     assert usual.mean_stiffness == pytest.approx(many.mean_stiffness, rel=1e-3)
+
+
+@pytest.mark.filterwarnings("error::base.RangeWarning")
+def test_light_films_that_nothing_shows_warn_of_nothing():
+    """The first of these is thicker than a thousandth of the radius; so it would be said if it were loaded."""
+    contacts = tuple(LineContact(load, 2.0, 3e-3, 2.2e11, OIL) for load in (10.0, 4e4))
+    rho1 = np.array([1e-3, 2e-3])
+    found = films_of(FilmModel(), rho1, contacts, None, 0.01, beside=(0,))
+    assert found.films[0].minimum_thickness > 3e-6
+    assert found.beside == (0,)
+    with pytest.raises(RangeWarning, match="film of about"):
+        films_of(FilmModel(), rho1, contacts, None, 0.01)
