@@ -57,7 +57,7 @@ class LossesAlongPath:
         "K",
         "greatest temperature of pinion's and wheel's flank above its bulk",
         "gear point",
-        error="temperature_error",
+        no_error="that of the oil's rise at the same contact, temperature_error, holds for both",
     )
     contact_temperature: Array = quantity("K", "greatest temperature of the flanks", "point")
     flash_temperature: Array = quantity(
