@@ -13,6 +13,8 @@ from .frequency import film_response as film_response
 from .lubricant import Lubricant as Lubricant
 from .mixed import MixedFilm as MixedFilm
 from .mixed import solve_mixed as solve_mixed
+from .mixed_thermal import MixedThermalFilm as MixedThermalFilm
+from .mixed_thermal import solve_mixed_thermal as solve_mixed_thermal
 from .regressions import FormulaFilm as FormulaFilm
 from .regressions import dowson as dowson
 from .regressions import dowson_higginson_minimum as dowson_higginson_minimum

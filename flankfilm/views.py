@@ -15,6 +15,7 @@ PICTURES: Mapping[str, str] = {
     "fem.tooth_root:RootStress": "root_stress",
     "ehl.film:Film": "curves",
     "ehl.mixed:MixedFilm": "mixed_film",
+    "ehl.mixed_thermal:MixedThermalFilm": "mixed_film",
     "ehl.frequency:FilmResponse": "film_response",
     "ehl.transient:TransientFilm": "curves",
     "dynamics.motions:Trajectory": "portrait",

@@ -53,16 +53,16 @@ class HeatedFilms:
     contacts : tuple of ehl.LineContact
         With the whole load.
     films : tuple of ehl.ThermalFilm
-        Of the part of the load that asperities leave, at the share that an isothermal film leaves them.
-    mixed : tuple of ehl.MixedFilm
-        Isothermal, of rough flanks; empty for smooth ones.
+        Of the part of the load that asperities leave.
+    mixed : tuple of ehl.MixedThermalFilm
+        Of rough flanks; empty for smooth ones.
     oil : HeatedOil
     """
 
     rho1: Array
     contacts: tuple[ehl.LineContact, ...]
     films: tuple[ehl.ThermalFilm, ...]
-    mixed: tuple[ehl.MixedFilm, ...]
+    mixed: tuple[ehl.MixedThermalFilm, ...]
     oil: HeatedOil
 
     @property
@@ -165,18 +165,35 @@ def heated_films(
         Where a film has no solution.
     """
     films: list[ehl.ThermalFilm] = []
-    mixed: list[ehl.MixedFilm] = []
+    mixed: list[ehl.MixedThermalFilm] = []
     for i, contact in enumerate(contacts):
-        carried = contact
         if oil.roughness is not None:
-            shared = ehl.solve_mixed(contact, oil.roughness, max(oil.tolerance, 0.01))
-            if not shared.converged:
-                raise _none_at(rho1[i], shared.message)
-            mixed.append(shared)
-            carried = replace(shared.film.contact, sliding=contact.sliding)
+            near_rough = before.mixed[i] if before is not None else mixed[-1] if mixed else None
+            mixed.append(_rough(contact, oil, oil.roughness, bulk, near_rough, float(rho1[i])))
+            films.append(mixed[-1].film)
+            continue
         near = before.films[i] if before is not None else films[-1] if films else None
-        films.append(_film(carried, oil, bulk, near, float(rho1[i])))
+        films.append(_film(contact, oil, bulk, near, float(rho1[i])))
     return HeatedFilms(rho1, tuple(contacts), tuple(films), tuple(mixed), oil)
+
+
+def _rough(
+    contact: ehl.LineContact,
+    oil: HeatedOil,
+    roughness: ehl.Roughness,
+    bulk: tuple[float, float],
+    near: ehl.MixedThermalFilm | None,
+    rho1: float,
+) -> ehl.MixedThermalFilm:
+    """Share the load with asperities, from the neighbour; where that fails from nothing, and less sharply."""
+    for start in (None,) if near is None else (near, None):
+        for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
+            found = ehl.solve_mixed_thermal(
+                contact, roughness, oil.solids, bulk, tolerance, None, oil.boundary_friction, start
+            )
+            if found.converged:
+                return found
+    raise _none_at(rho1, found.message)
 
 
 def _film(

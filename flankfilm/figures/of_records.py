@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     import dynamics
     import gears
-    from ehl import FilmResponse, MixedFilm
+    from ehl import FilmResponse, MixedFilm, MixedThermalFilm
     from fem import RootStress
     from flankfilm.coupling import (
         LossesAlongPath,
@@ -176,7 +176,7 @@ def closed_form(found: gears.closed_form.ClosedForm) -> Figure:
     return drawn
 
 
-def mixed_film(found: MixedFilm) -> Figure:
+def mixed_film(found: MixedFilm | MixedThermalFilm) -> Figure:
     """Draw the film that carries its share of the load."""
     return curves(found.film)
 

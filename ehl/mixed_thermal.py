@@ -1,0 +1,223 @@
+"""Mixed lubrication with heat: film with heat and shear thinning, and asperities that rub, share the load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from base import Cost, Faults, Limit, Stopwatch, described, part, quantity, record, shorten
+from base.results import EXACT
+from ehl.asperities import Roughness
+from ehl.bodies import STEEL, Solid
+from ehl.contact import LineContact
+from ehl.film import unsolved
+from ehl.mixed import MixedFilm, central_asperity_pressure, solve_mixed
+from ehl.supply import Supply
+from ehl.thermal import ThermalFilm, solve_thermal
+from ehl.thermal_search import at_bulk
+
+BOUNDARY_FRICTION = 0.1
+"""Of steel asperities with a layer of additives between them: 0.08 to 0.12 is usual."""
+
+_FRICTION = Limit(0.0, 1.0, remedy="0.08 to 0.12 is usual for steel in oils for gears")
+_LEAST_SHARE = 1e-10
+_NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none
+_TRIES = 20
+_REACH = 1.5  # largest step of the odds
+
+
+@record
+class MixedThermalFilm:
+    """A film with heat between rough surfaces. Figures are NaN when ``converged`` is False.
+
+    ``film`` is that of the load and modulus that are left to it. What asperities make of heat is `asperity_loss`; it
+    goes into the bodies and does not warm the film.
+    """
+
+    no_error = "not estimated; the film has one"
+
+    headline = ("minimum_thickness", "film_ratio", "asperity_share", "traction_coefficient")
+
+    contact: LineContact = part("the contact, with its whole load")
+    roughness: Roughness = part("of both surfaces together")
+    film: ThermalFilm = part("film with heat that carries the rest of the load")
+    isothermal: MixedFilm = part("the same without heat and shear thinning, at the mean bulk temperature")
+    boundary_friction: float = quantity("1", "coefficient of friction of the asperities", no_error=EXACT)
+    cost: Cost
+    converged: bool
+    message: str
+    asperity_share: float = unsolved("1", "share of the load that the asperities carry", shown="%")
+
+    @described("1")
+    def error(self) -> float:
+        """Estimated relative error of the film."""
+        return self.film.error if self.converged else math.nan
+
+    @described("m", shown="um", error="error")
+    def central_thickness(self) -> float:
+        """Distance of the mean planes at x = 0."""
+        return self.film.central_thickness
+
+    @described("m", shown="um", error="error")
+    def minimum_thickness(self) -> float:
+        """Least distance of the mean planes."""
+        return self.film.minimum_thickness
+
+    @described("1", error="error")
+    def film_ratio(self) -> float:
+        """Lambda, least distance of the mean planes over the standard deviation of heights."""
+        return self.film.minimum_thickness / self.roughness.deviation
+
+    @described("1")
+    def traction_coefficient(self) -> float:
+        """Friction of film and asperities over the load, positive where u1 > u2."""
+        rubbing = math.copysign(self.boundary_friction, self.contact.sliding) if self.contact.sliding else 0.0
+        return (1.0 - self.asperity_share) * self.film.traction_coefficient + self.asperity_share * rubbing
+
+    @described("W/m")
+    def asperity_loss(self) -> float:
+        """Power that the asperities lose by rubbing per length of face."""
+        rubbed = self.boundary_friction * self.asperity_share * self.contact.load
+        return rubbed * abs(self.contact.sliding)
+
+
+def solve_mixed_thermal(
+    contact: LineContact,
+    roughness: Roughness,
+    solids: tuple[Solid, Solid] | None = (STEEL, STEEL),
+    bulk_temperatures: tuple[float, float] | None = None,
+    tolerance: float = 0.01,
+    supply: Supply | None = None,
+    boundary_friction: float = BOUNDARY_FRICTION,
+    start: MixedThermalFilm | None = None,
+) -> MixedThermalFilm:
+    """Share the load between asperities and a film with heat and shear thinning.
+
+    The share s is where asperities carry at the warm film's central separation what Gelinck and Schipper's fit asks of
+    them, as in :func:`ehl.solve_mixed`, whose share and whose derivative by the share are the start: warm films follow
+    the share as isothermal ones do, so that three or four of them are solved.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The whole load, with its sliding speed.
+    roughness : Roughness
+        Of both surfaces together.
+    solids, bulk_temperatures, tolerance, supply
+        As of :func:`ehl.solve_thermal`.
+    boundary_friction : float
+        Coefficient of friction of what asperities carry.
+    start : MixedThermalFilm, optional
+        Of a similar contact.
+
+    Returns
+    -------
+    MixedThermalFilm
+        With ``converged=False`` and the reason where a film fails.
+
+    Raises
+    ------
+    InputError
+        With every fault of the arguments.
+
+    Examples
+    --------
+    >>> from ehl import Lubricant
+    >>> oil = Lubricant(0.02, 17e-9, 860.0, temperature=363.15, eyring_stress=5e6)
+    >>> ground = Roughness(deviation=0.3e-6, density=3.3e9, tip_radius=4e-5)
+    >>> rough = solve_mixed_thermal(LineContact(2e5, 2.5, 6e-3, 2.26e11, oil, sliding=1.0), ground)
+    >>> rough.converged, rough.asperity_share > rough.isothermal.asperity_share
+    (True, True)
+    """
+    watch = Stopwatch()
+    with Faults() as found:
+        found.number("boundary_friction", boundary_friction, _FRICTION)
+        if not isinstance(roughness, Roughness):
+            found.add("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")
+    oil = contact.lubricant
+    bulk = bulk_temperatures or (oil.temperature, oil.temperature)
+    # the warm film of the whole load checks what remains of the arguments
+    near = None if start is None else start.film
+    warm = solve_thermal(contact, solids, bulk_temperatures, tolerance, start=near, supply=supply)
+    cold = solve_mixed(
+        at_bulk(contact, bulk), roughness, tolerance, supply, None if start is None else start.isothermal
+    )
+    search = _Search(contact, roughness, solids, bulk, tolerance, supply, warm)
+    share, reason = math.nan, cold.message
+    if cold.converged and warm.converged:
+        share, reason = search.share(cold)
+    cost = replace(search.cost + cold.cost, seconds=watch.seconds)
+    solved = math.isfinite(share)
+    return MixedThermalFilm(
+        contact, roughness, search.film, cold, boundary_friction, cost, solved, reason, share
+    )
+
+
+class _Search:
+    """Films with heat at trial shares, each started from the last."""
+
+    def __init__(
+        self,
+        contact: LineContact,
+        roughness: Roughness,
+        solids: tuple[Solid, Solid] | None,
+        bulk: tuple[float, float],
+        tolerance: float,
+        supply: Supply | None,
+        film: ThermalFilm,
+    ) -> None:
+        self.contact, self.roughness, self.solids, self.bulk = contact, roughness, solids, bulk
+        self.tolerance, self.supply, self.film, self.cost = tolerance, supply, film, film.cost
+
+    def share(self, cold: MixedFilm) -> tuple[float, str]:
+        """Share of the asperities, NaN where none is found, and why."""
+        share = cold.asperity_share
+        if share == 0.0:
+            share = min(self.carried(self.film) / self.contact.peak_pressure, 0.5)
+            if share < _LEAST_SHARE:
+                return 0.0, "converged"
+        odds, before = math.log(share / (1.0 - share)), None
+        slope = self.isothermal_slope(cold, share)
+        for _ in range(_TRIES):
+            share = 1.0 / (1.0 + math.exp(-odds))
+            excess = self.excess(share)
+            if not self.film.converged:
+                return math.nan, self.film.message
+            if before is not None and odds != before[0]:
+                slope = min((excess - before[1]) / (odds - before[0]), -0.05)
+            step = max(-_REACH, min(_REACH, -excess / slope))
+            if abs(step) < self.tolerance:
+                return share, "converged"
+            if odds + step < _NOTHING:
+                return 0.0, "converged"
+            before, odds = (odds, excess), odds + step
+        return (
+            math.nan,
+            "no share of the load on which film and asperities agree was found: raise the tolerance",
+        )
+
+    def isothermal_slope(self, cold: MixedFilm, share: float) -> float:
+        """Derivative of the excess by the odds, from the isothermal film's thickness by its load."""
+        pressure, slope = self.roughness.pressure(cold.central_thickness, self.contact.reduced_modulus)
+        steep = float(slope / pressure) if pressure > 0.0 else 0.0
+        eased = -share * cold.film.contact.load * cold.film.central_slope
+        return min(steep * eased - 1.0, -0.5)
+
+    def carried(self, film: ThermalFilm) -> float:
+        """Asperities' pressure at a film's central thickness [Pa]."""
+        return float(self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)[0])
+
+    def excess(self, share: float) -> float:
+        """Ln of the asperities' pressure over what their share asks for."""
+        left = 1.0 - share
+        eased = replace(
+            self.contact, load=left * self.contact.load, reduced_modulus=left * self.contact.reduced_modulus
+        )
+        self.film = solve_thermal(
+            eased, self.solids, self.bulk, self.tolerance, start=self.film, supply=self.supply
+        )
+        self.cost += replace(self.film.cost, counts={**self.film.cost.counts, "films": 1})
+        if not self.film.converged:
+            return math.nan
+        asked = central_asperity_pressure(self.contact, self.roughness, share)
+        return math.log(max(self.carried(self.film), 1e-300) / asked)
