@@ -183,7 +183,7 @@ def test_a_tolerance_that_no_resolution_meets():
 @pytest.mark.parametrize(
     ("teeth", "torque", "oil", "follow"),
     [
-        ({"model": "ishikawa", "pairs": "independent"}, 1.0, THIN, (600.0, THIN)),
+        ({"model": "ishikawa", "pairs": "independent"}, 10.0, THIN, (600.0, THIN)),
         ({"model": "ishikawa", "pairs": "independent"}, 600.0, THICK, (600.0, THIN)),
         ({}, 0.001, THIN, (600.0, THIN)),
     ],
