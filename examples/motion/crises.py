@@ -104,7 +104,8 @@ def main(arguments: Sequence[str] | None = None) -> list[str]:
 def located(place: Crisis) -> dynamics.Crisis:
     """The crisis of a place; its saddle is found by its label."""
     scan = SCANS[place.section]
-    orbits = dynamics.find_orbits(scan.at(place.at), (period_of(place.saddle),)).orbits
+    # by the index alone: the first of that label is the one beside the chaos
+    orbits = dynamics.find_orbits(scan.at(place.at), (period_of(place.saddle),), batches=0).orbits
     saddle = next(orbit for orbit in orbits if orbit.label == place.saddle)
     return dynamics.boundary_crisis(saddle, scan.parameter, place.bounds, points=500, periods=90)
 
