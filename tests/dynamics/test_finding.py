@@ -32,7 +32,10 @@ def newton(osc: GearOscillator, start: np.ndarray, n: int) -> np.ndarray | None:
         gap = image.state - at
         if np.max(np.abs(gap)) < 1e-12 * max(1.0, np.max(np.abs(image.jacobian))):
             return at
-        step = np.linalg.solve(np.eye(2) - image.jacobian, gap)
+        slope = np.eye(2) - image.jacobian
+        if abs(np.linalg.det(slope)) < 1e-300:  # between the flanks nothing holds the position
+            return None
+        step = np.linalg.solve(slope, gap)
         at = at + step * min(1.0, 1.0 / max(np.max(np.abs(step)), 1e-300))
         if np.max(np.abs(at)) > 1e3:
             return None
