@@ -28,7 +28,7 @@ _LEAST = 0.6  # the least film under a spike falls with the cells' size, not wit
 _INLET_SHARE = (
     0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
 )
-_BALANCE = 0.1  # of heat that arrives over heat that is made, less 1, beyond which there is no solution
+_BALANCE = 0.1  # of the heat that is lost or found, beyond which there is no solution
 _FED = 0.02  # miss of a layer's flow over the tolerance
 _MOST_PLACES = 20  # of a meniscus on one grid
 _CLIMB_LEFT = 0.25  # share of the climb to a spike that grids leave out
@@ -84,6 +84,13 @@ class Compared:
     def state(self) -> State:
         """What a next film starts from."""
         return State(self.coarse.bare(), self.fine.bare())
+
+
+def _out_of_balance(powers: dict[str, float]) -> float:
+    """Heat that is lost or found over the heat that is made or that goes through the film from body to body."""
+    made = powers["dissipation"] + powers["compression"]
+    through = abs(powers["first_body"]) + abs(powers["second_body"])
+    return abs(powers["closure"] * made) / max(abs(made), through, 1e-300)
 
 
 def _climb(level: Level, oil: Heated) -> tuple[float, float]:
@@ -256,7 +263,7 @@ class Search:
         self.iterations += solved.iterations
         if not solved.converged or not np.isfinite(oil.temperature).all():
             return None
-        if oil.solids is not None and abs(losses(oil)["closure"]) > _BALANCE:
+        if oil.solids is not None and _out_of_balance(losses(oil)) > _BALANCE:
             return None  # heat that goes round in the inlet has run away
         return replace(level, contact=self.contact, found=solved), oil
 
