@@ -62,7 +62,7 @@ def test_what_the_index_alone_passed_over_is_found():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(40, 60))
+@pytest.mark.parametrize("seed", range(40, 45))
 def test_random_oscillators_against_brute_force(seed: int):
     """Sixty by sixty starts: none leads to an orbit that is missing and not said to be."""
     osc = random_oscillator(seed)
