@@ -181,7 +181,8 @@ class Course:
         miss = np.log(new.film) - guess
         lowest = int(np.argmin(level.found.H))
         middle = int(np.argmin(np.abs(level.grid.nodes)))
-        profile = math.sqrt(float(weights @ miss**2 / weights.sum()))
+        # of a rigid cylinder the dry contact may lie between two nodes
+        profile = math.sqrt(float(weights @ miss**2 / weights.sum())) if weights.any() else 0.0
         worst = max(profile, abs(float(miss[lowest])), abs(float(miss[middle])))
         s, s1, s2 = (float(one) for one in np.diff([*(one.time for one in three), new.time])[::-1])
         r = s / s1
