@@ -89,19 +89,17 @@ def _values(s: Array) -> Array:
     return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
 
 
-def half_face(half_width: float, module: float, finer: float = 1.0) -> HalfFace:
+def half_face(half_width: float, module: float) -> HalfFace:
     """Divide half a face into pieces that shorten towards the end.
 
     Parameters
     ----------
     half_width, module : float
         [m]
-    finer : float
-        By how much all pieces are shorter.
     """
-    lengths = [LAST * module / finer]
+    lengths = [LAST * module]
     while sum(lengths) < half_width:
-        lengths.append(lengths[-1] * GROWTH ** (1 / finer))
+        lengths.append(lengths[-1] * GROWTH)
     ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
     n = ORDER * len(lengths) + 1
     s, weight = legendre.leggauss(ORDER + 1)
