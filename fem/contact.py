@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import wraps
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, Cost, Faults, Limit, RangeWarning, Stopwatch
+from base import Array, Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
 from fem.contact_candidates import contact_candidates
 from fem.cycle import MeshCycle
+from fem.cycle_of_solution import cycle_of
 from fem.edge_tables import EdgeTables
-from fem.elasticity import reduced_modulus
-from fem.events import ContactProblem
-from fem.face_loads import FaceLoads, face_load_factors
-from fem.face_setting import FREE_ENDS, WALLS, face_setting
-from fem.flamant import hertz_half_width
+from fem.face_setting import FREE_ENDS, face_setting
 from fem.local_law import Film
-from fem.model_error import LoadedContacts
 from fem.pair_compliance import compliance as _compliance
-from fem.references import REFERENCES, held_turns
+from fem.references import REFERENCES
 from fem.setting import Deviations, Setting
+from fem.several_torques import one_or_several
 from fem.sharing import Solution, solve
 
 if TYPE_CHECKING:
@@ -34,48 +28,8 @@ __all__ = ["MeshCycle", "mesh_cycle"]
 
 TORQUE = Limit(unit="N m", remedy="give the pinion's torque, more than 0 where it drives")
 
-LARGE_DEFLECTION = 0.03
-"""Part of the module above which a deflection is told."""
 
-WIDE_CONTACT = 0.07
-"""Part of the radius of relative curvature above which a contact's half-width is told."""
-
-ENDS_ERROR = 0.1
-"""Part of what free ends do that their coarse section leaves uncertain."""
-
-Options = ParamSpec("Options")
-
-
-class _OneOrSeveral(Protocol[Options]):
-    """A function of a torque that gives one cycle, of several torques that gives as many."""
-
-    @overload
-    def __call__(
-        self, pair: GearPair, torque: float, *args: Options.args, **kwargs: Options.kwargs
-    ) -> MeshCycle: ...
-
-    @overload
-    def __call__(
-        self, pair: GearPair, torque: Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
-    ) -> tuple[MeshCycle, ...]: ...
-
-
-def _one_or_several(
-    sweep: Callable[Concatenate[GearPair, Array, Options], tuple[MeshCycle, ...]],
-) -> _OneOrSeveral[Options]:
-    """Let a function of an array of torques take a single torque too, for which it returns a single cycle."""
-
-    @wraps(sweep)
-    def either(
-        pair: GearPair, torque: float | Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
-    ) -> MeshCycle | tuple[MeshCycle, ...]:
-        cycles = sweep(pair, np.atleast_1d(np.asarray(torque, dtype=float)).ravel(), *args, **kwargs)
-        return cycles if np.ndim(torque) else cycles[0]
-
-    return either  # type: ignore[return-value]
-
-
-@_one_or_several
+@one_or_several
 def mesh_cycle(
     pair: GearPair,
     torque: Array,
@@ -209,7 +163,7 @@ def mesh_cycle(
         counts=bodies.cost.counts,
     )
     cycles = tuple(
-        _result(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
+        cycle_of(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
         for k, (side, contact, number) in sorted(found.items())
     )
     return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
@@ -265,162 +219,3 @@ def _check(
             remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
             found.add("torque", "0", allowed, remedy)
     found.raise_if_any()
-
-
-def _result(
-    given: Setting,
-    bodies: Compliance,
-    film: Film | None,
-    tolerance: float,
-    tables: EdgeTables,
-    contact: Solution,
-    number: int,
-    torque: float,
-    cost: Cost,
-) -> MeshCycle:
-    where, pairs = contact.where, len(contact.where.offset)
-    force = torque / given.pair.base_radii[0]
-    opposite = contact.opposite
-    turned = contact.share.forces[number]  # kappa F
-    deflection = contact.deflection(number).ravel()
-    moved = contact.share.transmission_error[number].ravel() + contact.touch.ravel()
-    stiffness = contact.share.stiffness[number].ravel()
-    refusal = contact.refusal(number)
-    bad = np.nan if refusal else 0.0
-    forces = (turned / contact.kappa).reshape(-1, pairs) + bad
-    edge = np.tile(where.edge, (given.pitches, 1))
-    on_path = where.touchable & ~where.edge
-    rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
-    lost = [one.reshape(2, -1, pairs) for one in contact.lever_loss(number)]
-    large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
-    if large:
-        warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
-    held, supports = held_turns(bodies)
-    approach = contact.share.transmission_error[number]
-    both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
-    return MeshCycle(
-        torque=torque,
-        force=force,
-        position=where.position,
-        pair_offset=where.offset,
-        rho1=np.tile(np.where(on_path, where.place, np.nan), (given.pitches, 1)),
-        edge=edge,
-        flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
-        forces=forces,
-        load_share=(
-            contact.torques(number).reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)
-        )
-        + bad,
-        gaps=where.gap.reshape(-1, pairs),
-        transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
-        stiffness=stiffness + bad,
-        secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
-        pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
-        plane=bodies.plane,
-        beyond_path=given.beyond_path,
-        error=bodies.error,
-        moving_contact=given.moving_contact,
-        strips_at_corners=given.strips_at_corners,
-        lever_loss=lost[0],
-        further_lever_loss=lost[1],
-        cost=cost,
-        converged=bodies.converged and not refusal,
-        message=refusal
-        or "; ".join([bodies.message, *_remarks(given, contact, number, forces, edge), *large]),
-        pair=given.pair,
-        candidates=where,
-        friction=float(given.friction),
-        supports=supports,
-        reference=held,
-        face=None if refusal else _over_face(contact, number, bodies, force, film, tables),
-        loaded=None
-        if refusal or given.face is not None
-        else LoadedContacts(given, bodies, where, turned, approach, force),
-        problem=None
-        if refusal
-        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
-        flank="back" if given.back else "front",
-        opposite=opposite.flanks(number) if opposite is not None and both else None,
-    )
-
-
-def _over_face(
-    contact: Solution, number: int, bodies: Compliance, force: float, film: Film | None, tables: EdgeTables
-) -> FaceLoads | None:
-    """Line loads, with the error of the face-load factor by half as many cells, with free ends and without."""
-    given, over = tables.given, contact.face
-    if over is None or given.face is None:
-        return None
-    pair, cells = given.pair, given.face.cells
-    forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
-    factors = face_load_factors(forces)
-    few = 2 * (cells // 4)
-    greatest = []
-    models = (FREE_ENDS, WALLS) if given.face.model == FREE_ENDS else (given.face.model,)
-    for model in models:
-        coarse = replace(given, face=replace(given.face, cells=few, model=model))
-        other = solve(coarse, bodies, np.array([abs(force)]), film, tables).face
-        greatest.append(np.nan if other is None else float(np.max(face_load_factors(other.forces))))
-    most = float(np.max(factors))
-    error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[-1])
-    rho1, rho2 = contact.where.rho
-    return FaceLoads(
-        given.face.middles(pair.face_width),
-        forces * cells / pair.face_width,
-        factors,
-        given.face,
-        pair,
-        bodies.plane,
-        np.tile(rho1 * rho2 / (rho1 + rho2), (given.pitches, 1)),
-        error / most,
-    )
-
-
-def _large(given: Setting, contact: Solution, number: int, forces: Array, plane: str) -> list[str]:
-    """Deflections and contacts that are large for a law of the first order."""
-    part = np.max(contact.share.transmission_error[number]) / given.pair.module
-    loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
-    rho1, rho2 = contact.where.rho
-    radius = rho1 * rho2 / (rho1 + rho2)
-    width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
-    wide = np.max(width / radius)
-    found = []
-    if part > LARGE_DEFLECTION:
-        found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
-    if wide > WIDE_CONTACT:
-        found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
-    return found
-
-
-def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans) -> list[str]:
-    """What a reader of the figures should know."""
-    where, remarks = contact.where, []
-    if np.any(forces[edge] > 0):
-        sharp = [one.radius == 0.0 for one in given.rounds]
-        form = (
-            "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
-        )
-        tilted = ", tilted by the same friction as flanks" if given.friction else " without friction"
-        remarks.append(
-            f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
-            "several per cent for real edges"
-        )
-    if given.friction:
-        remarks.append("friction changes the lever arms only, not the compliance")
-    if (overlap := -1e6 * float(np.min(where.back_gap))) > 0.0:
-        left_out = "" if given.pair.tight else ", which is left out; give more backlash, or a tight pair"
-        remarks.append(
-            f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
-        )
-    opposite = contact.opposite
-    if opposite is not None and np.any(opposite.forces[number] > 0):
-        bearing = np.any(opposite.forces[number] > 0, axis=-1)
-        remarks.append(
-            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions, and contacts stay"
-        )
-    elif opposite is not None:
-        clear = 1e6 * np.min(opposite.open[number])
-        remarks.append(
-            f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
-        )
-    return remarks

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Integers, quantity, record
-from fem.cycle import MeshCycle, require_row
+from fem.cycle import MeshCycle
+from fem.cycle_rows import require_row
 from fem.elasticity import MIRROR
 from fem.fields import contact_half_width, of_axis
 from gears.plane import turned

@@ -1,4 +1,4 @@
-"""Result of the loaded tooth contact: forces, stiffness, transmission error, pressures, sliding, losses."""
+"""Result of the loaded tooth contact: forces, stiffness, transmission error, pressures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from base import (
     Cost,
     Faults,
     Integers,
-    Limit,
     SolverError,
     described,
     part,
@@ -23,25 +22,22 @@ from base import (
 )
 from base.results import EXACT, ITSELF
 from fem.contact_candidates import ContactCandidates
-from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem, measured_less
 from fem.face_loads import FaceLoads
 from fem.model_error import LoadedContacts
 from fem.opposite_flanks import OppositeFlanks
+from fem.pair_figures import PairFigures
 from fem.references import check_reference, turns
 from fem.setting import Setting
 from fem.support import FIXED, Support
-from gears import GearPair, half_width, peak_pressure
+from gears import GearPair
 from gears.mesh_figures import MeshArcs, MeshFigures
 
-__all__ = ["MeshCycle", "check_row", "require_row"]
-
-
-HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
+__all__ = ["MeshCycle"]
 
 
 @record
-class MeshCycle(MeshFigures):
+class MeshCycle(PairFigures, MeshFigures):
     """Some base pitches of a loaded pair; rows are positions, columns pairs in order of growing rho1.
 
     Means, extremes and harmonics are those of the curves on smooth arcs between events, whatever the positions. Where
@@ -234,23 +230,6 @@ class MeshCycle(MeshFigures):
             )
         return measured
 
-    def _moments(self) -> tuple[Array, Array]:
-        """Net normal force by its levers about both gears, and its slope by D (2, n)."""
-        lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
-        sums = [
-            np.sum((lever - np.where(self.forces > 0, lost, 0.0)) * one, axis=-1)
-            for lost, one in (
-                (self.lever_loss, self.forces),
-                (self.further_lever_loss, self.pair_stiffness),
-            )
-        ]
-        if self.opposite is not None:
-            other = self.opposite
-            lever = np.where(other.forces > 0, other.lever, 0.0)
-            for total, one in zip(sums, (other.forces, other.pair_stiffness), strict=True):
-                total -= np.sum(lever * one, axis=-1)
-        return sums[0], sums[1]
-
     @property
     def arcs(self) -> MeshArcs | None:
         """Curves on smooth arcs between events, found when they are first asked for; None without a solution.
@@ -300,27 +279,6 @@ class MeshCycle(MeshFigures):
             return self.position
         return np.asarray((Setting(self.pair).mirror - self.position) % 1.0)
 
-    @described("N", "position")
-    def opposite_force(self) -> Array:
-        """Normal force of all flanks on the other side together; zero where they do not bear."""
-        zero = np.zeros(len(self.position))
-        return zero if self.opposite is None else np.asarray(self.opposite.forces.sum(axis=-1))
-
-    @described("N", "position")
-    def separating_force(self) -> Array:
-        """Force of the flanks on both sides that pushes the gears apart, along the line of centres."""
-        both = self.forces.sum(axis=-1) + self.opposite_force
-        return np.asarray(both * np.sin(self.pair.working_pressure_angle))
-
-    @described("N", "position")
-    def bearing_force(self) -> Array:
-        """Force on the bearings of either gear by the normal forces: separating and tangential part together.
-
-        Tip edges are taken along the line of action.
-        """
-        across = self.forces.sum(axis=-1) - self.opposite_force
-        return np.asarray(np.hypot(self.separating_force, across * np.cos(self.pair.working_pressure_angle)))
-
     @property
     def teeth(self) -> Integers:
         """Numbers of the teeth of pinion and wheel in each pair (2, n, pairs)."""
@@ -330,103 +288,3 @@ class MeshCycle(MeshFigures):
     def back_gap(self) -> Array:
         """Smallest gap of the flanks on the other side without load: below zero the teeth jam."""
         return self.candidates.back_gap
-
-    def _loaded_radius(self) -> tuple[Array, Array, float]:
-        """Line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
-        touching = np.isfinite(self.rho1) & (self.forces > 0)
-        rho1, rho2 = self.flank_rho
-        load = np.where(touching, self.forces / self.pair.face_width, np.nan)
-        return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
-
-    @described("Pa", "position pair", shown="MPa", no_error=HERTZ)
-    def hertz_pressure(self) -> Array:
-        """Greatest Hertz pressure; nan where two flanks do not touch.
-
-        nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
-        """
-        return peak_pressure(*self._loaded_radius())
-
-    @described("m", "position pair", shown="um", no_error=HERTZ)
-    def half_width(self) -> Array:
-        """Half-width of the Hertz contact; nan where two flanks do not touch."""
-        return half_width(*self._loaded_radius())
-
-    def surface_speeds(self, speed: float = 1.0) -> Array:
-        """Speeds of pinion's and wheel's surface along the tangent of each contact (2, n, pairs) [m/s].
-
-        The gears turn evenly; tip edges included, along the tangent of the flank that they touch. Towards the tip of
-        the pinion; back flanks move the other way.
-
-        Parameters
-        ----------
-        speed : float
-            Of the pinion [rad/s].
-        """
-        first, second = self.pair.base_radii
-        speed = speed if self.flank == "front" else -speed
-        return np.asarray(
-            speed * self.candidates.tangent_arm * np.array([1.0, first / second])[:, None, None]
-        )
-
-    def sliding(self, speed: float = 1.0) -> Array:
-        """Sliding speed u1 - u2 of each contact (n, pairs) [m/s], negative before C; pinion at [rad/s]."""
-        first, second = self.surface_speeds(speed)
-        return np.asarray(first - second)
-
-    @described("1", "gear position pair", no_error=EXACT)
-    def specific_sliding(self) -> Array:
-        """Sliding over the surface's own speed, (u1 - u2)/u1 and (u2 - u1)/u2.
-
-        Infinite where a flank is touched on its base circle.
-        """
-        speeds = self.surface_speeds()
-        with np.errstate(divide="ignore"):
-            return np.asarray((speeds - speeds[::-1]) / speeds)
-
-    @described("N m", "position")
-    def wheel_torque(self) -> Array:
-        """Torque on the wheel of the normal forces, tilted by friction if there is any; of the loaded flanks alone.
-
-        Where a tip edge presses it differs from the torque of the pinion times the ratio even without
-        friction, by what the yielding teeth store; over a cycle that evens out.
-        """
-        slip = np.sign(self.sliding())
-        arm = self.candidates.lever[1] * self.pair.base_radii[1]
-        arm = arm + self.friction * slip * self.candidates.tangent_arm[1]
-        total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
-        return np.asarray(total if self.flank == "front" else -total)
-
-    def friction_loss(self, speed: float) -> Array:
-        """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""
-        slip = np.abs(self.sliding(speed))
-        return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
-
-    @described("1")
-    def efficiency(self) -> float:
-        """Power put in less the mean power lost by sliding, over the power put in; 1 without friction."""
-        return float(1.0 - np.mean(self.friction_loss(1.0)) / abs(self.torque))
-
-
-def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
-    """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides."""
-    last = len(cycle.position) - 1
-    known = np.isfinite(
-        found.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
-    )
-    if known and not np.all(np.isfinite(cycle.forces[row])):
-        found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
-    elif known and cycle.face is not None:
-        remedy = "leave cells, alignment and leads out"
-        found.add(
-            "cycle", "with cells of the face", "must be even along the face for fields and stresses", remedy
-        )
-    elif known and cycle.opposite_force[row] > 0.0:
-        allowed = "must have flanks that bear on one side of the teeth, where fields and stresses are wanted"
-        found.add("cycle", f"row {row} with flanks that bear on both sides", allowed, "give more backlash")
-
-
-def require_row(cycle: MeshCycle, row: int) -> None:
-    """Raise unless the cycle has that row, with finite forces."""
-    found = Faults()
-    check_row(found, cycle, row)
-    found.raise_if_any()

@@ -17,10 +17,11 @@ from base import Array, Integers, described, quantities, quantity, record
 from fem import flamant
 from fem.bodies import Compliance
 from fem.corner_contacts import corner_contact, near_corner
-from fem.cycle import MeshCycle, require_row
+from fem.cycle import MeshCycle
+from fem.cycle_rows import require_row
 from fem.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.elasticity import PlaneElasticity, reduced_modulus
-from fem.gear_compliance import CORNER_CLEARANCE
+from fem.flank_samples import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from fem.loaded_gears import frames
 from fem.near_field import Contact

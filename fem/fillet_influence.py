@@ -18,7 +18,7 @@ from base import Array, Integers, record
 from fem import flamant
 from fem.elasticity import MIRROR, PlaneElasticity
 from fem.fillet import FilletLine, fillet_line, fillet_stress_matrix
-from fem.gear_compliance import CORNER_CLEARANCE
+from fem.flank_samples import CORNER_CLEARANCE
 from fem.line_load import LineLoads, flank_points, line_loads
 from fem.ring import Ring
 

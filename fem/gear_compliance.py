@@ -2,15 +2,10 @@
 
 Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear,
 root, body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a
-wedge yields more than a half-plane. With the interior angle 2 beta of the corner and gamma = pi/2 - beta between
-load and bisector, Michell's wedge under a force at its apex gives
-
-    u_r ~ c ln d,   c = [2/pi - cos^2 gamma/(beta + sin(2 beta)/2) - sin^2 gamma/(beta - sin(2 beta)/2)]/E*
-
-(S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, 1970, article 38). That part is taken out before
-the rest is interpolated by Chebyshev polynomials. What is left of ``own`` begins as d ln d at the corner, close beyond
-the last load: it is a polynomial in the root of rho_end - rho, which moves that singularity away and brings loads close
-to it. Cross terms have no such part, and are fitted in rho itself.
+wedge yields more than a half-plane (``fem.wedge``). That part is taken out before the rest is interpolated by Chebyshev
+polynomials. What is left of ``own`` begins as d ln d at the corner, close beyond the last load: it is a polynomial in
+the root of rho_end - rho, which moves that singularity away and brings loads close to it. Cross terms have no such
+part, and are fitted in rho itself.
 """
 
 from __future__ import annotations
@@ -25,27 +20,14 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.line_load import LineLoads, flank_points, joined, line_loads
+from fem.flank_samples import FlankSamples
 from fem.ring import Ring
+from fem.wedge import corner_logarithm
 
 if TYPE_CHECKING:
     from gears import ToothProfile
-    from meshes import SectorMesh
 
-__all__ = [
-    "FlankSamples",
-    "GearCompliance",
-    "corner_logarithm",
-    "flank_loads",
-    "gear_compliance",
-    "hub_windup",
-    "sampled",
-    "samples_of",
-    "wedge_logarithms",
-]
-
-CORNER_CLEARANCE = 0.01
-"""Loads nearer to the tip corner than this (in modules of rho) are placed at this distance."""
+__all__ = ["GearCompliance", "gear_compliance", "hub_windup"]
 
 CROSS_DEGREE, CROSS_SHARE = 12, 5
 """Least degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
@@ -237,52 +219,6 @@ class GearCompliance:
         return np.asarray(chebyshev.chebvander(self._unit(load), len(series) - 1) @ series)
 
 
-def corner_logarithm(mesh: SectorMesh, law: PlaneElasticity, flank: str = "left") -> tuple[float, float]:
-    """Interior angle of the tip corner [rad] and the coefficient c of ln d [m per N/m]."""
-    points = mesh.points
-    facets = mesh.facets[f"flank_{flank}"]
-    last = facets[np.argmax(mesh.parameters[f"flank_{flank}"].max(axis=1))]
-    at_end = 1 if flank == "right" else 0  # the outline runs up the right flank and down the left one
-    corner = last[at_end]
-    beyond = next(
-        edge
-        for name, edges in mesh.facets.items()
-        if name.startswith(("top", "chamfer"))
-        for edge in edges
-        if corner in edge[:2]
-    )
-    arms = []
-    for edge in (last, beyond):
-        other = edge[0] if edge[1] == corner else edge[1]
-        slope = -3 * points[corner] + 4 * points[edge[2]] - points[other]
-        arms.append(slope / np.linalg.norm(slope))
-    angle = float(np.arccos(np.clip(arms[0] @ arms[1], -1.0, 1.0)))
-    return angle, wedge_logarithms(angle, law)[0]
-
-
-def wedge_logarithms(angle: float, law: PlaneElasticity) -> tuple[float, float, float]:
-    """Coefficients of ln d for force and displacement along a wedge's flank [m per N/m]: c_nn, c_nt, c_tt.
-
-    A force at the apex moves the wedge by -ln(r)/E* times 1/(beta + sin(2 beta)/2) along the bisector and
-    1/(beta - sin(2 beta)/2) across it, a half-plane by 2/pi in either direction. n is the inward normal, t
-    the tangent towards the apex.
-
-    Parameters
-    ----------
-    angle : float
-        2 beta, of the material [rad].
-    law : PlaneElasticity
-    """
-    half = 0.5 * angle
-    along, across = 1 / (half + 0.5 * np.sin(angle)), 1 / (half - 0.5 * np.sin(angle))
-    normal = along * np.sin(half) ** 2 + across * np.cos(half) ** 2
-    tangential = along * np.cos(half) ** 2 + across * np.sin(half) ** 2
-    mixed = 0.5 * (across - along) * np.sin(angle)
-    parts = 2 / np.pi - normal, -mixed, 2 / np.pi - tangential
-    c_nn, c_nt, c_tt = (float(part / law.plane_modulus) for part in parts)
-    return c_nn, c_nt, c_tt
-
-
 def hub_windup(profile: ToothProfile, law: PlaneElasticity) -> float:
     """Turn the body on its held bore, measured along the line of action [m per N/m].
 
@@ -292,62 +228,6 @@ def hub_windup(profile: ToothProfile, law: PlaneElasticity) -> float:
     from gears.closed_form import body_wind_up
 
     return body_wind_up(profile.zones, profile.base_radius, law.shear_modulus)
-
-
-@record
-class FlankSamples:
-    """Displacements by unit line loads at some places of a flank.
-
-    Attributes
-    ----------
-    rho : (n,) array
-        Curvature radii of the loads, growing [m].
-    own : (n,) array
-        u_r at each load [m per N/m].
-    cross : (reach, n, n) array
-        Displacement at the same places of the k-th tooth on the side of growing rho (rows: load).
-    corner : (reach, n) array
-        Displacement of that tooth's last place along the flank's tangent towards the tip.
-    """
-
-    rho: Array
-    own: Array
-    cross: Array
-    corner: Array
-
-
-def sample_places(profile: ToothProfile, count: int) -> Array:
-    """Chebyshev points in the root of what rho lacks to the tip corner, stretched to include both ends of the flank.
-
-    Whatever the mate reaches (count,) [m].
-    """
-    low, end = profile.flank_rho
-    high = end - CORNER_CLEARANCE * profile.module
-    unit = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    near, far = np.sqrt(end - high), np.sqrt(end - low)
-    root = near + 0.5 * (far - near) * (1 + unit / unit[0])
-    return np.asarray(np.clip(end - root**2, low, high))
-
-
-def flank_loads(ring: Ring, rho: Array, flank: str = "left") -> LineLoads:
-    """Load a flank at growing curvature radii [m], and the last place once more along the tangent towards the tip."""
-    at = flank_points(ring.mesh, rho, flank)
-    return line_loads(ring, joined(at, at.part(slice(-1, None)).towards_tip()))
-
-
-def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> FlankSamples:
-    """Load a flank at growing curvature radii [m] and take the displacements there and on ``reach`` teeth."""
-    return samples_of(flank_loads(ring, rho, flank), reach, flank)
-
-
-def samples_of(every: LineLoads, reach: int = 1, flank: str = "left") -> FlankSamples:
-    """As ``sampled``, by ``flank_loads``."""
-    count = len(every.at.rho) - 1
-    loads = every.part(slice(count))
-    teeth = [tooth if flank == "left" else -tooth for tooth in range(1, reach + 1)]
-    there = np.array([loads.on_neighbour(tooth, every) for tooth in teeth])
-    cross, corner = np.swapaxes(there[:, :count], 1, 2), there[:, count]
-    return FlankSamples(loads.at.rho, loads.regular_at_load(), cross, corner)
 
 
 def gear_compliance(

@@ -16,8 +16,8 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
+from fem.flank_samples import sample_places
 from fem.free_ends import FreeEnds, HalfFace, free_ends, half_face, over_cells
-from fem.gear_compliance import sample_places
 from fem.gear_shape import MeshedShape
 from fem.line_load import flank_points
 from fem.prism import Face, Section, prism, section

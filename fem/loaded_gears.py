@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, record
-from fem.cycle import MeshCycle, check_row
+from fem.cycle import MeshCycle
+from fem.cycle_rows import check_row
 from fem.elasticity import MIRROR, PlaneElasticity, reduced_modulus
 from fem.flamant import hertz_half_width
-from fem.gear_compliance import CORNER_CLEARANCE
+from fem.flank_samples import CORNER_CLEARANCE
 from fem.line_load import flank_points
 from gears.plane import turned
 from meshes import GearMesh, SectorMesh, Sizes, gear_mesh, mesh_sector

@@ -15,14 +15,8 @@ from base import Array, Cost, Stopwatch, record
 from fem.back_compliance import BackCompliance, back_by_mirror, back_compliance
 from fem.elasticity import PlaneElasticity
 from fem.flank_motion import FlankMotion, flank_motion
-from fem.gear_compliance import (
-    GearCompliance,
-    flank_loads,
-    gear_compliance,
-    sample_places,
-    sampled,
-    samples_of,
-)
+from fem.flank_samples import flank_loads, sample_places, sampled, samples_of
+from fem.gear_compliance import GearCompliance, gear_compliance
 from fem.gear_shape import MeshedShape, plain
 from fem.memo import Memo, read_only
 from fem.ring import Ring, ring_of

@@ -2,7 +2,7 @@
 
 By finite elements: half-plane plus regular part, which knows the free edge beyond the corner. Near the corner
 only the wedge is seen, whose answer is the same at every scale but for c_ab ln(scale), c_ab the tensor of
-``fem.gear_compliance.wedge_logarithms``.
+``fem.wedge.wedge_logarithms``.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ import numpy as np
 
 from base import Array, record
 from fem.elasticity import PlaneElasticity
-from fem.gear_compliance import corner_logarithm, hub_windup, wedge_logarithms
+from fem.gear_compliance import hub_windup
 from fem.line_load import FlankPoints, flank_points, joined, line_loads
 from fem.strip_contact import flat_kernels
+from fem.wedge import corner_logarithm, wedge_logarithms
 
 if TYPE_CHECKING:
     from fem.ring import Ring

@@ -10,7 +10,7 @@ import ehl
 import gears
 from base import Array, described, quantity, record
 from base.results import EXACT
-from fem.cycle import HERTZ
+from fem.pair_figures import HERTZ
 from flankfilm.coupling.heated_films import HeatedFilms
 
 _CLOSED_FORM = "unknown: a closed form"

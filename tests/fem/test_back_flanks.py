@@ -16,7 +16,7 @@ from fem.back_compliance import back_compliance
 from fem.clear_flanks import stays_clear
 from fem.edge_tables import EdgeTables
 from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.gear_compliance import sample_places
+from fem.flank_samples import sample_places
 from fem.line_load import flank_points, line_loads
 from fem.loaded_flanks import loaded_flanks
 from fem.opposite_flanks import _both_sides, share_with_opposite

@@ -10,9 +10,11 @@ import pytest
 from base import InputError
 from fem.elasticity import PlaneElasticity
 from fem.flamant import hertz_indentation
-from fem.gear_compliance import corner_logarithm, gear_compliance, sample_places, sampled, wedge_logarithms
+from fem.flank_samples import sample_places, sampled
+from fem.gear_compliance import gear_compliance
 from fem.line_load import flank_points, line_loads
 from fem.ring import ring_of
+from fem.wedge import corner_logarithm, wedge_logarithms
 from gears import Gear, GearPair
 from meshes import mesh_sector
 

@@ -12,7 +12,8 @@ import pytest
 import fem
 from fem.elasticity import PlaneElasticity
 from fem.fillet_influence import fillet_influence
-from fem.gear_compliance import gear_compliance, sample_places, sampled
+from fem.flank_samples import sample_places, sampled
+from fem.gear_compliance import gear_compliance
 from fem.gear_shape import MeshedShape, shapes
 from fem.memo import Memo
 from fem.ring import mesh_and_factor, ring_of

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import fem
-from fem.gear_compliance import corner_logarithm
 from fem.local_law import Table
 from fem.tip_contact import edge_laws, nearest_gap
 from fem.tip_geometry import chamfer_gap, corner_angle, tip_round, unloaded_gap
+from fem.wedge import corner_logarithm
 from gears import Gear, GearPair
 from meshes import Sizes, mesh_sector
 

@@ -1,0 +1,158 @@
+"""The record of a mesh cycle, made of the contact's solution for one torque, with what a reader should know of it."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from base import Array, Booleans, Cost, RangeWarning
+from fem.bodies import Compliance
+from fem.cycle import MeshCycle
+from fem.edge_tables import EdgeTables
+from fem.elasticity import reduced_modulus
+from fem.events import ContactProblem
+from fem.face_loads import face_loads
+from fem.flamant import hertz_half_width
+from fem.local_law import Film
+from fem.model_error import LoadedContacts
+from fem.references import held_turns
+from fem.setting import Setting
+from fem.sharing import Solution
+
+__all__ = ["cycle_of"]
+
+LARGE_DEFLECTION = 0.03
+"""Part of the module above which a deflection is told."""
+
+WIDE_CONTACT = 0.07
+"""Part of the radius of relative curvature above which a contact's half-width is told."""
+
+
+def cycle_of(
+    given: Setting,
+    bodies: Compliance,
+    film: Film | None,
+    tolerance: float,
+    tables: EdgeTables,
+    contact: Solution,
+    number: int,
+    torque: float,
+    cost: Cost,
+) -> MeshCycle:
+    """Put the figures of one torque of a solution together."""
+    where, pairs = contact.where, len(contact.where.offset)
+    force = torque / given.pair.base_radii[0]
+    opposite = contact.opposite
+    turned = contact.share.forces[number]  # kappa F
+    deflection = contact.deflection(number).ravel()
+    moved = contact.share.transmission_error[number].ravel() + contact.touch.ravel()
+    stiffness = contact.share.stiffness[number].ravel()
+    refusal = contact.refusal(number)
+    bad = np.nan if refusal else 0.0
+    forces = (turned / contact.kappa).reshape(-1, pairs) + bad
+    edge = np.tile(where.edge, (given.pitches, 1))
+    on_path = where.touchable & ~where.edge
+    rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
+    lost = [one.reshape(2, -1, pairs) for one in contact.lever_loss(number)]
+    large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
+    if large:
+        warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
+    held, supports = held_turns(bodies)
+    approach = contact.share.transmission_error[number]
+    both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
+    return MeshCycle(
+        torque=torque,
+        force=force,
+        position=where.position,
+        pair_offset=where.offset,
+        rho1=np.tile(np.where(on_path, where.place, np.nan), (given.pitches, 1)),
+        edge=edge,
+        flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
+        forces=forces,
+        load_share=(
+            contact.torques(number).reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)
+        )
+        + bad,
+        gaps=where.gap.reshape(-1, pairs),
+        transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
+        stiffness=stiffness + bad,
+        secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
+        pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
+        plane=bodies.plane,
+        beyond_path=given.beyond_path,
+        error=bodies.error,
+        moving_contact=given.moving_contact,
+        strips_at_corners=given.strips_at_corners,
+        lever_loss=lost[0],
+        further_lever_loss=lost[1],
+        cost=cost,
+        converged=bodies.converged and not refusal,
+        message=refusal
+        or "; ".join([bodies.message, *_remarks(given, contact, number, forces, edge), *large]),
+        pair=given.pair,
+        candidates=where,
+        friction=float(given.friction),
+        supports=supports,
+        reference=held,
+        face=None if refusal else face_loads(contact, number, bodies, force, film, tables),
+        loaded=None
+        if refusal or given.face is not None
+        else LoadedContacts(given, bodies, where, turned, approach, force),
+        problem=None
+        if refusal
+        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
+        flank="back" if given.back else "front",
+        opposite=opposite.flanks(number) if opposite is not None and both else None,
+    )
+
+
+def _large(given: Setting, contact: Solution, number: int, forces: Array, plane: str) -> list[str]:
+    """Deflections and contacts that are large for a law of the first order."""
+    part = np.max(contact.share.transmission_error[number]) / given.pair.module
+    loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
+    rho1, rho2 = contact.where.rho
+    radius = rho1 * rho2 / (rho1 + rho2)
+    width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
+    wide = np.max(width / radius)
+    found = []
+    if part > LARGE_DEFLECTION:
+        found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
+    if wide > WIDE_CONTACT:
+        found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
+    return found
+
+
+def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans) -> list[str]:
+    """What a reader of the figures should know."""
+    where, remarks = contact.where, []
+    if np.any(forces[edge] > 0):
+        sharp = [one.radius == 0.0 for one in given.rounds]
+        form = (
+            "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
+        )
+        tilted = ", tilted by the same friction as flanks" if given.friction else " without friction"
+        remarks.append(
+            f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
+            "several per cent for real edges"
+        )
+    if given.friction:
+        remarks.append("friction changes the lever arms only, not the compliance")
+    if (overlap := -1e6 * float(np.min(where.back_gap))) > 0.0:
+        left_out = "" if given.pair.tight else ", which is left out; give more backlash, or a tight pair"
+        remarks.append(
+            f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
+        )
+    opposite = contact.opposite
+    if opposite is not None and np.any(opposite.forces[number] > 0):
+        bearing = np.any(opposite.forces[number] > 0, axis=-1)
+        remarks.append(
+            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions, and contacts stay"
+        )
+    elif opposite is not None:
+        clear = 1e6 * np.min(opposite.open[number])
+        remarks.append(
+            f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
+        )
+    return remarks
