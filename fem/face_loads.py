@@ -25,6 +25,8 @@ __all__ = ["FaceLoads", "face_load_factors", "face_loads"]
 ENDS_ERROR = 0.1
 """Part of what free ends do that their coarse section leaves uncertain."""
 
+HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
+
 
 @record
 class FaceLoads:
@@ -41,7 +43,10 @@ class FaceLoads:
         "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
     )
     line_load: Array = quantity(
-        "N/m", "force per length of face; zero where flanks stand clear", "position pair cell", shown="N/mm"
+        "N/m",
+        "line load: force per length of face; zero where flanks stand clear",
+        "position pair cell",
+        shown="N/mm",
     )
     face_load_factor: Array = quantity(
         "1", "greatest line load of the most loaded pair over that pair's mean", "position", error="error"
@@ -49,7 +54,17 @@ class FaceLoads:
     setting: FaceSetting = part("cells, alignment, leads and ends")
     pair: GearPair = part("the gears")
     plane: str = part('"strain" or "stress", as of the compliance')
-    curvature_radius: Array = quantity("m", "radius of relative curvature", "position pair", no_error=EXACT)
+    curvature_radius: Array = quantity(
+        "m", "radius of relative curvature; nan where no two flanks touch", "position pair", no_error=EXACT
+    )
+    travel: Array = quantity(
+        "m",
+        "travel of each pair along the path of contact from A, beyond it where a tip edge touches; nan where a pair "
+        "cannot touch",
+        "position pair",
+        shown="mm",
+        no_error=EXACT,
+    )
     error: float = quantity("1", "estimated relative error of the greatest face-load factor")
 
     @described("1", error="error")
@@ -62,9 +77,9 @@ class FaceLoads:
         """Greatest line load of all positions, pairs and cells."""
         return float(np.max(self.line_load))
 
-    @property
+    @described("Pa", "position pair cell", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
-        """Hertz pressure in the middle of the contact of every cell (positions, pairs, cells) [Pa]."""
+        """Hertz pressure: greatest of the contact of every cell; nan where no two flanks touch, as at tip edges."""
         radius = self.curvature_radius[..., None]
         return np.asarray(peak_pressure(self.line_load, radius, reduced_modulus(self.pair, self.plane)))
 
@@ -100,7 +115,9 @@ def face_loads(
         greatest.append(np.nan if other is None else float(np.max(face_load_factors(other.forces))))
     most = float(np.max(factors))
     error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[-1])
-    rho1, rho2 = contact.where.rho
+    where, (rho1, rho2) = contact.where, contact.where.rho
+    radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
+    travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
     return FaceLoads(
         given.face.middles(pair.face_width),
         forces * cells / pair.face_width,
@@ -108,6 +125,7 @@ def face_loads(
         given.face,
         pair,
         bodies.plane,
-        np.tile(rho1 * rho2 / (rho1 + rho2), (given.pitches, 1)),
+        np.tile(radius, (given.pitches, 1)),
+        np.tile(travel, (given.pitches, 1)),
         error / most,
     )

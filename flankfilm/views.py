@@ -11,7 +11,8 @@ PICTURES: Mapping[str, str] = {
     "gears.pair:GearPair": "pair",
     "gears.path:PathOfContact": "curves",
     "gears.closed_form.record:ClosedForm": "closed_form",
-    "fem.cycle:MeshCycle": "curves",
+    "fem.cycle:MeshCycle": "loaded_contact",
+    "fem.face_loads:FaceLoads": "face_loads",
     "fem.tooth_root:RootStress": "root_stress",
     "ehl.film:Film": "curves",
     "ehl.mixed:MixedFilm": "mixed_film",
@@ -55,6 +56,9 @@ PICTURES: Mapping[str, str] = {
 OF_SPEEDS = ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map")
 """Pictures of what drives the motion and of its orders, in `flankfilm.figures.of_speeds`."""
 
+OF_FACE = ("loaded_contact", "face_loads")
+"""Pictures of what the face bears, in `flankfilm.figures.face`."""
+
 RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")
 
 VIEWS: Mapping[str, str] = {
@@ -70,7 +74,13 @@ VIEWS: Mapping[str, str] = {
 def register() -> None:
     """Register views and pictures; the entry point ``base.views`` of the distribution."""
     module = {
-        place: "of_runs" if place.startswith(RUNS) else "of_speeds" if name in OF_SPEEDS else "of_records"
+        place: "of_runs"
+        if place.startswith(RUNS)
+        else "of_speeds"
+        if name in OF_SPEEDS
+        else "face"
+        if name in OF_FACE
+        else "of_records"
         for place, name in PICTURES.items()
     }
     pictures = {place: f"flankfilm.figures.{module[place]}:{name}" for place, name in PICTURES.items()}

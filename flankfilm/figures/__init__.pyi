@@ -5,6 +5,8 @@ from .animation import tooth_picture as tooth_picture
 from .animation import view_cycle as view_cycle
 from .excitation import excitation as excitation
 from .excitation import spectrum as spectrum
+from .face import face_load_factor as face_load_factor
+from .face import flank_map as flank_map
 from .film import film_along_path as film_along_path
 from .film import film_changes as film_changes
 from .film import film_families as film_families

@@ -91,9 +91,20 @@ def beside(axes: Axes, one: float, label: str, way: str = "right") -> None:
 def over_path(results: xr.Dataset, *panels: Axes) -> None:
     """Mark A to E in panels over the travel along the path, name them above the first, and title the last."""
     places = travel(results, "path_point_rho1").tolist()
-    points = sorted(zip(places, map(str, results["path_point"].values), strict=True))
-    narrow, before, raised = NARROW * (max(places) - min(places)), -np.inf, False
-    for at, name in points:
+    mark_path(dict(zip(map(str, results["path_point"].values), places, strict=True)), *panels)
+
+
+def mark_path(points: Mapping[str, float], *panels: Axes) -> None:
+    """Mark points in panels over the travel along the path; arguments as of `over_path`.
+
+    Parameters
+    ----------
+    points : mapping
+        Name to travel [mm].
+    panels : matplotlib.axes.Axes
+    """
+    narrow, before, raised = NARROW * (max(points.values()) - min(points.values())), -np.inf, False
+    for at, name in sorted((at, name) for name, at in points.items()):
         for axes in panels:
             axes.axvline(at, color=MARK, linewidth=0.8)
         # names of points that lie close together stand by turns above each other

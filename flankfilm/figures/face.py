@@ -1,0 +1,164 @@
+"""What the face bears: flank maps over path and face, and the face-load factor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array
+from flankfilm.figures.of_records import curves
+from flankfilm.figures.panels import mark_path, over_path, over_two_pitches
+from flankfilm.figures.reading import Reading, need, read, read_figure
+from flankfilm.figures.style import Style, colours, sheet
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    import fem
+
+FACE = "run a scene whose pair has a lead or an alignment"
+
+MAPS = ("line_load", "hertz_pressure")
+"""Figures of the cells that are painted."""
+
+
+@dataclass(frozen=True)
+class FlankMap:
+    """A figure over path and face of the flanks in mesh.
+
+    Attributes
+    ----------
+    travel : (places,) array
+        Along the path of contact from A, growing [mm].
+    face : (cells,) array
+        Middles of the cells, 0 at mid-face [mm].
+    values : Reading
+        (places, cells); nan where nothing bears.
+    """
+
+    travel: Array
+    face: Array
+    values: Reading
+
+    @classmethod
+    def of(cls, travel: Reading, face: Reading, values: Reading) -> FlankMap:
+        """Gather pairs at all positions by where they touch; the greatest where several teeth come by.
+
+        Parameters
+        ----------
+        travel : Reading
+            (positions, pairs); nan where a pair cannot touch.
+        face : Reading
+            (cells,)
+        values : Reading
+            (positions, pairs, cells)
+        """
+        at, cells = travel.values.ravel(), values.values.reshape(-1, len(face.values))
+        known = np.isfinite(at)
+        # equal places of several pitches differ by rounding
+        places, which = np.unique(np.round(at[known], 9), return_inverse=True)
+        greatest = np.zeros((len(places), len(face.values)))
+        np.fmax.at(greatest, which, cells[known])
+        shown = Reading(np.where(greatest > 0.0, greatest, np.nan), values.meaning, values.unit)
+        return cls(places, face.values, shown)
+
+    def paint(self, axes: Axes) -> None:
+        """Paint the map with its scale of colours; white where nothing bears."""
+        bears = np.flatnonzero(np.isfinite(self.values.values).any(axis=1))
+        first, last = (int(bears[0]), int(bears[-1]) + 1) if bears.size else (0, len(self.travel))
+        painted = axes.pcolormesh(
+            self.travel[first:last],
+            self.face,
+            self.values.values[first:last].T,
+            vmin=0.0,
+            shading="nearest",
+            rasterized=True,
+        )
+        figure = axes.get_figure()
+        assert figure is not None
+        figure.colorbar(painted, ax=axes, label=self.values.label)
+        axes.grid(visible=False)
+        half = 0.5 * float(self.face[-1] - self.face[0]) * len(self.face) / (len(self.face) - 1)
+        axes.set(ylabel="place on the\nface [mm]", ylim=(-half, half))
+
+
+def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | None = None) -> Figure:
+    """Draw line load and Hertz pressure over path and face.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run whose pair has a lead or an alignment.
+    prefix : str
+        Of the variables of ``fem.FaceLoads``.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
+    places = [f"{prefix}_{name}" for name in ("travel", "face_position")]
+    painted = [f"{prefix}_{name}" for name in MAPS]
+    need(results, FACE, *places, *painted, "path_point_rho1")
+    travel, face = (read(results, name) for name in places)
+    with sheet(style, len(painted), height=2.3 * len(painted), legend=0) as (drawn, panels):
+        for axes, name in zip(panels, painted, strict=True):
+            FlankMap.of(travel, face, read(results, name)).paint(axes)
+        over_path(results, *panels)
+    return drawn
+
+
+def face_load_factor(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | None = None) -> Figure:
+    """Draw the face-load factor over two base pitches.
+
+    Parameters
+    ----------
+    results, prefix, style
+        As of `flank_map`.
+    """
+    position, name = f"{prefix.removesuffix('_face')}_position", f"{prefix}_face_load_factor"
+    need(results, FACE, position, name)
+    with sheet(style, height=2.4, legend=0) as (drawn, (axes,)):
+        over_two_pitches(axes, read(results, position), {"": read(results, name)}, "face-load factor")
+        axes.set_ylim(bottom=1.0)
+    return drawn
+
+
+def face_loads(found: fem.FaceLoads) -> Figure:
+    """Draw line load and Hertz pressure over path and face."""
+    with sheet(None, len(MAPS), height=2.3 * len(MAPS), legend=0) as (drawn, panels):
+        _painted(panels, found, MAPS)
+    return drawn
+
+
+def loaded_contact(found: fem.MeshCycle) -> Figure:
+    """Draw stiffness and transmission error, or what the face bears where it has cells."""
+    if found.face is None:
+        return curves(found)
+    with sheet(None, 3, height=6.4, legend=0, sharex=False) as (drawn, panels):
+        _painted(panels[:1], found.face, MAPS[:1])
+        at = read_figure(found, "position")
+        factor, error = read_figure(found.face, "face_load_factor"), read_figure(found, "transmission_error")
+        for axes, one, label in zip(
+            panels[1:],
+            (factor, error),
+            ("face-load factor [-]", "transmission\nerror [µm]"),
+            strict=True,
+        ):
+            axes.plot(at.values, one.values, color=colours(1)[0])
+            axes.set(ylabel=label, xlabel=at.label)
+        panels[1].sharex(panels[2])
+        panels[1].tick_params(labelbottom=False)
+        panels[1].set_xlabel("")
+    return drawn
+
+
+def _painted(panels: Sequence[Axes], found: fem.FaceLoads, names: Sequence[str]) -> None:
+    """Paint figures of the cells of a record, with the points of its pair's path."""
+    travel, face = read_figure(found, "travel"), read_figure(found, "face_position")
+    for axes, name in zip(panels, names, strict=True):
+        FlankMap.of(travel, face, read_figure(found, name)).paint(axes)
+    points = found.pair.points
+    mark_path({name: 1e3 * (getattr(points, name) - points.A) for name in "ABCDE"}, *panels)
