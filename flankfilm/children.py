@@ -102,6 +102,28 @@ def answering_signals() -> Iterator[None]:
             signal.signal(one, handler if handler is not None else signal.SIG_DFL)
 
 
+@contextmanager
+def ends_later() -> Iterator[None]:
+    """Answer signals that ask for an end when this is left: what is started half-way could not be ended.
+
+    A worker whose parent goes on before it has told it what to do ends with a traceback.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = {one: signal.getsignal(one) for one in ENDS if signal.getsignal(one) is not signal.SIG_IGN}
+    for one in before:
+        signal.signal(one, lambda number, _frame: came.append(number))
+    try:
+        yield
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler if handler is not None else signal.SIG_DFL)
+        if came:
+            signal.raise_signal(came[0])
+
+
 def on_its_way() -> None:
     """Do not ask for an end once more: what closes files and ends workers is at it."""
     if hasattr(signal, "setitimer"):

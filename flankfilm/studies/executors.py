@@ -7,13 +7,13 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from base import InputError
-from flankfilm.children import environment, on_its_way, work_until_told
+from flankfilm.children import ends_later, environment, on_its_way, work_until_told
 
 if TYPE_CHECKING:
     from dask.distributed import Client
@@ -72,11 +72,20 @@ def executor(kind: Kind, workers: int) -> Iterator[Pool]:
         yield from _mpi()
 
 
+class _Processes(ProcessPoolExecutor):
+    """Processes that are started whole, with the rows that come first, or not at all."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Take a call; start a process for it where one is missing."""
+        with ends_later():
+            return super().submit(fn, *args, **kwargs)
+
+
 def _processes(workers: int) -> Iterator[Pool]:
     context = multiprocessing.get_context("spawn")
     told, tell = context.Pipe(duplex=False)
     with environment(**ONE_THREAD), told, tell:
-        pool = ProcessPoolExecutor(workers, context, work_until_told, (told,))
+        pool = _Processes(workers, context, work_until_told, (told,))
         try:
             yield Pool(pool, lambda: workers)
         except BaseException:

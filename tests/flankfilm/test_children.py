@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from flankfilm.children import Ended, answering_signals, environment, module, python
+from flankfilm.children import Ended, answering_signals, ends_later, environment, module, python
 from tests.flankfilm.program import SCRIPT
 from tests.processes import MARK, PATIENCE, left_after, marked, new_mark
 
@@ -162,6 +162,20 @@ def test_an_end_that_something_else_swallowed_is_asked_for_again(monkeypatch):
 
     with pytest.raises(Ended):
         work()
+
+
+def test_an_end_waits_for_what_must_not_be_left_half_way():
+    done = []
+
+    def start() -> None:
+        with ends_later():
+            signal.raise_signal(signal.SIGTERM)
+            done.append("started")
+        done.append("gone on")
+
+    with pytest.raises(Ended, match="SIGTERM"), answering_signals():
+        start()
+    assert done == ["started"]
 
 
 HOLDS = """
