@@ -11,6 +11,7 @@ import numpy as np
 import gears
 from base import Fault, Faults, InputError
 from flankfilm.build import pinion_torque, supports, tip_roundings, warm_pair
+from flankfilm.build_face import faults_of_face
 from flankfilm.build_film import lubricant, roughness
 from flankfilm.build_flanks import deviations
 from flankfilm.scene import Scene
@@ -44,7 +45,7 @@ def refuse(scene: Scene) -> None:
             if not found.found:
                 pair = warm_pair(scene).pair
                 found.extend(_faults(lambda: deviations(scene, pair, every_tooth=True)))
-                for faults in (_held, _pressed, _menisci):
+                for faults in (_held, _pressed, _menisci, faults_of_face):
                     found.extend(faults(scene, pair))
         if scene.lubricant is not None:
             found.extend(_faults(lambda: lubricant(scene)))

@@ -87,6 +87,7 @@ def _gear(section: GearSection) -> gears.Gear:
         **section.si(),
         tip_relief=None if relief is None else gears.TipRelief(**relief.si()),
         blank=None if blank is None else gears.Blank(**blank.si()),
+        lead=gears.Lead(**section.si_of("lead")),
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Faults, Stopwatch
+from fem.face_setting import FREE_ENDS
 from fem.local_law import film_yielding
 from fem.setting import Setting
 from flankfilm.coupling.believed import believed
@@ -45,6 +46,12 @@ class Flanks:
         Base pitch of the pinion less that of the wheel, by unequal temperatures [m].
     moving_contact : bool, optional
         Whether contacts on the path move under load; unless given those of plastics do (`contacts_move`).
+    alignment : gears.Alignment, optional
+        How the axes are out of parallel.
+    cells : int, optional
+        Cells of the face; the load is even along it without them, an alignment and leads.
+    face_model : str
+        What couples the cells, as of `fem.mesh_cycle`.
     """
 
     beyond_path: bool = True
@@ -53,6 +60,9 @@ class Flanks:
     friction: float = 0.0
     moving_contact: bool | None = None
     base_pitch_difference: float = 0.0
+    alignment: gears.Alignment | None = None
+    cells: int | None = None
+    face_model: str = FREE_ENDS
 
 
 PLAIN_FLANKS = Flanks()

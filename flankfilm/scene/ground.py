@@ -64,6 +64,8 @@ def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[st
         return list(attributes), None, None
     for name, field in type(section).model_fields.items():
         about, value = key_of(field), getattr(section, name)
+        if about.of == ".".join(attributes):  # of a part that has no section of its own as well
+            return [name], about, value
         if attributes[0] in (name, about.of):
             if isinstance(value, Section):
                 names, about_inner, inner = _key_at(attributes[1:], value)

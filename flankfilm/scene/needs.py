@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from base import Fault, shorten
+from flankfilm.scene.alignment import LEAD_KEYS
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
@@ -43,9 +44,10 @@ def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     asked += ["operating.friction"] if _table(raw, "operating").get("friction") else []
     asked += ["pair.tight"] if _table(raw, "pair").get("tight") else []
     asked += ["dynamics.stiffness_reference"] if _table(raw, "dynamics").get("stiffness_reference") else []
+    asked += ["[alignment]"] if raw.get("alignment") is not None else []
     for gear in ("pinion", "wheel"):
         keys = _table(_table(raw, "pair"), gear)
-        known = ("tip_rounding_um", "deviations", "wear", "hub")
+        known = ("tip_rounding_um", *LEAD_KEYS, "deviations", "wear", "hub")
         asked += [f"pair.{gear}.{key}" for key in known if keys.get(key)]
     return asked
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from flankfilm.scene.alignment import LEAD_KEYS
 from flankfilm.scene.gears import GearSection
 from flankfilm.scene.schema import Scene
 
 
 def plain_flanks(scene: Scene) -> Scene:
-    """Give the scene with gears that have no relief, deviations, wear or rounded edges: no mesh shows them."""
+    """Give the scene with gears that have no relief, leads, deviations, wear or rounded edges: no mesh shows them."""
     plain = {"tip_relief": None, "deviations": None, "wear": None, "tip_rounding_um": 0.0}
+    plain |= dict.fromkeys((*LEAD_KEYS, "end_relief_length_mm"), 0.0)
     return _changed(scene, lambda gear: plain)
 
 

@@ -11,11 +11,13 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from base import InputError, Limit
+from flankfilm.scene.alignment import AlignmentSection
 from flankfilm.scene.dynamics import DynamicsSection
 from flankfilm.scene.film import FilmSection, LubricantSection, RoughnessSection
-from flankfilm.scene.gears import MaterialSection, PairSection
+from flankfilm.scene.gears import PairSection
 from flankfilm.scene.heat import HeatSection
 from flankfilm.scene.key import key
+from flankfilm.scene.materials import MaterialSection
 from flankfilm.scene.operating import OperatingSection, StiffnessSection
 from flankfilm.scene.section import Section
 
@@ -98,6 +100,10 @@ class Scene(Section):
     )
     heat: HeatSection | None = key(
         "Temperatures, by which gears and housing grow; all at 20 degC if left out", None
+    )
+    alignment: AlignmentSection | None = key(
+        "Axes out of parallel, and cells of the face; parallel if left out",
+        None,
     )
     operating: OperatingSection | None = key("Load and speed", None, shown=True)
     lubricant: LubricantSection | None = key(

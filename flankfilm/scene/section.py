@@ -38,12 +38,28 @@ class Section(BaseModel):
         Parameters
         ----------
         *names : str
-            Keys to give, all if there are none; keys that the ground does not know and sections are left out.
+            Keys to give, all if there are none; keys that the ground does not know, those of a part (`si_of`) and
+            sections are left out.
         """
         found = {}
         for name in names or type(self).model_fields:
             attribute, value = key_of(type(self).model_fields[name]).of, self.value(name)
-            if attribute and value is not None and not isinstance(value, Section):
+            if attribute and "." not in attribute and value is not None and not isinstance(value, Section):
+                found[attribute] = value
+        return found
+
+    def si_of(self, part: str) -> dict[str, Any]:
+        """Keyword arguments for a part of the ground's object whose quantities are keys of this section.
+
+        Parameters
+        ----------
+        part : str
+            The ground's name of it: ``lead`` of keys that are of ``lead.crowning`` and the like.
+        """
+        found = {}
+        for name, field in type(self).model_fields.items():
+            whole, _, attribute = (key_of(field).of or "").partition(".")
+            if whole == part and attribute and (value := self.value(name)) is not None:
                 found[attribute] = value
         return found
 

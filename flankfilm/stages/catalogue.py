@@ -13,6 +13,7 @@ import fem
 import gears
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
+from flankfilm.build_face import face
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
@@ -24,7 +25,7 @@ from flankfilm.scene.ground import under_keys
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact operating heat tolerance"
+TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact alignment operating heat tolerance"
 """Keys of all that is loaded."""
 
 
@@ -124,6 +125,7 @@ def loaded_teeth(
         scene.operating.friction if scene.operating else 0.0,
         scene.stiffness.moving_contact,
         warm_pair(scene).base_pitch_difference,
+        **face(scene),
     )
     compliance = run[COMPLIANCE] if model == "fem" else None
     return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)

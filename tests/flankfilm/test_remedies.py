@@ -280,6 +280,7 @@ OWN = {
 }
 FORM = {"mean_force": 0.1, "error_amplitude": 0.2, "half_backlash": 0.2}
 DAMPED = {"wants": ["sweep"], "dynamics": {"damping_ratio": "film", "sweep": {"speed_rpm": [500, 3000]}}}
+CROWNED = {"pair.pinion.crowning_um": 10.0}
 WORDED = [
     # what is changed, where the fault is, words with the numbers of the remedy, what they say
     ({**TURNING, "dynamics.sweep.speed_rpm": [0.01, 0.02]}, "dynamics.sweep.speed_rpm",
@@ -338,6 +339,26 @@ WORDED = [
     ({**DAMPED, "roughness": {"sigma_um": 0.4}}, "[roughness]", r"(Drop) it", lambda n: {"roughness": None}),
     ({**DAMPED, "film": {"supply": "oil-layer", "oil_layer_um": 0.2}}, "film.supply", r'Take "(flooded)"',
      lambda n: {"film": {"supply": n}}),
+    ({"alignment": {"in_plane_um": 20.0, "cells": 33}}, "alignment.cells", rf"Take {NUMBER}",
+     lambda n: {"alignment.cells": int(n)}),
+    ({"pair.pinion.end_relief_um": 8.0}, "pair.pinion.end_relief_length_mm", r"(Give its length)",
+     lambda n: {"pair.pinion.end_relief_length_mm": 5.0}),
+    ({"pair.wheel.end_relief_um": 8.0, "pair.wheel.end_relief_length_mm": 25.0}, "pair.wheel.end_relief_length_mm",
+     rf"must be at most {NUMBER} mm", lambda n: {"pair.wheel.end_relief_length_mm": float(n)}),
+    ({**CROWNED, "stiffness": {"model": "ishikawa"}}, "stiffness.model", r'must be "(\w+)" for pair.pinion.crowning_um',
+     lambda n: {"stiffness.model": n}),
+    ({**CROWNED, "wants": ["stiffness", "vtk"]}, "wants", r"Leave (vtk) out", lambda n: {"wants": ["stiffness"]}),
+    ({**CROWNED, "film": {"model": "auto"}}, "film.model", r'Take film.model = "(none)"', lambda n: {"film.model": n}),
+    ({**CROWNED, "film": {"model": "auto"}}, "film.model", r"or drop pair.pinion.(crowning_um)",
+     lambda n: {f"pair.pinion.{n}": None}),
+    ({**CROWNED, **DAMPED}, "dynamics.damping_ratio", r"Give a (number)",
+     lambda n: {"dynamics.damping_ratio": 0.05}),
+    ({"alignment": {}, "stiffness.plane": "stress"}, "stiffness.plane", r'Take stiffness.plane = "(strain)"',
+     lambda n: {"stiffness.plane": n}),
+    ({"alignment": {}, "stiffness.moving_contact": True}, "stiffness.moving_contact", r"moving_contact = (false)",
+     lambda n: {"stiffness.moving_contact": False}),
+    ({"alignment": {}, "material": {"name": "PA66 dry"}}, "stiffness.moving_contact", r"moving_contact = (false)",
+     lambda n: {"stiffness.moving_contact": False}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip
@@ -395,6 +416,7 @@ ROOMS = (
     "gears/blank.py",
     "gears/heat.py",
     "flankfilm/beforehand.py",
+    "flankfilm/build_face.py",
     "flankfilm/slow_motion.py",
     "flankfilm/scene/needs.py",
 )

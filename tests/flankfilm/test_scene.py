@@ -33,9 +33,13 @@ def changed(old: str, new: str) -> str:
 
 
 def test_the_template_is_a_valid_scene_with_every_section():
-    """Roughness and heat alone are left out: with them the film and the gears are others."""
+    """Alignment, roughness and heat alone are left out: with them the loads, the film and the gears are others."""
     scene = parse_scene(template())
-    assert {name for name in Scene.model_fields if getattr(scene, name) is None} == {"heat", "roughness"}
+    assert {name for name in Scene.model_fields if getattr(scene, name) is None} == {
+        "alignment",
+        "heat",
+        "roughness",
+    }
     commented = "\n".join(
         re.findall(r"^# (\[roughness\]|(?:sigma|density_per|tip|law|mean_plane).* = .*)", template(), re.M)
     )

@@ -1,0 +1,93 @@
+"""What of a scene makes the load vary along the face, and what such a scene cannot have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, TypedDict
+
+import gears
+from base import Fault, Faults
+from flankfilm.coupling.loaded_teeth import contacts_move
+from flankfilm.scene.alignment import LEAD_KEYS
+from flankfilm.scene.dynamics import BY_FILM
+from flankfilm.scene.ground import in_keys
+
+if TYPE_CHECKING:
+    from flankfilm.scene import Scene
+
+__all__ = ["face", "faults_of_face", "varies_by"]
+
+EVEN = {
+    "film": "films are of loads that are even along it",
+    "losses": "films are of loads that are even along it",
+    "root-stress": "root stresses are of loads that are even along it",
+    "vtk": "fields are of loads that are even along it",
+}
+"""Wants that know no load that varies along the face."""
+
+
+class FaceOptions(TypedDict, total=False):
+    """Fields of `coupling.Flanks` that say how the face is looked at."""
+
+    alignment: gears.Alignment | None
+    cells: int | None
+    face_model: str
+
+
+def face(scene: Scene) -> FaceOptions:
+    """How the face of a scene's pair is looked at; nothing without [alignment], where leads alone decide."""
+    section = scene.alignment
+    if section is None:
+        return {}
+    alignment = gears.Alignment(**section.si())
+    return {"alignment": alignment, "cells": section.cells, "face_model": section.face_model}
+
+
+def varies_by(scene: Scene) -> list[str]:
+    """Keys and sections of a scene by which the load varies along the face; empty where it is even."""
+    found = [] if scene.alignment is None else ["[alignment]"]
+    for name in ("pinion", "wheel"):
+        gear = None if scene.pair is None else getattr(scene.pair, name)
+        found += [f"pair.{name}.{key}" for key in LEAD_KEYS if gear is not None and getattr(gear, key)]
+    return found
+
+
+def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
+    """Faults of a face along which the load varies, and of what is not known with it."""
+    by = " and ".join(varies_by(scene))
+    if not by or scene.stiffness.model == "given":
+        return
+    yield from _of_setting(scene, pair)
+    where, drop = f"where the load varies along the face, by {by}", f"or drop {by}"
+    for want in scene.wants:
+        if want in EVEN:
+            allowed = f"must not be wanted {where}: {EVEN[want]}"
+            yield Fault("wants", f'"{want}"', allowed, f"Leave {want} out of wants, {drop}")
+    if scene.film.model != "none":
+        allowed = f'must be "none" {where}: {EVEN["film"]}'
+        yield Fault("film.model", f"{scene.film.model!r}", allowed, f'Take film.model = "none", {drop}')
+    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
+        allowed = f"must be a number {where}: {EVEN['film']}"
+        yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
+    if scene.stiffness.plane != "strain":
+        remedy = f'Take stiffness.plane = "strain", {drop}'
+        yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {where}', remedy)
+    if contacts_move(pair, scene.stiffness.moving_contact):
+        asked = scene.stiffness.moving_contact
+        value = "true, of plastics if left out" if asked is None else "true"
+        remedy = f"Give stiffness.moving_contact = false, {drop}"
+        yield Fault("stiffness.moving_contact", value, f"must be false {where}: contacts stay", remedy)
+
+
+def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
+    """Faults of cells, alignment and leads, each under its key."""
+    from fem.face_setting import FREE_ENDS, face_setting
+
+    given, found = face(scene), Faults()
+    setting = face_setting(
+        pair, given.get("alignment"), given.get("cells"), given.get("face_model", FREE_ENDS)
+    )
+    if setting is not None:
+        setting.check(found, pair.face_width)
+    for fault in found.found:
+        yield in_keys(fault, scene.pair, "pair")

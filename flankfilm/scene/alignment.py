@@ -1,0 +1,54 @@
+"""Keys of how the axes stand to each other, and of how the face is looked at."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from fem.face_setting import CELLS, FREE_ENDS, USUAL
+from flankfilm.scene.key import key
+from flankfilm.scene.section import Limits, Section, refused
+from gears.face import ALIGNMENT_LIMITS
+
+__all__ = ["LEAD_KEYS", "AlignmentSection"]
+
+LEAD_KEYS = ("crowning_um", "lead_slope_um", "end_relief_um")
+"""Keys of a gear that make its flanks differ along the face."""
+
+
+class AlignmentSection(Section):
+    """Axes out of parallel, as deviations over the face width that are zero at mid-face, and cells of the face."""
+
+    ground: ClassVar[Limits] = {**ALIGNMENT_LIMITS, "cells": CELLS}
+
+    in_plane_um: float | None = key(
+        "axes out of parallel in the plane of action, over the face width: opens the gap of the loaded flanks towards "
+        "one end of the face, the one where lead_slope_um removes material; 0 if left out",
+        None,
+        such_as=20,
+    )
+    out_of_plane_um: float | None = key(
+        "axes out of parallel across the plane of action, over the face width, which opens gaps by its square alone; 0 "
+        "if left out",
+        None,
+        such_as=0,
+    )
+    cells: int = key("equal cells of the face that bear apart, an even number", USUAL, of=None, limit=CELLS)
+    face_model: Literal["free-ends", "walls", "slices"] = key(
+        "what couples the cells: gears with free ends; gears between frictionless walls, quicker and too stiff "
+        "at the ends; nothing but the common approach, which bears too evenly",
+        FREE_ENDS,
+        of=None,
+    )
+
+    @model_validator(mode="after")
+    def _even_cells(self) -> AlignmentSection:
+        if self.cells % 2:
+            raise refused(
+                "must be even: mid-face lies between two cells",
+                f"Take {self.cells + 1}",
+                where="cells",
+                value=f"{self.cells}",
+            )
+        return self
