@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 _SI = (
-    "1|m|s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|W/(m K)|"
-    "J/(kg K)"
+    "1|m|s|1/s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|"
+    "W/(m K)|J/(kg K)"
 )
 
 FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {

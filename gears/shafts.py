@@ -123,12 +123,13 @@ class Shaft:
                 faults.add(
                     "bearings", f"{len(self.bearings)} bearings", allowed, "one alone lets the shaft tilt"
                 )
-        with Faults() as faults:
-            within = Limit(0.0, self.length, "m", "count from the left end of the shaft")
-            for i, bearing in enumerate(self.bearings):
-                faults.number(f"bearings[{i}].position", bearing.position, within)
-            for name in ("gear_position", "torque_position"):
-                faults.number(name, getattr(self, name), within)
+            if self.segments and all(SEGMENT["length"].holds(segment.length) for segment in self.segments):
+                within = Limit(0.0, self.length, "m", "count from the left end of the shaft")
+                for i, bearing in enumerate(self.bearings):
+                    if BEARING["position"].holds(bearing.position):
+                        faults.number(f"bearings[{i}].position", bearing.position, within)
+                for name in ("gear_position", "torque_position"):
+                    faults.number(name, getattr(self, name), within)
 
     @property
     def length(self) -> float:

@@ -62,10 +62,14 @@ def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[st
     """Names of the keys that lead to an attribute, the last one's field and value; attributes without a key stay."""
     if not attributes or section is None:
         return list(attributes), None, None
+    whole, _, entry = attributes[0].removesuffix("]").partition("[")
     for name, field in type(section).model_fields.items():
         about, value = key_of(field), getattr(section, name)
         if about.of == ".".join(attributes):  # of a part that has no section of its own as well
             return [name], about, value
+        if entry and whole == name and isinstance(value, tuple) and isinstance(value[int(entry)], Section):
+            names, about_inner, inner = _key_at(attributes[1:], value[int(entry)])
+            return [name, entry, *names], about_inner, inner
         if attributes[0] in (name, about.of):
             if isinstance(value, Section):
                 names, about_inner, inner = _key_at(attributes[1:], value)

@@ -7,6 +7,7 @@ from typing import Any
 
 from base import Fault, shorten
 from flankfilm.scene.alignment import LEAD_KEYS
+from flankfilm.scene.needs_of_shafts import faults_of_shafts
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
@@ -35,7 +36,12 @@ def faults_between_sections(raw: Raw) -> list[Fault]:
         for section, reason in needed.items()
         if section not in raw
     ]
-    return [*missing, *_missing_keys(raw, listed), *_models_that_do_not_fit(raw, listed)]
+    return [
+        *missing,
+        *_missing_keys(raw, listed),
+        *_models_that_do_not_fit(raw, listed),
+        *faults_of_shafts(raw, listed),
+    ]
 
 
 def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:

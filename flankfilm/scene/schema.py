@@ -20,6 +20,7 @@ from flankfilm.scene.key import key
 from flankfilm.scene.materials import MaterialSection
 from flankfilm.scene.operating import OperatingSection, StiffnessSection
 from flankfilm.scene.section import Section
+from flankfilm.scene.shafts import ShaftsSection
 
 __all__ = ["Scene", "Want", "parse_tolerance"]
 
@@ -115,3 +116,7 @@ class Scene(Section):
     stiffness: StiffnessSection = key("Where the mesh stiffness comes from", StiffnessSection(), shown=True)
     film: FilmSection = key("The oil film", FilmSection(model="none"), shown=True)
     dynamics: DynamicsSection | None = key("Torsional vibration of the pair", None, shown=True)
+    shafts: ShaftsSection | None = key(
+        "Shafts, bearings, motor and load, with which the wanted sweep is of the drive train; rigid if left out",
+        None,
+    )

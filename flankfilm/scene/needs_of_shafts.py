@@ -1,0 +1,51 @@
+"""Rules between [shafts] and other sections: what knows no drive train, and what would count a shaft twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from base import Fault
+
+WITHOUT_DRIVES = ("diagram", "spectrum", "run-up", "dynamic-map")
+"""Wants of motions that are of the pair on rigid shafts alone."""
+
+GEARS = ("pinion", "wheel")
+_HUB = ("radial_stiffness_N_per_m", "torsional_stiffness_Nm_per_rad")
+_PORTRAITS = ("portraits_rpm", "portraits_frequency")
+
+
+def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]:
+    """Faults for what does not go together with [shafts]; of the unchecked file, and of what it wants."""
+    if "shafts" not in raw:
+        return
+    shafts, dynamics = _table(raw, "shafts"), _table(raw, "dynamics")
+    moving = "sweep" in listed or any(want in listed for want in WITHOUT_DRIVES)
+    for want in WITHOUT_DRIVES:
+        if want in listed:
+            allowed = "knows no [shafts]: of a drive train there is the sweep"
+            yield Fault("wants", f"'{want}'", allowed, f"Drop {want}, or leave [shafts] out")
+    if moving and "mean_force" in dynamics:
+        allowed = "excludes the dimensionless form, which has no gears"
+        yield Fault("[shafts]", "", allowed, "Give [dynamics] in physical units, or leave [shafts] out")
+    for name in _PORTRAITS:
+        if dynamics.get(name):
+            allowed = "is of the pair on rigid shafts, which [shafts] excludes"
+            yield Fault(f"dynamics.{name}", "", allowed, "Leave it out")
+    for gear in GEARS:
+        if not _table(shafts, gear).get("segments"):
+            continue
+        hub = _table(_table(_table(raw, "pair"), gear), "hub")
+        for name in _HUB:
+            if name in hub:
+                allowed = f"counts the shaft twice, beside shafts.{gear}.segments"
+                yield Fault(f"pair.{gear}.hub.{name}", f"{hub[name]}", allowed, "Leave one of them out")
+    bent = [f"shafts.{gear}.segments" for gear in GEARS if _table(shafts, gear).get("segments")]
+    if bent and "alignment" in raw:
+        allowed = f"is given twice: by numbers, and by {' and '.join(bent)}"
+        yield Fault("[alignment]", "", allowed, "Leave one of them out")
+
+
+def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    section = raw.get(name)
+    return section if isinstance(section, dict) else {}
