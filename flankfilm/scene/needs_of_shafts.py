@@ -12,6 +12,7 @@ WITHOUT_DRIVES = ("diagram", "spectrum", "run-up", "dynamic-map")
 
 GEARS = ("pinion", "wheel")
 _HUB = ("radial_stiffness_N_per_m", "torsional_stiffness_Nm_per_rad")
+_ALIGNMENT = ("in_plane_um", "out_of_plane_um")
 _PORTRAITS = ("portraits_rpm", "portraits_frequency")
 
 
@@ -41,9 +42,11 @@ def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault
                 allowed = f"counts the shaft twice, beside shafts.{gear}.segments"
                 yield Fault(f"pair.{gear}.hub.{name}", f"{hub[name]}", allowed, "Leave one of them out")
     bent = [f"shafts.{gear}.segments" for gear in GEARS if _table(shafts, gear).get("segments")]
-    if bent and "alignment" in raw:
-        allowed = f"is given twice: by numbers, and by {' and '.join(bent)}"
-        yield Fault("[alignment]", "", allowed, "Leave one of them out")
+    aligned = _table(raw, "alignment")
+    for name in _ALIGNMENT:
+        if bent and name in aligned:
+            allowed = f"gives the alignment twice, beside {' and '.join(bent)}"
+            yield Fault(f"alignment.{name}", f"{aligned[name]}", allowed, "Leave one of them out")
 
 
 def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -8,9 +8,9 @@ from pydantic import Field, model_validator
 
 import gears
 from base import Fault, InputError, Limit
-from flankfilm.scene.materials import ElasticSection
 from flankfilm.scene.ground import in_keys
 from flankfilm.scene.key import key, within
+from flankfilm.scene.materials import ElasticSection
 from flankfilm.scene.section import Limits, Section, refused
 from gears.shafts import BEARING, SEGMENT
 

@@ -116,8 +116,8 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
         (
             '"sweep"',
             (("[dynamics]", "[alignment]\nin_plane_um = 20\n[dynamics]"),),
-            "[alignment]",
-            "is given twice",
+            "alignment.in_plane_um",
+            "gives the alignment twice, beside shafts.pinion.segments",
         ),
     ],
 )
