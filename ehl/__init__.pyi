@@ -11,8 +11,8 @@ from .flash import blok_flash_temperature as blok_flash_temperature
 from .frequency import FilmResponse as FilmResponse
 from .frequency import film_response as film_response
 from .lubricant import Lubricant as Lubricant
-from .mixed import MixedFilm as MixedFilm
 from .mixed import solve_mixed as solve_mixed
+from .mixed_film import MixedFilm as MixedFilm
 from .mixed_thermal import MixedThermalFilm as MixedThermalFilm
 from .mixed_thermal import solve_mixed_thermal as solve_mixed_thermal
 from .regressions import FormulaFilm as FormulaFilm

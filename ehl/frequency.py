@@ -13,7 +13,7 @@ from ehl.contact import LineContact
 from ehl.discrete import Grid, Residual, film_gap
 from ehl.film import Film
 from ehl.levels import Level, figures
-from ehl.mixed import MixedFilm
+from ehl.mixed_film import MixedFilm
 from ehl.response import STEP, explicit, heavier_by_step
 from ehl.squeeze import Content, Storage, by_parameter
 from ehl.supply import OilLayer, Supply

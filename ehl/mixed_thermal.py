@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import KW_ONLY, replace
 
-from base import Cost, Faults, Limit, Stopwatch, described, part, quantity, record, shorten
+from base import Faults, Limit, Stopwatch, described, part, quantity, record, shorten
 from base.results import EXACT
 from ehl.asperities import Roughness
 from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
-from ehl.film import unsolved
-from ehl.mixed import MixedFilm, central_asperity_pressure, solve_mixed
+from ehl.mixed import central_asperity_pressure, solve_mixed
+from ehl.mixed_film import MixedFilm, RoughFilm
 from ehl.supply import Supply
 from ehl.thermal import ThermalFilm, solve_thermal
 from ehl.thermal_search import at_bulk
@@ -27,46 +27,19 @@ _REACH = 1.5  # largest step of the odds
 
 
 @record
-class MixedThermalFilm:
+class MixedThermalFilm(RoughFilm):
     """A film with heat between rough surfaces. Figures are NaN when ``converged`` is False.
 
     ``film`` is that of the load and modulus that are left to it. What asperities make of heat is `asperity_loss`; it
     goes into the bodies and does not warm the film.
     """
 
-    no_error = "not estimated; the film has one"
-
     headline = ("minimum_thickness", "film_ratio", "asperity_share", "traction_coefficient")
 
-    contact: LineContact = part("the contact, with its whole load")
-    roughness: Roughness = part("of both surfaces together")
     film: ThermalFilm = part("film with heat that carries the rest of the load")
+    _: KW_ONLY
     isothermal: MixedFilm = part("the same without heat and shear thinning, at the mean bulk temperature")
     boundary_friction: float = quantity("1", "coefficient of friction of the asperities", no_error=EXACT)
-    cost: Cost
-    converged: bool
-    message: str
-    asperity_share: float = unsolved("1", "share of the load that the asperities carry", shown="%")
-
-    @described("1")
-    def error(self) -> float:
-        """Estimated relative error of the film."""
-        return self.film.error if self.converged else math.nan
-
-    @described("m", shown="um", error="error")
-    def central_thickness(self) -> float:
-        """Distance of the mean planes at x = 0."""
-        return self.film.central_thickness
-
-    @described("m", shown="um", error="error")
-    def minimum_thickness(self) -> float:
-        """Least distance of the mean planes."""
-        return self.film.minimum_thickness
-
-    @described("1", error="error")
-    def film_ratio(self) -> float:
-        """Lambda, least distance of the mean planes over the standard deviation of heights."""
-        return self.film.minimum_thickness / self.roughness.deviation
 
     @described("1")
     def traction_coefficient(self) -> float:
@@ -149,7 +122,15 @@ def solve_mixed_thermal(
     cost = replace(search.cost + cold.cost, seconds=watch.seconds)
     solved = math.isfinite(share)
     return MixedThermalFilm(
-        contact, roughness, search.film, cold, boundary_friction, cost, solved, reason, share
+        contact,
+        roughness,
+        search.film,
+        cost,
+        solved,
+        reason,
+        share,
+        isothermal=cold,
+        boundary_friction=boundary_friction,
     )
 
 

@@ -44,9 +44,7 @@ def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
     oil, mean = contact.lubricant, 0.5 * (bulk[0] + bulk[1])
     if oil.viscosity_law is not None or mean == oil.temperature:
         return contact
-    ratio, slope = (float(v) for v in oil.hot_log_viscosity(0.0, mean))
-    warm = replace(oil, viscosity=oil.viscosity * math.exp(ratio), pressure_viscosity=slope, temperature=mean)
-    return replace(contact, lubricant=warm)
+    return replace(contact, lubricant=oil.at_temperature(mean))
 
 
 class Compared:

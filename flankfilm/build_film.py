@@ -77,10 +77,10 @@ def _law(oil: LubricantSection) -> dict[str, Any]:
 
 def film_model(scene: Scene, name: str) -> coupling.FilmModel:
     """How the films of a scene are computed, by the model of the given name."""
-    return coupling.FilmModel(name, scene.film.stiffness, _supply(scene), roughness(scene), scene.film.grid)
+    return coupling.FilmModel(name, scene.film.stiffness, supply(scene), roughness(scene), scene.film.grid)
 
 
-def _supply(scene: Scene) -> ehl.Meniscus | ehl.OilLayer | coupling.PlacedMeniscus | None:
+def supply(scene: Scene) -> ehl.Meniscus | ehl.OilLayer | coupling.PlacedMeniscus | None:
     """Give what a scene holds at the inlet; None for flooded contacts."""
     film = scene.film
     if film.oil_layer_um is not None:

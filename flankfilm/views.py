@@ -15,7 +15,7 @@ PICTURES: Mapping[str, str] = {
     "fem.face_loads:FaceLoads": "face_loads",
     "fem.tooth_root:RootStress": "root_stress",
     "ehl.film:Film": "curves",
-    "ehl.mixed:MixedFilm": "mixed_film",
+    "ehl.mixed_film:MixedFilm": "mixed_film",
     "ehl.mixed_thermal:MixedThermalFilm": "mixed_film",
     "ehl.frequency:FilmResponse": "film_response",
     "ehl.transient:TransientFilm": "curves",

@@ -22,7 +22,7 @@ from base import (
 )
 from base.results import EXACT
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.films import FilmModel, contacts_of, touching
+from flankfilm.coupling.films import FilmModel, contacts_of, supply_of, touching
 from flankfilm.coupling.lubricated import SOLVED, LubricatedCycle
 from flankfilm.coupling.oscillator import pair_scales
 from flankfilm.coupling.warned import warned_once
@@ -200,7 +200,9 @@ def _answers(
     found: list[ehl.FilmResponse] = []
     start: ehl.Film | None = None
     for contact in contacts:
-        film = ehl.solve(contact, tolerance, start=start, supply=model.supply_of(contact), grid=model.grid)
+        film = ehl.solve(
+            contact, tolerance, start=start, supply=supply_of(model.supply, contact), grid=model.grid
+        )
         if not film.converged:
             raise SolverError(f"no film under {contact.load:.4g} N/m: {film.message}")
         start = film

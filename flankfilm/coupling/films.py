@@ -35,6 +35,26 @@ class PlacedMeniscus:
     half_widths: float
 
 
+Held: TypeAlias = "ehl.Meniscus | ehl.OilLayer | PlacedMeniscus | None"
+
+
+def supply_of(held: Held, contact: ehl.LineContact) -> Supply:
+    """Supply of one contact by what is held at the inlets of all.
+
+    Raises
+    ------
+    InputError
+        For a meniscus inside the dry contact.
+    """
+    if isinstance(held, PlacedMeniscus):
+        return ehl.Meniscus(-held.half_widths * contact.half_width)
+    if isinstance(held, ehl.Meniscus) and -held.position <= contact.half_width:
+        allowed = f"must be more than {contact.half_width:.4g} m, the half-width of a contact on the path"
+        remedy = "nearer in no film forms; move it out, or give its place in half-widths"
+        raise InputError.at("meniscus", f"{-held.position:g}", allowed, remedy)
+    return held
+
+
 @dataclass(frozen=True)
 class FilmModel:
     """How films are computed.
@@ -55,7 +75,7 @@ class FilmModel:
 
     name: str = "ehl"
     definition: str | None = None
-    supply: ehl.Meniscus | ehl.OilLayer | PlacedMeniscus | None = None
+    supply: Held = None
     roughness: ehl.Roughness | None = None
     grid: str = "graded"
 
@@ -78,23 +98,6 @@ class FilmModel:
         if self.supply is None:
             return "flooded"
         return "oil-layer" if type(self.supply).__name__ == "OilLayer" else "meniscus"
-
-    def supply_of(self, contact: ehl.LineContact) -> Supply:
-        """Supply of one contact.
-
-        Raises
-        ------
-        InputError
-            For a meniscus inside the dry contact.
-        """
-        held = self.supply
-        if isinstance(held, PlacedMeniscus):
-            return ehl.Meniscus(-held.half_widths * contact.half_width)
-        if isinstance(held, ehl.Meniscus) and -held.position <= contact.half_width:
-            allowed = f"must be more than {contact.half_width:.4g} m, the half-width of a contact on the path"
-            remedy = "nearer in no film forms; move it out, or give its place in half-widths"
-            raise InputError.at("meniscus", f"{-held.position:g}", allowed, remedy)
-        return held
 
 
 @dataclass(frozen=True)
@@ -233,7 +236,7 @@ def films_of(
         smooth = replace(model, supply=None, roughness=None)
         found = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
         flooded = tuple(map(film_inside, found))
-    supplies = tuple(model.supply_of(contact) for contact in contacts)
+    supplies = tuple(supply_of(model.supply, contact) for contact in contacts)
     films = _solved(model, rho1, contacts, supplies, old.films, tolerance, beside)
     return PathFilms(rho1, films, flooded, beside)
 

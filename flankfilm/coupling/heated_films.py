@@ -12,7 +12,7 @@ import ehl
 import gears
 from base import Array, Integers, SolverError
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.films import contacts_of
+from flankfilm.coupling.films import Held, Supply, contacts_of, supply_of
 
 T = TypeVar("T")
 
@@ -34,12 +34,19 @@ class HeatedOil:
         Coefficient of friction of what asperities carry.
     tolerance : float
         Of the films, relative.
+    supply : ehl.Meniscus, ehl.OilLayer, PlacedMeniscus or None
+        What is held at the inlets; None for flooded contacts.
     """
 
     solids: tuple[ehl.Solid, ehl.Solid]
     roughness: ehl.Roughness | None
     boundary_friction: float
     tolerance: float
+    supply: Held = None
+
+    def supply_of(self, contact: ehl.LineContact) -> Supply:
+        """Supply of one contact."""
+        return supply_of(self.supply, contact)
 
 
 @dataclass(frozen=True)
@@ -186,10 +193,11 @@ def _rough(
     rho1: float,
 ) -> ehl.MixedThermalFilm:
     """Share the load with asperities, from the neighbour; where that fails from nothing, and less sharply."""
+    supply = oil.supply_of(contact)
     for start in (None,) if near is None else (near, None):
         for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
             found = ehl.solve_mixed_thermal(
-                contact, roughness, oil.solids, bulk, tolerance, None, oil.boundary_friction, start
+                contact, roughness, oil.solids, bulk, tolerance, supply, oil.boundary_friction, start
             )
             if found.converged:
                 return found
@@ -204,18 +212,21 @@ def _film(
     rho1: float,
 ) -> ehl.ThermalFilm:
     """Solve a film from its neighbour; where that fails less sharply, from nothing, or by way of one half as far."""
+
+    def solved(contact: ehl.LineContact, tolerance: float, start: ehl.ThermalFilm | None) -> ehl.ThermalFilm:
+        supply = oil.supply_of(contact)
+        return ehl.solve_thermal(contact, oil.solids, bulk, tolerance, start=start, supply=supply)
+
     starts = (None,) if near is None else (near, None)
     for start in starts:
         for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
-            found = ehl.solve_thermal(contact, oil.solids, bulk, tolerance, start=start)
+            found = solved(contact, tolerance, start)
             if found.converged:
                 return found
     if near is not None:
-        half = ehl.solve_thermal(
-            _halfway(near.contact, contact), oil.solids, bulk, LOOSER * oil.tolerance, start=near
-        )
+        half = solved(_halfway(near.contact, contact), LOOSER * oil.tolerance, near)
         if half.converged:
-            found = ehl.solve_thermal(contact, oil.solids, bulk, LOOSER * oil.tolerance, start=half)
+            found = solved(contact, LOOSER * oil.tolerance, half)
     if not found.converged:
         raise _none_at(rho1, found.message)
     return found

@@ -10,6 +10,7 @@ import ehl
 import gears
 from base import Array, SolverError, part, quantity, record
 from flankfilm.coupling.along_path import FilmAlongPath
+from flankfilm.coupling.films import Held, supply_of
 from flankfilm.coupling.losses_record import MeshLosses
 
 COARSEST = 0.02
@@ -42,6 +43,7 @@ def heat_screen(
     solids: tuple[ehl.Solid, ehl.Solid],
     bulk_temperatures: tuple[float, float] | None = None,
     tolerance: float = COARSEST,
+    supply: Held = None,
 ) -> HeatScreen:
     """Solve the contact of a path where load times sliding speed is greatest, with heat and without.
 
@@ -52,7 +54,7 @@ def heat_screen(
     ----------
     pair : gears.GearPair
     path : FilmAlongPath
-        Its loads are taken; smooth flanks and flooded contacts.
+        Its loads are taken, of smooth flanks.
     speed : float
         Of the pinion [rad/s].
     lubricant : ehl.Lubricant
@@ -63,6 +65,8 @@ def heat_screen(
         Of pinion and wheel [K]; those of the lubricant's data unless given.
     tolerance : float
         Of both films, relative.
+    supply : ehl.Meniscus, ehl.OilLayer or PlacedMeniscus, optional
+        What is held at the inlets of both; flooded without.
 
     Raises
     ------
@@ -84,9 +88,11 @@ def heat_screen(
     slid = path.load * np.abs(pair.path_at(path.rho1).sliding(speed))
     rho1, load = _at(path.rho1, path.load, int(np.argmax(slid)))
     contact = _contact(pair, rho1, load, speed, lubricant)
-    hot = ehl.solve_thermal(contact, solids, bulk_temperatures, tolerance)
+    fed = supply_of(supply, contact)
+    hot = ehl.solve_thermal(contact, solids, bulk_temperatures, tolerance, supply=fed)
     bulk = bulk_temperatures or (lubricant.temperature, lubricant.temperature)
-    cold = ehl.solve(replace(contact, lubricant=lubricant.at_temperature(0.5 * sum(bulk))), tolerance)
+    warm = replace(contact, lubricant=lubricant.at_temperature(0.5 * sum(bulk)))
+    cold = ehl.solve(warm, tolerance, supply=fed)
     for film in (hot, cold):
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1:.3f} mm: {film.message}")
@@ -104,12 +110,13 @@ def hottest_film(
     lubricant: ehl.Lubricant,
     solids: tuple[ehl.Solid, ehl.Solid],
     tolerance: float = COARSEST,
+    supply: Held = None,
 ) -> ehl.ThermalFilm:
     """Solve the whole film of the contact whose oil is hottest, at the loads and flanks' temperatures of losses.
 
     Parameters
     ----------
-    pair, lubricant, solids
+    pair, lubricant, solids, supply
         Of the losses.
     losses : MeshLosses
     tolerance : float
@@ -131,7 +138,8 @@ def hottest_film(
     rho1, load = _at(path.rho1, path.load, int(np.argmax(path.oil_temperature_rise)))
     first, second = losses.bulk_temperatures.tolist()
     contact = _contact(pair, rho1, load, losses.speed, lubricant)
-    found = ehl.solve_thermal(contact, solids, (first, second), tolerance)
+    fed = supply_of(supply, contact)
+    found = ehl.solve_thermal(contact, solids, (first, second), tolerance, supply=fed)
     return replace(found, state=None, oils=None)
 
 

@@ -12,6 +12,7 @@ import ehl
 import gears
 from base import Array, Cost, Faults, SolverError, Stopwatch, unclocked
 from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.films import Held
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.losses_along_path import losses_along
@@ -56,6 +57,7 @@ def mesh_losses(
     tolerance: float = 0.01,
     roughness: ehl.Roughness | None = None,
     boundary_friction: float = 0.1,
+    supply: Held = None,
     positions: int = POSITIONS,
     **teeth: Unpack[TeethOptions],
 ) -> MeshLosses:
@@ -86,6 +88,8 @@ def mesh_losses(
         Of both flanks together; smooth without.
     boundary_friction : float
         Coefficient of friction of what asperities carry.
+    supply : ehl.Meniscus, ehl.OilLayer or PlacedMeniscus, optional
+        What is held at the inlets; flooded without.
     positions : int
         Equal intervals of the base pitch.
     **teeth
@@ -121,7 +125,7 @@ def mesh_losses(
     with Faults() as found:
         check_bodies(found, loaded, lubricant, solids)
         check_temperatures(found, bulk_temperatures, heat_transfer, ambient_temperature)
-        check_numbers(found, boundary_friction, positions, roughness)
+        check_numbers(found, boundary_friction, positions, roughness, supply)
     with warned_once():
         loaded, _ = resolved(loaded, tolerance, speed=speed)
         with unclocked():
@@ -131,7 +135,7 @@ def mesh_losses(
             loaded,
             speed,
             lubricant,
-            HeatedOil(solids, roughness, boundary_friction, tolerance),
+            HeatedOil(solids, roughness, boundary_friction, tolerance, supply),
             positions,
             0.5 * tolerance,
             None if heat_transfer is None else np.array(heat_transfer),

@@ -6,6 +6,7 @@ import numpy as np
 
 import ehl
 from base import Faults, Limit
+from flankfilm.coupling.films import Held, PlacedMeniscus
 from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth
 
 BALANCE = Limit.above(0.0, 1e6, "W/K", "heat transfer coefficient times area; 1 to 100 W/K are usual")
@@ -59,9 +60,14 @@ def check_temperatures(
         found.add(missing, None, f"must be given beside {given}", "give both, or neither")
 
 
-def check_numbers(found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None) -> None:
+def check_numbers(
+    found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None, supply: Held
+) -> None:
     """Note faults of the rest."""
     found.number("boundary_friction", boundary, BOUNDARY)
     found.number("positions", positions, POSITIONS)
     if roughness is not None and not isinstance(roughness, ehl.Roughness):
         found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
+    if supply is not None and not isinstance(supply, ehl.Meniscus | ehl.OilLayer | PlacedMeniscus):
+        allowed = "must be an ehl.Meniscus, an ehl.OilLayer or a coupling.PlacedMeniscus"
+        found.add("supply", supply, allowed, "build one, or leave it out for flooded contacts")

@@ -57,8 +57,8 @@ def _not_weighed(scene: Scene, solved: bool) -> str:
     """Why heat cannot count; empty where it can."""
     if not solved:
         return "films by formula are isothermal"
-    if scene.film.starved or scene.roughness is not None or scene.film.grid != "graded":
-        return "films with heat are smooth, flooded and on a graded grid"
+    if scene.roughness is not None or scene.film.grid != "graded":
+        return "heat is weighed for smooth films on a graded grid"
     warm = scene.heat is not None and scene.heat.given("pinion_temperature_C", "wheel_temperature_C")
     if scene.lubricant is None or (scene.lubricant.temperature_C is None and not warm):
         return "the temperature of the oil, or of the gears, is not given"

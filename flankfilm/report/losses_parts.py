@@ -34,7 +34,7 @@ def losses(found: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
         (_lost(found), _by_stress(found, scene), _warm(found, scene)),
         drawn,
         (_band(found), _greatest(found)),
-        (said("losses_model"),),
+        (said("losses_model", supply="starved" if scene.film.starved else "flooded"),),
     )
 
 

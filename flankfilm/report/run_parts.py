@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flankfilm.report.page import Part, Table, said
 from flankfilm.report.text import counted, percent, seconds
 from flankfilm.scene.flank_files import CURVES
-from flankfilm.stages.losses import FINEST
 
 if TYPE_CHECKING:
     from flankfilm.plan.decide import Plan
@@ -72,7 +71,7 @@ def _work(name: str, results: Results) -> Work:
     if name == "losses":
         films, rounds = counted(value.path.rho1.size, "film"), counted(value.rounds, "round")
         note = f"{films} of up to {counted(value.cost.unknowns, 'unknown')}, {rounds}"
-        return Work("mean friction", max(tolerance, FINEST), value.error, note)
+        return Work("mean friction", tolerance, value.error, note)
     if name == "fourier" and value.fit is not None:
         allowed = None if plan is None else plan.series
         return Work("what the series leaves out", allowed, value.remainder, f"order {value.order}")

@@ -276,9 +276,9 @@ class FilmSection(Section):
                 f'must have model = "ehl" and its stiffness with supply = "{self.supply}": '
                 "Dowson's formulas are of flooded contacts"
             )
-        if self.heat == "on" and (self.starved or self.model in ("dowson", "none") or self.grid != "graded"):
+        if self.heat == "on" and (self.model in ("dowson", "none") or self.grid != "graded"):
             raise refused(
-                'must have heat = "off", or a flooded film with model = "ehl" or "auto" and grid = "graded": '
+                'must have heat = "off", or a film with model = "ehl" or "auto" and grid = "graded": '
                 "heat is in such films alone"
             )
         if self.grid == "article" and (self.starved or self.model == "dowson"):

@@ -138,9 +138,6 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
         if want in listed and stiffness.get("model") == "given":
             allowed = f"has no load share, which the wanted {want} needs"
             yield Fault("stiffness.model", "'given'", allowed, f'Take "fem" or a closed form, or drop {want}')
-    if (hot := _heated(raw, listed)) and film.get("supply", "flooded") != "flooded":
-        remedy = 'Take supply = "flooded", or leave it out'
-        yield Fault("film.supply", shorten(film["supply"]), f"excludes {hot}, of flooded films", remedy)
     if listed & set(MOTIONS) and _table(raw, "dynamics").get("damping_ratio") == "film":
         yield from _without_damping(raw)
     if "centre_distance_mm" in pair and "backlash_um" in pair:

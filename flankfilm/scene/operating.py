@@ -39,7 +39,9 @@ class OperatingSection(Section):
     )
     pinion_speed_rpm: float | None = key("speed of the pinion, which the film needs", None, example=2000)
     friction: float = key(
-        "coefficient of friction, which tilts the forces against the sliding", 0.0, such_as=0.05
+        "coefficient of friction, which tilts the forces against the sliding; wanted losses find their own beside it",
+        0.0,
+        such_as=0.05,
     )
     torques_Nm: Annotated[tuple[Annotated[float, within(TORQUE)], ...], Field(strict=False)] = key(
         "torques on the pinion, of the wanted torques, of either sign; none if left out",

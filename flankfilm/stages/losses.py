@@ -7,15 +7,16 @@ from dataclasses import replace
 import ehl
 from flankfilm import coupling
 from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import roughness
+from flankfilm.build_film import roughness, supply
 from flankfilm.build_heat import shearing_oil, solids, warmth
 from flankfilm.plan.decisions import Decision
 from flankfilm.plan.heat_choice import heat_choice
+from flankfilm.scene.ground import under_keys
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, PAIR, TEETH, decided, loaded_teeth
 from flankfilm.stages.engine import Engine, stage
 
-FINEST = 0.02
-"""Tolerance of films with heat at least: near C the oil is hottest at the pressure spike, which grids resolve last."""
+SUPPLY = "film.supply film.meniscus_mm film.meniscus_half_widths film.oil_layer_um"
+"""What is held at the inlets."""
 
 _TEETH_DECIDED = decided(lambda plan: {"stiffness model": plan.stiffness.choice})
 
@@ -40,6 +41,7 @@ def HEAT_CHOICE(run: Engine) -> Decision:
             solids=solids(pair),
             bulk_temperatures=warmth(scene).bulk,
             tolerance=tolerance,
+            supply=supply(scene),
         )
 
     return heat_choice(scene, film.model == "ehl", screen)
@@ -48,7 +50,7 @@ def HEAT_CHOICE(run: Engine) -> Decision:
 @stage(
     "losses",
     "friction, losses and temperatures",
-    f"{TEETH} lubricant roughness",
+    f"{TEETH} lubricant roughness {SUPPLY}",
     DRY_CYCLE,
     COMPLIANCE,
     kept="gears meshes fem ehl flankfilm",
@@ -58,22 +60,24 @@ def LOSSES(run: Engine) -> coupling.MeshLosses:
     """Films with heat along the path, in agreement with the load share and with the flanks' temperatures."""
     scene, pair, teeth = run.scene, run[PAIR], loaded_teeth(run)
     warm = warmth(scene)
-    return coupling.mesh_losses(
-        pair,
-        pinion_torque(scene),
-        pinion_speed(scene),
-        shearing_oil(scene),
-        solids=solids(pair),
-        bulk_temperatures=warm.bulk,
-        heat_transfer=warm.transfer,
-        ambient_temperature=warm.ambient,
-        tolerance=max(scene.tolerance, FINEST),
-        roughness=roughness(scene),
-        model=teeth.model,
-        pairs=teeth.pairs,
-        compliance=teeth.compliance,
-        flanks=replace(teeth.flanks, friction=0.0),
-    )
+    with under_keys(scene.film, "film"):
+        return coupling.mesh_losses(
+            pair,
+            pinion_torque(scene),
+            pinion_speed(scene),
+            shearing_oil(scene),
+            solids=solids(pair),
+            bulk_temperatures=warm.bulk,
+            heat_transfer=warm.transfer,
+            ambient_temperature=warm.ambient,
+            tolerance=scene.tolerance,
+            roughness=roughness(scene),
+            supply=supply(scene),
+            model=teeth.model,
+            pairs=teeth.pairs,
+            compliance=teeth.compliance,
+            flanks=replace(teeth.flanks, friction=0.0),
+        )
 
 
 @stage("film with heat", "film with heat", "", HEAT_CHOICE, LOSSES)
@@ -85,7 +89,7 @@ def HOT_FILM(run: Engine) -> coupling.MeshLosses | None:
 @stage(
     "hot contact",
     "film of the hottest contact",
-    "lubricant operating",
+    f"lubricant operating {SUPPLY}",
     PAIR,
     LOSSES,
     kept="gears meshes fem ehl flankfilm",
@@ -93,4 +97,4 @@ def HOT_FILM(run: Engine) -> coupling.MeshLosses | None:
 def HOT_CONTACT(run: Engine) -> ehl.ThermalFilm:
     """Whole film of the contact whose oil is hottest, for pictures."""
     pair, found = run[PAIR], run[LOSSES]
-    return coupling.hottest_film(pair, found, shearing_oil(run.scene), solids(pair))
+    return coupling.hottest_film(pair, found, shearing_oil(run.scene), solids(pair), supply=supply(run.scene))

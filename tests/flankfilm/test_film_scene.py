@@ -9,6 +9,7 @@ import pytest
 from base import InputError, RangeWarning
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import film_model, lubricant, roughness
+from flankfilm.coupling import films
 from flankfilm.scene import parse_scene, template
 from flankfilm.scene.ground import under_keys
 from flankfilm.stages.catalogue import PLAN
@@ -146,7 +147,7 @@ def test_laws_of_viscosity():
 
 
 def supply_of(scene, contact):
-    return film_model(scene, "ehl").supply_of(contact)
+    return films.supply_of(film_model(scene, "ehl").supply, contact)
 
 
 def test_supplies():

@@ -329,8 +329,6 @@ WORDED = [
     ({"pair.modul_mm": 2.0}, "pair.modul_mm", r"Did you mean (module_mm)", lambda n: {"pair.modul_mm": None}),
     ({"wants": ["losses"]}, "lubricant.temperature_C", r"Give the oil's (temperature)",
      lambda n: {"lubricant.temperature_C": 80.0}),
-    ({"wants": ["losses"], "lubricant.temperature_C": 80.0, "film": {"supply": "oil-layer", "oil_layer_um": 0.2}},
-     "film.supply", r'Take supply = "(flooded)"', lambda n: {"film": {"supply": n}}),
     ({**OWN, "dynamics": {**FORM, "damping_ratio": "film", "sweep": {"frequency": [0.4, 0.5]}}},
      "dynamics.damping_ratio", r"Give a (number)", lambda n: {"dynamics.damping_ratio": 0.05}),
     ({**DAMPED, "stiffness": {"model": "given", "amplitudes": [0.2]}}, "stiffness.model",

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import ehl
 import flankfilm as ff
 from base import SolverError
 from ehl import Lubricant, Roughness
-from flankfilm.coupling import MeshLosses
+from flankfilm.coupling import MeshLosses, PlacedMeniscus
 from gears import Gear, GearPair
 from gears.closed_form import ohlendorf_loss_factor
 
@@ -74,6 +75,17 @@ def test_temperatures_stand_where_they_should(found):
     before = path.sliding_speed < -0.5
     assert np.all(np.diff(path.surface_temperature_rise[:, before], axis=0) < 0.0)
     assert path.least_film == found.least_film == path.minimum_thickness.min()
+
+
+def test_what_is_held_at_the_inlets_holds_for_films_with_heat(found):
+    """A layer of a third of the film leaves a third of it; less oil is sheared more steeply, and the load stays."""
+    starved = losses(supply=ehl.OilLayer(found.least_film / 3.0))
+    # behind a layer the flow is the layer's: the film at the middle is the compressed layer, the least film less
+    assert np.all(starved.path.minimum_thickness < found.least_film / 3.0)
+    assert starved.path.load == pytest.approx(found.path.load)
+    assert starved.mean_friction > found.mean_friction
+    placed = losses(supply=PlacedMeniscus(1.3))
+    assert np.all(placed.path.minimum_thickness < found.path.minimum_thickness)
 
 
 def test_the_band_begins_at_the_given_stress(found):
