@@ -14,15 +14,22 @@ if TYPE_CHECKING:
 __all__ = ["check_row", "require_row"]
 
 
-def check_row(found: Faults, cycle: MeshCycle, row: int) -> None:
-    """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides."""
+def check_row(found: Faults, cycle: MeshCycle, row: int, *, over_face: bool = False) -> None:
+    """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides.
+
+    Of fields over the face also one without cells, of others one with them.
+    """
     last = len(cycle.position) - 1
     known = np.isfinite(
         found.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
     )
     if known and not np.all(np.isfinite(cycle.forces[row])):
         found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
-    elif known and cycle.face is not None:
+    elif known and over_face and cycle.face is None:
+        found.add(
+            "cycle", "without cells", "must have cells of the face", "give cells, or take loaded_fields"
+        )
+    elif known and cycle.face is not None and not over_face:
         remedy = "leave cells, alignment and leads out"
         found.add(
             "cycle", "with cells of the face", "must be even along the face for fields and stresses", remedy

@@ -65,6 +65,12 @@ class FaceLoads:
         shown="mm",
         no_error=EXACT,
     )
+    gap: Array = quantity(
+        "m",
+        "gap left under load along the line of action; zero where flanks bear, inf where a pair cannot touch",
+        "position pair cell",
+        shown="um",
+    )
     error: float = quantity("1", "estimated relative error of the greatest face-load factor")
 
     @described("1", error="error")
@@ -127,5 +133,6 @@ def face_loads(
         bodies.plane,
         np.tile(radius, (given.pitches, 1)),
         np.tile(travel, (given.pitches, 1)),
+        np.maximum(over.left[number], 0.0).reshape(forces.shape),
         error / most,
     )

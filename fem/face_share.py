@@ -62,12 +62,17 @@ class FaceShare:
     ----------
     forces : (torques, pitches, positions, pairs, cells) array
         [N]
-    open : (torques, pitches, positions, pairs) array
-        Least gap that is left along the face [m].
+    left : (torques, pitches, positions, pairs, cells) array
+        Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
     """
 
     forces: Array
-    open: Array
+    left: Array
+
+    @property
+    def open(self) -> Array:
+        """Least gap that is left along the face (torques, pitches, positions, pairs) [m]."""
+        return np.asarray(self.left.min(axis=-1))
 
 
 def share_over_face(
@@ -110,7 +115,7 @@ def share_over_face(
     bent = (by_cells @ found.forces[..., None])[..., 0] + apart
     if film is not None:
         bent = bent - film.approach(np.zeros_like(found.forces))
-    left = bent.reshape(forces.shape).min(axis=-1) - found.transmission_error[..., None]
+    left = bent.reshape(forces.shape) - found.transmission_error[..., None, None]
     share = LoadShare(
         forces.sum(axis=-1),
         found.transmission_error,

@@ -22,7 +22,15 @@ from fem.gear_shape import MeshedShape
 from fem.line_load import flank_points
 from fem.prism import Face, Section, prism, section
 
-__all__ = ["FlankEnds", "FlankWaves", "flank_ends", "flank_waves"]
+__all__ = [
+    "FlankEnds",
+    "FlankWaves",
+    "between_waves",
+    "flank_ends",
+    "flank_waves",
+    "section_of",
+    "solved_waves",
+]
 
 WAVES, PLACES, END_PLACES = 13, 16, 10
 """Wave numbers and places of loads, and places at which free ends are looked at."""
@@ -96,13 +104,29 @@ def _waves(wavenumber: Array, count: int) -> Array:
     return np.asarray(chebyshev.chebvander(np.clip(2 * s / most - 1, -1.0, 1.0), count - 1), dtype=float)
 
 
+def solved_waves() -> tuple[Array, Array]:
+    """Places of the solved waves in the polynomials (WAVES,), -1 to 1, and their wave numbers [1/module]; last 0."""
+    unit = np.cos(np.pi * (np.arange(WAVES) + 0.5) / WAVES)
+    unit /= unit[0]
+    s = 0.5 * (unit + 1) * SHORTEST / (SHORTEST + BEND)
+    wavenumber = BEND * s / (1 - s)
+    return unit, np.where(wavenumber > 1e-9, wavenumber, 0.0)
+
+
+def between_waves(wavenumber: Array) -> Array:
+    """Weights (waves, WAVES) of the solved waves in what any waves do; constant beyond the shortest one."""
+    unit, _ = solved_waves()
+    return np.asarray(_waves(wavenumber, WAVES) @ np.linalg.inv(chebyshev.chebvander(unit, WAVES - 1)))
+
+
 def _solid(meshed: MeshedShape) -> PlaneElasticity:
     """The solid whose plane strain has E* = 1 and the shape's nu*."""
     nu = meshed.shape.poisson / (1 + meshed.shape.poisson)
     return PlaneElasticity("strain", 1 - nu**2, nu)
 
 
-def _section(meshed: MeshedShape, coarse: bool) -> Section:
+def section_of(meshed: MeshedShape, coarse: bool) -> Section:
+    """Section of a gear of module 1 and E* = 1, on its own mesh or a coarse one."""
     from meshes import mesh_sector
 
     mesh = mesh_sector(meshed.shape.profile, meshed.sizes, 1 if coarse else meshed.refinements)
@@ -113,19 +137,17 @@ def _section(meshed: MeshedShape, coarse: bool) -> Section:
 
 def flank_waves(meshed: MeshedShape) -> FlankWaves:
     """Solve a gear of module 1 and E* = 1 for waves along the face."""
-    over, profile, reach = _section(meshed, coarse=False), meshed.shape.profile, meshed.shape.reach
+    over, profile, reach = section_of(meshed, coarse=False), meshed.shape.profile, meshed.shape.reach
     rho = sample_places(profile, PLACES)
     at = flank_points(over.mesh, rho)
-    unit = np.cos(np.pi * (np.arange(WAVES) + 0.5) / WAVES)
-    s = 0.5 * (unit / unit[0] + 1) * SHORTEST / (SHORTEST + BEND)
-    wavenumber = BEND * s / (1 - s)
-    answers = [prism(over, Face.wave(k if k > 1e-9 else 0.0)).influence(at, reach) for k in wavenumber]
+    unit, wavenumber = solved_waves()
+    answers = [prism(over, Face.wave(k)).influence(at, reach) for k in wavenumber]
     still = answers[-1]
     own = np.array([one[0][:, 0, 0] - still[0][:, 0, 0] for one in answers])
     cross = np.array([one[1][:, :, 0, :, 0] - still[1][:, :, 0, :, 0] for one in answers])
     own += _logarithm(wavenumber)[:, None]
     low, high, end = float(rho[0]), float(rho[-1]), profile.flank_rho[1]
-    by_wave = np.linalg.inv(chebyshev.chebvander(unit / unit[0], WAVES - 1))
+    by_wave = np.linalg.inv(chebyshev.chebvander(unit, WAVES - 1))
     by_root = np.linalg.inv(_by_root(rho, (low, high), end, PLACES))
     by_place = np.linalg.pinv(_by_place(rho, (low, high), 2 * PLACES // 3 + 1))
     series = np.einsum("kw,wrij,ai,bj->rabk", by_wave, cross, by_place, by_place, optimize=True)
@@ -169,7 +191,7 @@ class FlankEnds:
 
 def flank_ends(meshed: MeshedShape, face_width: float) -> FlankEnds:
     """Solve a gear of module 1 and E* = 1 with free ends; its face width in modules."""
-    over, profile, reach = _section(meshed, coarse=True), meshed.shape.profile, meshed.shape.reach
+    over, profile, reach = section_of(meshed, coarse=True), meshed.shape.profile, meshed.shape.reach
     rho, end = sample_places(profile, END_PLACES), profile.flank_rho[1]
     ends = float(rho[0]), float(rho[-1])
     half = half_face(0.5 * face_width, 1.0)

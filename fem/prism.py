@@ -20,6 +20,7 @@ The ring of equal sectors is closed as in the plane (``fem.ring``), with more un
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -188,6 +189,41 @@ class Prism:
         cross : (reach, loads, psi, points, psi) array
             On the neighbours on the side of growing rho [m per N/m]; first the loads, then what is observed.
         """
+        count = len(at.rho)
+        reduced, on_cuts, _ = self.condensed.up(self._nodal(at))
+        pull = np.asarray(self.polar.T @ on_cuts)
+        ends = self.links.at_ends(pull, 0).reshape(-1, count, self.psi)
+        inside = reduced[self.inner].reshape(-1, count, self.psi)
+        own = np.einsum("ulp,ulq->lpq", inside, inside, optimize=True) * self.condensed.modulus
+        own += np.einsum("ulp,ulq->lpq", pull.reshape(ends.shape), ends, optimize=True)
+        there = [(pull.T @ self.links.at_ends(pull, tooth)).T for tooth in range(1, reach + 1)]
+        return own, np.reshape(there, (reach, count, self.psi, count, self.psi))
+
+    def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
+        """Displacements of all nodes of some teeth's sectors by line loads psi(z) at places of tooth 0.
+
+        Parameters
+        ----------
+        at : FlankPoints
+        teeth : sequence of int
+            Counted as in ``influence``; each in its own tooth's frame.
+
+        Returns
+        -------
+        (teeth, nodes, n, loads psi) array
+            n as of ``Section.elements`` [m per N/m].
+        """
+        reduced, on_cuts, _ = self.condensed.up(self._nodal(at))
+        pull = np.asarray(self.polar.T @ on_cuts)
+        nodes, found = len(self.mesh.points), []
+        for tooth in teeth:
+            cuts = np.asarray(self.polar @ self.links.at_ends(pull, tooth))
+            loads = reduced if tooth % self.mesh.teeth == 0 else np.zeros_like(reduced)
+            found.append(self.condensed.down(cuts, loads).reshape(nodes, -1, reduced.shape[1]))
+        return np.asarray(found)
+
+    def _nodal(self, at: FlankPoints) -> Array:
+        """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi)."""
         count, n = len(at.rho), 2 * self.psi + self.phi
         force = np.zeros((n * len(self.mesh.points), count, self.psi))
         for p in range(self.psi):
@@ -196,14 +232,7 @@ class Prism:
                 np.add.at(
                     force[..., p], (rows, np.arange(count)[:, None]), at.weights * at.direction[:, a : a + 1]
                 )
-        reduced, on_cuts, _ = self.condensed.up(force.reshape(len(force), -1))
-        pull = np.asarray(self.polar.T @ on_cuts)
-        ends = self.links.at_ends(pull, 0).reshape(-1, count, self.psi)
-        inside = reduced[self.inner].reshape(-1, count, self.psi)
-        own = np.einsum("ulp,ulq->lpq", inside, inside, optimize=True) * self.condensed.modulus
-        own += np.einsum("ulp,ulq->lpq", pull.reshape(ends.shape), ends, optimize=True)
-        there = [(pull.T @ self.links.at_ends(pull, tooth)).T for tooth in range(1, reach + 1)]
-        return own, np.reshape(there, (reach, count, self.psi, count, self.psi))
+        return force.reshape(len(force), -1)
 
 
 def prism(over: Section, face: Face) -> Prism:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -10,14 +9,17 @@ from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from base import replacing
 from fem.bodies import Compliance
 from fem.contact_forces import ContactForces, contact_forces
 from fem.cycle import MeshCycle
 from fem.drawing import GearDrawing
+from fem.face_fields import face_fields
+from fem.face_vtk import face_blocks, face_grids
+from fem.face_waves import gear_prisms
 from fem.fields import GearField, draw_gears, loaded_fields
+from fem.grids import active, rounded, single_precision, write_grid
 from fem.paraview_state import fillet_stress, write_paraview_state
 
 if TYPE_CHECKING:
@@ -31,14 +33,6 @@ PICTURE_REFINEMENTS = 1
 """Refinements of the mesh that is drawn: fields need no more, and files stay small."""
 
 COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
-
-DROPPED = 12
-"""Bits of the mantissa that fields but the displacement lose: 12 significant ones stay (2.5e-4 of the value), which is
-finer than the fields are exact and packs far better."""
-
-LEVEL, BLOCK = 1, 1 << 22
-"""zlib's fastest, since more effort saves no more than some per cent of digits that are nearly random; and bytes that
-are packed at once."""
 
 
 def field_blocks(
@@ -59,7 +53,8 @@ def field_blocks(
     -------
     pyvista.MultiBlock
         ``pinion``, ``wheel``, and ``contacts``: points with the vectors ``force_N`` for a glyph filter, each contact
-        once for each gear. Fields are in single precision.
+        once for each gear. Fields are in single precision. Of a cycle with cells of the face those of
+        `fem.face_vtk.face_blocks`.
 
     Examples
     --------
@@ -73,6 +68,8 @@ def field_blocks(
     """
     import pyvista
 
+    if cycle.face is not None:
+        return face_blocks(pair, cycle, row, compliance)
     both = loaded_fields(pair, cycle, row, compliance, drawings)
     return pyvista.MultiBlock(_blocks(*both, contact_forces(pair, cycle, row)))
 
@@ -86,6 +83,8 @@ def write_vtk_series(
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write the blocks of `field_blocks` over a cycle as ``vtk/*.vtu`` and ``mesh_cycle.pvd``, and a state of ParaView.
+
+    Teeth and flanks of a cycle with cells of the face come without a state.
 
     Parameters
     ----------
@@ -108,21 +107,40 @@ def write_vtk_series(
     """
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
-    drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
-    steps: list[tuple[float, dict[str, Path]]] = []
     stresses: list[float] = []
+    drawn = _even(pair, cycle, bodies, stresses) if cycle.face is None else _uneven(pair, cycle, bodies)
+    steps: list[tuple[float, dict[str, Path]]] = []
     for done, row in enumerate(rows):
-        both = loaded_fields(pair, cycle, row, bodies, drawings)
-        stresses += [fillet_stress(field) for field in both]
         files = {}
-        for name, grid in _blocks(*both, contact_forces(pair, cycle, row)).items():
+        for name, grid in drawn(row).items():
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
             write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
-    write_paraview_state(folder, pair, cycle, rows, stresses)
+    if cycle.face is None:
+        write_paraview_state(folder, pair, cycle, rows, stresses)
     return _write_series(folder / "mesh_cycle.pvd", steps)
+
+
+def _even(
+    pair: GearPair, cycle: MeshCycle, bodies: Compliance, stresses: list[float]
+) -> Callable[[int], Mapping[str, Any]]:
+    """Blocks of rows of a cycle that is even along the face; notes the stress of the fillets."""
+    drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
+
+    def at(row: int) -> Mapping[str, Any]:
+        both = loaded_fields(pair, cycle, row, bodies, drawings)
+        stresses.extend(fillet_stress(field) for field in both)
+        return _blocks(*both, contact_forces(pair, cycle, row))
+
+    return at
+
+
+def _uneven(pair: GearPair, cycle: MeshCycle, bodies: Compliance) -> Callable[[int], Mapping[str, Any]]:
+    """Blocks of rows of a cycle with cells of the face."""
+    prisms = gear_prisms(bodies)
+    return lambda row: face_grids(*face_fields(pair, cycle, row, bodies, prisms))
 
 
 def _blocks(
@@ -151,7 +169,7 @@ def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
     for name, numbers in field.cell_data.items():
         grid.cell_data[name] = numbers.astype(np.int32)
     grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int32)
-    return _active(grid, "von_mises_Pa", "displacement_m")
+    return active(grid, "von_mises_Pa", "displacement_m")
 
 
 def _contact_grid(contacts: ContactForces) -> pyvista.UnstructuredGrid:
@@ -162,55 +180,7 @@ def _contact_grid(contacts: ContactForces) -> pyvista.UnstructuredGrid:
     for name, values in contacts.point_data.items():
         whole = np.issubdtype(values.dtype, np.integer)
         grid.point_data[name] = values.astype(np.int32) if whole else single_precision(values)
-    return _active(grid, "pressure_Pa", "force_N")
-
-
-def _active(grid: pyvista.UnstructuredGrid, scalars: str, vectors: str) -> pyvista.UnstructuredGrid:
-    """Name the fields that a viewer shows first."""
-    grid.GetCellData().SetActiveScalars(None)
-    grid.GetPointData().SetActiveScalars(scalars)
-    grid.GetPointData().SetActiveVectors(vectors)
-    return grid
-
-
-def single_precision(values: NDArray[Any], flat: bool = False) -> NDArray[np.float32]:
-    """Single precision; vectors of the plane get a third component unless ``flat``."""
-    if values.ndim == 2 and values.shape[1] == 2 and not flat:
-        values = np.column_stack([values, np.zeros(len(values))])
-    return np.ascontiguousarray(values, dtype=np.float32)
-
-
-def rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Mantissas rounded, in the array itself."""
-    bits, finite = values.view(np.uint32), np.isfinite(values)
-    bits[finite] = (bits[finite] + (1 << (DROPPED - 1))) & ~np.uint32((1 << DROPPED) - 1)
-    return values
-
-
-def write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
-    """Write a ``.vtu`` with its arrays packed behind the text; ``grid.save`` spells them in a third more bytes."""
-    from vtkmodules.vtkCommonMisc import vtkErrorCode
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
-
-    writer = vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(grid)
-    writer.SetDataModeToAppended()
-    writer.EncodeAppendedDataOff()
-    writer.SetHeaderTypeToUInt32()
-    writer.SetCompressorTypeToZLib()
-    writer.SetCompressionLevel(LEVEL)
-    writer.SetBlockSize(BLOCK)
-    with replacing(path) as beside:
-        writer.SetFileName(str(beside))
-        shown = writer.GetGlobalWarningDisplay()
-        writer.GlobalWarningDisplayOff()  # what goes wrong is raised
-        try:
-            done = writer.Write()
-        finally:
-            writer.SetGlobalWarningDisplay(shown)
-        if not done:
-            fault = vtkErrorCode.GetStringFromErrorCode(writer.GetErrorCode())
-            raise OSError(errno.ENOSPC, fault, str(path))
+    return active(grid, "pressure_Pa", "force_N")
 
 
 def _write_series(path: Path, steps: Sequence[tuple[float, Mapping[str, Path]]]) -> Path:

@@ -1,0 +1,142 @@
+"""A gear's solid under loads that vary along the face: displacement of whole sectors, wave by wave.
+
+Line loads along the face are sums of waves, q(z) = sum q_m cos k_m (z + b/2), k_m = m pi/b, and a gear answers each
+wave as a prism between frictionless walls (``fem.prism``), here with its whole section instead of the flank alone:
+
+    u(x, y, z) = sum_m q_m cos k_m (z + b/2) U(x, y; k_m),   w likewise by sines.
+
+U is solved for the waves of ``fem.gear_face`` and interpolated between them. Loads stand on the mesh as nodal forces:
+within an element of a contact the displacement is the mesh's and not that of Hertz's pressure. What free ends add is
+in the loads, but not in the displacement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Integers, record
+from fem.cycle import MeshCycle
+from fem.gear_face import between_waves, section_of, solved_waves
+from fem.line_load import FlankPoints, flank_points
+from fem.prism import Face, Prism, prism
+from meshes import SectorMesh
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+    from gears import GearPair
+
+__all__ = ["FaceWaves", "GearPrisms", "gear_prisms", "on_flank"]
+
+DEPTH = 2.0
+"""Depth below the root circle down to which the body is drawn, in modules."""
+
+LAYERS = 12
+"""Layers of the solid along the face, or as many as there are cells if these are fewer."""
+
+
+@record
+class GearPrisms:
+    """A gear that is ready to be drawn at many positions, in modules and E*.
+
+    Attributes
+    ----------
+    mesh : SectorMesh
+    prisms : tuple of Prism
+        For the waves of ``fem.gear_face.solved_waves``.
+    triangles : (t, 3) array of int
+        What is drawn of a sector: second-order triangles in four.
+    """
+
+    mesh: SectorMesh
+    prisms: tuple[Prism, ...]
+    triangles: Integers
+
+    def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
+        """Displacements (waves, teeth, nodes, 3, loads) in each tooth's frame by unit line loads on tooth 0."""
+        found = np.zeros((len(self.prisms), len(teeth), len(self.mesh.points), 3, len(at.rho)))
+        for wave, one in zip(found, self.prisms, strict=True):
+            n = 2 * one.psi + one.phi
+            wave[:, :, :n] = one.displacements(at, teeth)
+        return found
+
+
+def gear_prisms(bodies: Compliance) -> tuple[GearPrisms, GearPrisms]:
+    """Factorise both gears for waves along the face, on a coarse mesh.
+
+    Parameters
+    ----------
+    bodies : Compliance
+    """
+    first, second = (_gear_prisms(bodies, gear) for gear in (0, 1))
+    return first, second
+
+
+def _gear_prisms(bodies: Compliance, gear: int) -> GearPrisms:
+    meshed = bodies.meshed[gear]
+    over, (_, waves) = section_of(meshed, coarse=True), solved_waves()
+    mesh = over.mesh
+    a, b, c, ab, bc, ca = mesh.triangles.T
+    quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+    middle = np.linalg.norm(mesh.points[mesh.triangles[:, :3]].mean(axis=1), axis=1)
+    shown = middle > meshed.shape.profile.root_radius - DEPTH
+    triangles = np.concatenate([np.column_stack(part)[shown] for part in quarters])
+    return GearPrisms(mesh, tuple(prism(over, Face.wave(float(k))) for k in waves), triangles)
+
+
+@record
+class FaceWaves:
+    """What waves of each load do at layers of the face.
+
+    Attributes
+    ----------
+    layers : (layers,) array
+        [m], 0 at mid-face.
+    even, odd : (loads, layers, waves) arrays
+        Weights of the solved waves in u and v, and in w [N/m].
+    """
+
+    layers: Array
+    even: Array
+    odd: Array
+
+    @classmethod
+    def of(cls, pair: GearPair, cycle: MeshCycle, row: int, loaded: Integers) -> FaceWaves:
+        """Divide the line loads of some pairs, columns of the cycle, into waves."""
+        assert cycle.face is not None
+        width, load = pair.face_width, cycle.face.line_load[row, loaded]
+        cells = load.shape[-1]
+        m = np.arange(cells)
+        cosines = np.cos(np.pi * m[:, None] * (np.arange(cells) + 0.5) / cells)
+        modes = load @ cosines.T * np.where(m, 2.0, 1.0) / cells
+        layers = np.linspace(-0.5, 0.5, min(LAYERS, cells) + 1) * width
+        turn = np.pi * m * (layers[:, None] / width + 0.5)
+        by_wave = between_waves(np.pi * m * pair.module / width)
+        even, odd = (np.einsum("km,lm,mw->klw", modes, f(turn), by_wave) for f in (np.cos, np.sin))
+        return cls(layers, even, odd)
+
+    def moved(self, ready: GearPrisms, at: Sequence[FlankPoints], teeth: Sequence[Sequence[int]]) -> Array:
+        """Displacements (teeth, layers, nodes, 3) in each tooth's frame, times E* [N/m].
+
+        Parameters
+        ----------
+        ready : GearPrisms
+        at : sequence of FlankPoints
+            Place of each load [modules].
+        teeth : sequence of sequences of int
+            Teeth that are drawn, counted from that of each load.
+        """
+        found = np.zeros((len(teeth[0]), len(self.layers), len(ready.mesh.points), 3))
+        for even, odd, place, some in zip(self.even, self.odd, at, teeth, strict=True):
+            by_wave = ready.displacements(place, some)[..., 0]
+            found[..., :2] += np.einsum("lw,wtna->tlna", even, by_wave[..., :2], optimize=True)
+            found[..., 2] += np.einsum("lw,wtn->tln", odd, by_wave[..., 2], optimize=True)
+        return found
+
+
+def on_flank(mesh: SectorMesh, rho: float | Array) -> FlankPoints:
+    """Points of the loaded flank, those beyond its ends on them [modules]."""
+    low, high = (np.sqrt(2 * mesh.base_radius * f(mesh.parameters["flank_left"])) for f in (np.min, np.max))
+    return flank_points(mesh, np.clip(rho, low, high))
