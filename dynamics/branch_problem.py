@@ -17,6 +17,7 @@ from dynamics.limits import MAX_POINTS, STEP, ordered
 from dynamics.shooting import floquet_multipliers
 
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
+FEW = 64  # pairs of extrema that are compared sooner one by one than by arrays
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,13 +117,28 @@ class MapPoint:
 
 def match_extrema(a: MapPoint, b: MapPoint) -> list[tuple[int, int]]:
     """Pairs of extrema of two neighbours that are each other's nearest in phase, and of one kind."""
-    if len(a.extrema) == 0 or len(b.extrema) == 0:
-        return []
-    gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
-    gap = np.minimum(gap, 1.0 - gap)
-    gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
-    there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
-    return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
+    if len(a.extrema) * len(b.extrema) > FEW:
+        gap = np.abs(a.extrema[:, None, 0] - b.extrema[None, :, 0])
+        gap = np.minimum(gap, 1.0 - gap)
+        gap[(a.extrema[:, None, 2] > 0.0) != (b.extrema[None, :, 2] > 0.0)] = np.inf
+        there, back = gap.argmin(axis=1).tolist(), gap.argmin(axis=0).tolist()
+        return [(i, j) for i, j in enumerate(there) if back[j] == i and gap[i, j] < NEAR]
+    rows_a, rows_b = a.extrema.tolist(), b.extrema.tolist()
+    nearest = ((i, _nearest(row, rows_b)) for i, row in enumerate(rows_a))
+    return [(i, j) for i, j in nearest if j is not None and _nearest(rows_b[j], rows_a) == i]
+
+
+def _nearest(row: list[float], rows: list[list[float]]) -> int | None:
+    """Index of the extremum that is nearest in phase and of the same kind; None if none is near."""
+    phase, _, bend = row
+    best, at = NEAR, None
+    for j, (other, _, turned) in enumerate(rows):
+        if (turned > 0.0) == (bend > 0.0):
+            gap = abs(other - phase)
+            gap = min(gap, 1.0 - gap)
+            if gap < best:
+                best, at = gap, j
+    return at
 
 
 @dataclass(frozen=True, eq=False)

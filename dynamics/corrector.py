@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -71,6 +72,11 @@ class OrbitProblem(BranchProblem):
             row[self.oscillator.place(name)] = width
         return ways
 
+    @cached_property
+    def _rooms(self) -> dict[int, Any]:
+        """Tables and room of the corrector for numbers of cells: what a parameter does not touch stays tabulated."""
+        return {}
+
     def evaluate(self, u: Array, refinement: int = 1) -> Point | None:
         """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
         return self._corrected(u, np.zeros(3), refinement, 0)
@@ -89,9 +95,11 @@ class OrbitProblem(BranchProblem):
 
     def _corrected(self, guess: Array, across: Array, refinement: int, limit: int) -> Point | None:
         """Point after Newton iterations up to a limit; that of the guess itself if it is 0."""
-        from dynamics.kernels.correcting import correct
+        from dynamics.kernels.correcting import correct, rooms_of
 
         cells, room, m = self._cells(guess, refinement), ROOM * self.periods, 2 + len(self.parameters)
+        if cells and cells not in self._rooms:
+            self._rooms[cells] = rooms_of(len(self.parameters), len(self.origin), cells, DEGREE)
         while cells:
             u, counts = guess.copy(), np.empty(2, dtype=np.int64)
             image, lin, bend, turns = (
@@ -101,8 +109,8 @@ class OrbitProblem(BranchProblem):
                 np.empty((room, 5 + m)),
             )
             flag, turned, iterations, residual = correct(
-                self.origin, self.ways, cells, DEGREE, u, across, self.scale,
-                self.periods, limit, image, lin, bend, counts, turns,
+                self.origin, self.ways, u, across, self.scale, self.periods, limit, image, lin, bend, counts, turns,
+                self._rooms[cells],
             )  # fmt: skip
             if flag != 0:
                 return None

@@ -189,9 +189,11 @@ def tables(
 
 def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> Tables:
     """Tables of a packed oscillator, with so many cells per period."""
-    from dynamics.kernels.tables import tabulate
+    from dynamics.kernels.tables import fill, room_of, tables_of
 
-    return Tables(packed, *tabulate(packed, cells, degree))
+    coef, edge = tables_of(cells, degree)
+    fill(packed, coef, edge, room_of(cells, degree), 0)
+    return Tables(packed, coef, edge)
 
 
 @exact_only

@@ -5,13 +5,18 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from functools import cache
+from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
+from llvmlite import binding
 from numba import njit
+from numba.core import cgutils, sigutils
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.typing import signature as typed
+from numba.extending import intrinsic
 
 from base import hide_compilation
 
@@ -56,7 +61,30 @@ class _Store(CompileResultCacheImpl):
 
 
 class _Kept(FunctionCache):
+    """Code on disk; what it calls where it lies is there before it is loaded."""
+
     _impl_class = _Store
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        if self._cache_file._load_index():
+            for ready in pieces_of(self._py_func):
+                ready()
+        return super().load_overload(sig, target_context)
+
+
+def pieces_of(function: Callable[..., Any], seen: set[int] | None = None) -> list[Callable[[], None]]:
+    """What makes ready the pieces, see `called`, that a function or its helpers call."""
+    seen, found = set() if seen is None else seen, []
+    for name in cast(Any, function).__code__.co_names:
+        there = cast(Any, function).__globals__.get(name)
+        if id(there) in seen:
+            continue
+        seen.add(id(there))
+        if hasattr(there, "ready_piece"):
+            found.append(there.ready_piece)
+        elif hasattr(there, "py_func"):
+            found += pieces_of(there.py_func, seen)
+    return found
 
 
 def helper(function: F) -> F:
@@ -66,6 +94,42 @@ def helper(function: F) -> F:
     instructions would take longer than the arithmetic of an impact.
     """
     return cast(F, njit(_nrt=False, **_INNER)(function))
+
+
+def shared(types: str) -> Callable[[F], F]:
+    """Compile once, for these types alone, for kernels that call it where it lies: see `called`."""
+    return lambda function: called(kept(function, _nrt=False, **_INNER), types)
+
+
+def called(compiled: F, types: str) -> F:
+    """Have kernels call what is compiled once where it lies, kept on disk by itself, for these types alone.
+
+    A helper is compiled again into every caller, and into the callers of these. What is long, and takes much longer to
+    run than a call, is better called. It raises nothing.
+    """
+    function: Callable[..., Any] = cast(Any, compiled).py_func
+    arguments, result = sigutils.normalize_signature(types)
+    symbol = f"{function.__module__}.{function.__qualname__}"
+
+    @cache
+    def ready() -> None:
+        built = cast(Any, compiled).get_compile_result(typed(result, *arguments))
+        binding.add_symbol(symbol, built.library.get_pointer_to_function(built.fndesc.llvm_func_name))
+
+    def call(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
+        convention = context.call_conv
+        kind = convention.get_function_type(result, arguments)
+        place = cgutils.get_or_insert_function(builder.module, kind, symbol)
+        return convention.call_function(builder, place, result, arguments, values)[1]
+
+    def definition(_context: Any, *_given: Any) -> Any:
+        ready()
+        return typed(result, *arguments), call
+
+    names = [Parameter("context", Parameter.POSITIONAL_OR_KEYWORD), *signature(function).parameters.values()]
+    definition.__signature__ = Signature(names)  # type: ignore[attr-defined]
+    definition.ready_piece = ready  # type: ignore[attr-defined]
+    return cast(F, intrinsic(definition))
 
 
 def maker(function: F) -> F:

@@ -1,6 +1,7 @@
 """The corrector: Newton's method on the period map with its derivatives."""
 
 import math
+from typing import Any, cast
 
 import numpy as np
 
@@ -13,14 +14,34 @@ from dynamics.kernels.compiling import (
     ZETA,
     FloatArray,
     IntArray,
+    Room,
     helper,
     kernel,
 )
-from dynamics.kernels.roots import largest
+from dynamics.kernels.roots import binomials, copy, largest
 from dynamics.kernels.sensitivity import probe
-from dynamics.kernels.tables import EDGE, differentiate, fill, first_touched, room_of
+from dynamics.kernels.tables import differentiate, fill_there, first_touched, room_of, slopes_of, tables_of
 
 NEARLY = 1e-6  # Newton's step, over the scale, after which an orbit is likely to be good to rounding
+Rooms = tuple[Any, Any, Room, Room, Any, Any]
+
+
+def rooms_of(ways: int, length: int, cells: int, degree: int) -> Rooms:
+    """Tables, their derivatives, room for both, for `probe` and for `correct`, with so many packed parameters."""
+    m = 2 + ways
+    return (
+        tables_of(cells, degree),
+        slopes_of(ways, cells, degree),
+        room_of(cells, degree),
+        room_of(cells, degree),
+        (
+            np.empty((5, degree + 1)),
+            cast(Any, binomials).py_func(degree),
+            np.empty((2, m)),
+            np.empty((0, 2, 2)),
+        ),
+        (np.empty(m), np.empty(m), np.empty(length), np.empty((3, 3)), np.empty(3)),
+    )
 
 
 @helper
@@ -101,9 +122,8 @@ def newton_step(
 
 @kernel
 def correct(
-    origin: FloatArray, ways: FloatArray, cells: int, degree: int, u: FloatArray, across: FloatArray,
-    scale: float, periods: int, limit: int,
-    state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
+    origin: FloatArray, ways: FloatArray, u: FloatArray, across: FloatArray, scale: float, periods: int, limit: int,
+    state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, rooms: Rooms,
 ) -> tuple[int, int, int, float]:  # fmt: skip
     """Newton's method for a periodic orbit in the plane across . (u - guess) = 0, `u` being the guess.
 
@@ -111,27 +131,29 @@ def correct(
 
     Returns flag, number of extrema, iterations and residual over the scale; `u` becomes the orbit, and the rest is
     filled as by `probe`, for the image of the orbit, but with derivatives with respect to the unknowns, over the scale,
-    and with phases in [0, 1) of the orbit's period for times.
+    and with phases in [0, 1) of the orbit's period for times. `rooms` as by `rooms_of`, the same again for another call
+    with these `origin` and `ways`: what they do not touch is not tabulated again.
     """
-    guess, last, q = u.copy(), u.copy(), origin.copy()
-    matrix, right = np.empty((3, 3)), np.empty(3)
-    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, EDGE))
-    dcoef, dedge = np.zeros((len(ways), 2 * cells, 4, degree + 1)), np.zeros((len(ways), 2 * cells, 6))
-    room, more = room_of(cells, degree), room_of(cells, degree)
-    touched, first = first_touched(origin, ways), ZERO
+    (coef, edge), (dcoef, dedge), room, more, (work, choose, there, none), (guess, last, q, matrix, right) = (
+        rooms
+    )
+    copy(u, guess)
+    copy(u, last)
+    touched = first_touched(origin, ways)
+    first = ZERO if room[3][0, 0] == 0.0 else touched
     best, step, done, turned, final = math.inf, math.inf, 0, 0, False
     while True:
         # the error falls with the square of the step: this is likely to be the last time
         whole = final or limit == 0 or step < NEARLY
         if not move(origin, ways, u, q):
             return LOST, 0, done, best
-        fill(q, coef, edge, room, first)
+        fill_there(q, coef, edge, room, first)
         first = touched
         differentiate(q, ways, edge, room, more, dcoef, dedge)
         state[0], state[1] = u[0] * scale, u[1] * scale
         flag, turned = probe(
             (q, coef, edge), (dcoef, dedge), ways, state, periods, lin,
-            bend if whole else bend[:0], counts, turns if whole else turns[:0],
+            bend if whole else bend[:0], counts, turns if whole else turns[:0], work, choose, there, none,
         )  # fmt: skip
         if flag != FINE:
             return flag, 0, done, best

@@ -19,6 +19,7 @@ from dynamics.kernels.compiling import (
     Table,
     helper,
     kernel,
+    shared,
 )
 from dynamics.kernels.regions import clear, enter, leave, start
 from dynamics.kernels.roots import binomials, poly, shift, sole_root
@@ -198,14 +199,17 @@ def straighten(jac: FloatArray, h: float) -> None:
     jac[0, 1], jac[1, 1] = -s * turned, c * turned * h
 
 
-@helper
-def one_period(
-    par: FloatArray, coef: FloatArray, edge: FloatArray, region: int, y: float, w: float, want: int,
-    jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
+@shared(
+    "Tuple((i8, f8, f8, i8))(f8[::1], f8[:, :, ::1], f8[:, ::1], i8, i8, i8, f8, f8,"
+    " i8, f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1])"
+)
+def some_cells(
+    par: FloatArray, coef: FloatArray, edge: FloatArray, first: int, last: int, region: int, y: float, w: float,
+    want: int, jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
-    """Carry a state, in its region's coordinates, over one period; `want` and `jac` as in `iterate`, in cells."""
+    """Carry a state, in its region's coordinates, over the cells before `last`; `want` and `jac` as in `iterate`."""
     cells = len(edge) // 2
-    for cell in range(cells):
+    for cell in range(first, last):
         row = cell if region != 0 else cell + cells
         y_new = edge[row, 0] * y + edge[row, 1] * w + edge[row, 4]
         reach = edge[row, 6] * abs(y) + edge[row, 7] * abs(w) + edge[row, 8]
@@ -242,7 +246,8 @@ def iterate(
     2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2.
     """
     par, coef, edge = table
-    h = 2.0 * math.pi / par[FREQUENCY] / (len(edge) // 2)
+    cells = len(edge) // 2
+    h = 2.0 * math.pi / par[FREQUENCY] / cells
     work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
     count = np.zeros(2, dtype=np.int64)
     region, y = start(state[0], state[1], par)
@@ -252,7 +257,9 @@ def iterate(
         jac[1, 1] *= h
     for period in range(skip + len(states)):
         count[0] = count[1] = 0
-        region, y, w, flag = one_period(par, coef, edge, region, y, w, want, jac, work, choose, count)
+        region, y, w, flag = some_cells(
+            par, coef, edge, ZERO, cells, region, y, w, want, jac, work, choose, count
+        )
         if flag != FINE:
             return flag
         if period >= skip:
@@ -285,14 +292,17 @@ def partial(
     w = state[1] * h
     jac[1, 0] *= h
     jac[1, 1] *= h
-    for at in range(first, first + number):
-        region, y, w, flag = cross_cell(
-            par, coef, edge, at % cells, region, y, w, ONE, jac, work, choose, counts
+    while number > 0:
+        last = min(cells, first + number)
+        region, y, w, flag = some_cells(
+            par, coef, edge, first, last, region, y, w, ONE, jac, work, choose, counts
         )
         if flag != FINE:
             return flag
+        number -= last - first
+        first = ZERO
     state[0] = y + region * par[HALF_BACKLASH]
     state[1] = w / h
     jac[1, 0] /= h
     jac[1, 1] /= h
-    return FINE if abs(y) < 1e150 and abs(w) < 1e150 else DIVERGED
+    return FINE

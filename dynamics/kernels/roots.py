@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import NO, ONE, YES, ZERO, FloatArray, helper, maker
+from dynamics.kernels.compiling import NO, ONE, YES, ZERO, FloatArray, helper, maker, shared
 
 
 @helper
@@ -188,7 +188,7 @@ def monotone(c: FloatArray, first: int, end: float) -> bool:
     return bool(-c[first + 1] > 1.0001 * rest)
 
 
-@helper
+@shared("f8(f8[::1], f8[::1], f8, i8)")
 def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
     """Smallest t in [0, end] at which the polynomial turns negative, -1 if it does not.
 

@@ -15,7 +15,7 @@ from dynamics.kernels.compiling import (
     Table,
     kernel,
 )
-from dynamics.kernels.flow import iterate, one_period
+from dynamics.kernels.flow import iterate, some_cells
 from dynamics.kernels.regions import start
 from dynamics.kernels.roots import binomials, largest
 
@@ -31,7 +31,8 @@ def settle(
     attractor, -1 not arrived within `limit` periods, -2 grown without bound. Returns periods used.
     """
     par, coef, edge = table
-    h, d = 2.0 * math.pi / par[FREQUENCY] / (len(edge) // 2), par[HALF_BACKLASH]
+    cells = len(edge) // 2
+    h, d = 2.0 * math.pi / par[FREQUENCY] / cells, par[HALF_BACKLASH]
     work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
     count, jac = np.zeros(2, dtype=np.int64), np.zeros((3, 2))
     used = 0
@@ -43,7 +44,9 @@ def settle(
         distance = 0.0
         while labels[i] == -1 and period < limit:
             period += 1
-            region, y, w, flag = one_period(par, coef, edge, region, y, w, ZERO, jac, work, choose, count)
+            region, y, w, flag = some_cells(
+                par, coef, edge, ZERO, cells, region, y, w, ZERO, jac, work, choose, count
+            )
             if flag != FINE:
                 labels[i] = -2
             x, v = y + region * d, w / h

@@ -7,8 +7,6 @@ derivative of the Jacobian jumps by (K - K') M dt, with dt the shift of the inst
 
 import math
 
-import numpy as np
-
 from dynamics.kernels.compiling import (
     CROWDED,
     DIVERGED,
@@ -21,11 +19,11 @@ from dynamics.kernels.compiling import (
     IntArray,
     Table,
     helper,
-    kernel,
+    shared,
 )
 from dynamics.kernels.flow import basis, expand
 from dynamics.kernels.regions import clear, enter, leave, note_extremum, start
-from dynamics.kernels.roots import binomials, copy, find_turn, poly
+from dynamics.kernels.roots import copy, find_turn, poly
 
 
 @helper
@@ -160,22 +158,27 @@ def pass_boundary(
         lin[0, k] += (old - region) * play(ways, k)
 
 
-@kernel
+@shared(
+    "UniTuple(i8, 2)(Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1])), Tuple((f8[:, :, :, ::1], f8[:, :, ::1])),"
+    " f8[:, ::1], f8[::1], i8, f8[:, ::1], f8[:, :, ::1], i8[::1], f8[:, ::1],"
+    " f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, :, ::1])"
+)
 def probe(
     table: Table, slopes: tuple[FloatArray, FloatArray], ways: FloatArray, state: FloatArray, periods: int,
     lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
+    work: FloatArray, choose: FloatArray, there: FloatArray, none: FloatArray,
 ) -> tuple[int, int]:  # fmt: skip
     """Carry `state` over whole periods with its derivatives; returns flag and number of extrema.
 
     `lin`, (2, m): derivatives of the image in m directions, two of the state and those of `ways`. `bend`, (m, 2, 2) or
     empty: derivatives of the Jacobian lin[:, :2]. `counts`, (2): exits and entries. `turns`, (any, 5 + m): time, X,
-    X'', region and its coordinate at every extremum of X, and the derivatives of X there; none wanted if empty.
+    X'', region and its coordinate at every extremum of X, and the derivatives of X there; none wanted if empty. The
+    rest is room: five rows, `binomials`, (2, m), and no second derivatives.
     """
     par, coef, edge = table
     dcoef, dedge = slopes
-    cells, n, m = len(edge) // 2, coef.shape[2], lin.shape[1]
+    cells = len(edge) // 2
     d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose, there, none = np.empty((5, n)), binomials(n - 1), np.empty((2, m)), np.empty((0, 2, 2))
     a, b, g, rest, spare = work[0], work[1], work[2], work[3], work[4]
     region, y = start(state[0], state[1], par)
     w = state[1] * h

@@ -23,15 +23,26 @@ from dynamics.kernels.compiling import (
     ZETA,
     FloatArray,
     Room,
+    called,
     helper,
     kernel,
-    maker,
+    shared,
 )
 
 EDGE = 30  # numbers of a cell's map
+ROOM = "Tuple((f8[:, :, ::1], f8[:, :, :, ::1], f8[:, :, :, ::1], f8[:, ::1], f8[:, ::1]))"
 
 
-@maker
+def tables_of(cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
+    """Zeros for `coef` and `edge`."""
+    return np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, EDGE))
+
+
+def slopes_of(ways: int, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
+    """Zeros for the derivatives of `coef` and of the map over each cell."""
+    return np.zeros((ways, 2 * cells, 4, degree + 1)), np.zeros((ways, 2 * cells, 6))
+
+
 def room_of(cells: int, degree: int) -> Room:
     """Room for `fill`: stiffness and push, coefficients, values at the ends and bounds of the solutions, roots, waves.
 
@@ -39,13 +50,11 @@ def room_of(cells: int, degree: int) -> Room:
     (2, 3, 6, cells), first in contact, then in the dead zone, of the solutions as in `coef`.
     """
     n, kinds = degree + 1, 2
-    roots = np.empty((kinds, 2 * cells))
-    fill_roots(roots)
     return (
         np.zeros((kinds, n, cells)),
         np.zeros((kinds, 3, n, cells)),
         np.empty((kinds, 3, 6, cells)),
-        roots,
+        np.zeros((kinds, 2 * cells)),
         np.empty((kinds, cells)),
     )
 
@@ -246,13 +255,15 @@ def hand_over(y: FloatArray, coef: FloatArray, kind: int, first: int) -> None:
                 coef[cell + kind * cells, j, k] = y[j, k, cell]
 
 
-@helper
+@kernel
 def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first: int) -> None:
     """Fill tables of zeros; with `first` above 0 again for a `par` that touches the solutions from there on alone."""
     series, y, rim, _, _ = room
     cells = series.shape[2]
     if first > 2:
         return
+    if room[3][0, 0] == 0.0:
+        fill_roots(room[3])
     excite(par, par, NO, series, room)
     drag = 4.0 * math.pi / cells * par[ZETA] / par[FREQUENCY]
     for kind in range(2):
@@ -266,14 +277,6 @@ def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first:
     for cell in range(cells if first == 0 else 0):
         for k in range(series.shape[1]):
             coef[cell, 3, k] = series[0, k, cell]
-
-
-@kernel
-def tabulate(par: FloatArray, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
-    """Taylor tables `coef` and cell maps `edge` of one period."""
-    coef, edge = np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, EDGE))
-    fill(par, coef, edge, room_of(cells, degree), ZERO)
-    return coef, edge
 
 
 @helper
@@ -296,7 +299,7 @@ def edge_derivative(edge: FloatArray, rim: FloatArray, dedge: FloatArray, kind: 
             dedge[row, 2 + j if j < 2 else 5] = lower
 
 
-@helper
+@shared("void(f8[::1], f8[:, ::1], f8[:, ::1], " + ROOM + ", " + ROOM + ", f8[:, :, :, ::1], f8[:, :, ::1])")
 def differentiate(
     par: FloatArray, ways: FloatArray, edge: FloatArray, room: Room, more: Room, dcoef: FloatArray, dedge: FloatArray
 ) -> None:  # fmt: skip
@@ -326,3 +329,6 @@ def differentiate(
             survey(dy[kind], drim[kind], first)
             edge_derivative(edge, drim[kind], dedge[p], kind, first)
             hand_over(dy[kind], dcoef[p], kind, first)
+
+
+fill_there = called(fill, f"void(f8[::1], f8[:, :, ::1], f8[:, ::1], {ROOM}, i8)")

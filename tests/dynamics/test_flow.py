@@ -441,16 +441,20 @@ def test_one_sided_play_is_a_matter_of_origin(osc, state, shift):
     assert np.array_equal(moved.counts, image.counts)
 
 
+@pytest.mark.parametrize("how", ["helper", 'shared("f8(f8)")'])
 @pytest.mark.parametrize("kept", [True, False])
-def test_a_changed_helper_is_compiled_again(tmp_path, kept):
-    """Compiled code on disk is good as long as no kernel source changes, not only the caller's own file."""
+def test_a_changed_helper_is_compiled_again(tmp_path, kept, how):
+    """Compiled code on disk is good as long as no kernel source changes, not only the caller's own file.
+
+    What a kernel calls where it lies is there before the kernel is loaded, or the process would end.
+    """
     package = tmp_path / "dynamics" / "kernels"
     package.mkdir(parents=True)
     shutil.copy(Path(dynamics.__file__).parent / "kernels" / "compiling.py", package)
     for folder in (package.parent, package):
         (folder / "__init__.py").touch()
-    head = "from dynamics.kernels.compiling import helper, kernel\n"
-    (package / "aid.py").write_text(f"{head}@helper\ndef twice(x):\n    return 2.0 * x\n")
+    head = "from dynamics.kernels.compiling import helper, kernel, shared\n"
+    (package / "aid.py").write_text(f"{head}@{how}\ndef twice(x):\n    return 2.0 * x\n")
     (package / "work.py").write_text(
         f"{head}from dynamics.kernels.aid import twice\n@kernel\ndef more(x):\n    return twice(x) + 1.0\n"
     )
