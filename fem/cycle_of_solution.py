@@ -96,7 +96,7 @@ def cycle_of(
         friction=float(given.friction),
         supports=supports,
         reference=held,
-        face=None if refusal else face_loads(contact, number, bodies, force, film, tables),
+        face=None if refusal else face_loads(given, contact, number, bodies.plane),
         loaded=None
         if refusal or given.face is not None
         else LoadedContacts(given, bodies, where, turned, approach, force),

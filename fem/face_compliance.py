@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array
-from fem.gear_face import FlankEnds, FlankWaves, flank_ends, flank_waves
+from fem.gear_face import EndsOverCells, FlankEnds, FlankWaves, flank_ends, flank_waves
+from fem.gear_shape import MeshedShape
 from fem.solved_gear import Gears
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
 
 __all__ = ["pair_ends", "pair_waves"]
+
+DIGITS = 12
+"""Of lengths over the module, by which what is solved of a face is known."""
 
 
 def pair_waves(bodies: Compliance, rho: Array, cells: int) -> Array:
@@ -28,41 +32,85 @@ def pair_waves(bodies: Compliance, rho: Array, cells: int) -> Array:
     cells : int
         Waves k = m pi/b, m = 1 .. cells - 1.
     """
-    gears, module, width = Gears(), bodies.pair.module, bodies.pair.face_width
+    module, width = bodies.pair.module, bodies.pair.face_width
     wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi * module / width)
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape[1:], n, cells - 1))
-    diagonal = np.arange(n)
-    for gear, (meshed, flexible) in enumerate(zip(bodies.meshed, (bodies.pinion, bodies.wheel), strict=True)):
-        waves: FlankWaves = gears.record("waves", (meshed,), partial(flank_waves, meshed))
-        unit, at = 1.0 / (flexible.law.plane_modulus * width), rho[gear] / module
-        found[..., diagonal, diagonal, :] += unit * waves.own_at(at, wavenumber)
-        for apart in range(1, min(n, bodies.reach + 1)):
-            behind, ahead = diagonal[:-apart], diagonal[apart:]
-            # the pair ahead has the smaller rho2
-            load, point = (behind, ahead) if gear == 0 else (ahead, behind)
-            cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
-            found[..., behind, ahead, :] += cross
-            found[..., ahead, behind, :] += cross
+    for gear in range(2):
+        found += gear_waves(bodies, gear, rho[gear], wavenumber) / width
     return found
 
 
-def pair_ends(bodies: Compliance, rho: Array, cells: int) -> Array:
-    """What free ends add between cells of n pairs (..., n, cells, n, cells) [m/N]; arguments as of ``pair_waves``."""
-    gears, module, width = Gears(), bodies.pair.module, bodies.pair.face_width
+def gear_waves(bodies: Compliance, gear: int, rho: Array, wavenumber: Array) -> Array:
+    """What waves of line load yield beyond even ones on one gear (..., n, n, waves) [m per N/m].
+
+    Parameters
+    ----------
+    bodies : Compliance
+    gear : int
+        0 is the pinion, 1 the wheel.
+    rho : (..., n) array
+        Curvature radii of n pairs on it, in order of rho1, one tooth apart [m].
+    wavenumber : (waves,) array
+        k times the module.
+    """
+    meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
+    waves: FlankWaves = Gears().record("waves", (meshed,), partial(flank_waves, meshed))
     n = rho.shape[-1]
+    found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
+    diagonal = np.arange(n)
+    unit, at = 1.0 / flexible.law.plane_modulus, rho / bodies.pair.module
+    found[..., diagonal, diagonal, :] = unit * waves.own_at(at, wavenumber)
+    for apart in range(1, min(n, bodies.reach + 1)):
+        behind, ahead = diagonal[:-apart], diagonal[apart:]
+        # the pair ahead has the smaller rho2
+        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+        cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
+        found[..., behind, ahead, :] = found[..., ahead, behind, :] = cross
+    return found
+
+
+def pair_ends(
+    bodies: Compliance, rho: Array, edges: tuple[Array, Array], widths: tuple[float, float]
+) -> Array:
+    """What free ends add between cells of n pairs (..., n, cells, n, cells) [m/N].
+
+    Parameters
+    ----------
+    bodies : Compliance
+    rho : (2, ..., n) array
+        As of ``pair_waves``.
+    edges : two (cells + 1,) arrays
+        Of the cells on pinion and wheel, growing, from the middle of the gear's own face [m].
+    widths : (float, float)
+        Face widths of both [m].
+    """
+    n, cells = rho.shape[-1], len(edges[0]) - 1
     found: Array = np.zeros((*rho.shape[1:], cells, n, cells))
-    for gear, (meshed, flexible) in enumerate(zip(bodies.meshed, (bodies.pinion, bodies.wheel), strict=True)):
-        long = float(f"{width / module:.12g}")
-        ends: FlankEnds = gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
+    module = bodies.pair.module
+    for gear, flexible in enumerate((bodies.pinion, bodies.wheel)):
+        ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
         for one in range(n):
-            found[..., one, :, one, :] += unit * ends.own_at(at[..., one], cells)
+            found[..., one, :, one, :] += unit * ends.own_at(at[..., one])
         for apart in range(1, min(n, bodies.reach + 1)):
             for behind in range(n - apart):
                 ahead = behind + apart
                 load, point = (behind, ahead) if gear == 0 else (ahead, behind)
-                cross = unit * ends.cross_at(apart, at[..., load], at[..., point], cells)
+                cross = unit * ends.cross_at(apart, at[..., load], at[..., point])
                 found[..., load, :, point, :] += cross
                 found[..., point, :, load, :] += np.swapaxes(cross, -1, -2)
     return found
+
+
+def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndsOverCells:
+    """Free ends of a gear over cells, width and edges in modules."""
+    gears = Gears()
+    long = float(f"{width:.{DIGITS}g}")
+
+    def over() -> EndsOverCells:
+        whole: FlankEnds = gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
+        # the face that was solved ends where the cells do, to the last bit
+        return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
+
+    return gears.over_face("ends", (meshed, long, edges.tobytes()), over)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,20 +9,16 @@ import numpy as np
 from base import Array, described, part, quantity, record
 from base.results import EXACT
 from fem.elasticity import reduced_modulus
-from fem.face_setting import FREE_ENDS, WALLS, FaceSetting
-from fem.sharing import Solution, solve
+from fem.face_setting import FaceSetting
+from fem.face_share import face_load_factors
 from gears.hertz import peak_pressure
 
 if TYPE_CHECKING:
-    from fem.bodies import Compliance
-    from fem.edge_tables import EdgeTables
-    from fem.local_law import Film
+    from fem.setting import Setting
+    from fem.sharing import Solution
     from gears import GearPair
 
-__all__ = ["FaceLoads", "face_load_factors", "face_loads"]
-
-ENDS_ERROR = 0.1
-"""Part of what free ends do that their coarse section leaves uncertain."""
+__all__ = ["FaceLoads", "face_loads"]
 
 HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
@@ -95,32 +90,23 @@ class FaceLoads:
         return float(np.mean(np.any(self.line_load > 0.0, axis=(0, 1))))
 
 
-def face_load_factors(forces: Array) -> Array:
-    """Greatest force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
-    most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
-    chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
-    return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))
+def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> FaceLoads | None:
+    """Line loads of one torque of a solution; None where the face has no cells.
 
-
-def face_loads(
-    contact: Solution, number: int, bodies: Compliance, force: float, film: Film | None, tables: EdgeTables
-) -> FaceLoads | None:
-    """Line loads, with the error of the face-load factor by half as many cells, with free ends and without."""
-    given, over = tables.given, contact.face
+    Parameters
+    ----------
+    given : Setting
+    contact : Solution
+    number : int
+        Of the torque.
+    plane : {"strain", "stress"}
+    """
+    over = contact.face
     if over is None or given.face is None:
         return None
     pair, cells = given.pair, given.face.cells
     forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
-    few = 2 * (cells // 4)
-    greatest = []
-    models = (FREE_ENDS, WALLS) if given.face.model == FREE_ENDS else (given.face.model,)
-    for model in models:
-        coarse = replace(given, face=replace(given.face, cells=few, model=model))
-        other = solve(coarse, bodies, np.array([abs(force)]), film, tables).face
-        greatest.append(np.nan if other is None else float(np.max(face_load_factors(other.forces))))
-    most = float(np.max(factors))
-    error = abs(most - greatest[0]) / (cells / few - 1) + ENDS_ERROR * abs(greatest[0] - greatest[-1])
     where, (rho1, rho2) = contact.where, contact.where.rho
     radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
@@ -130,9 +116,9 @@ def face_loads(
         factors,
         given.face,
         pair,
-        bodies.plane,
+        plane,
         np.tile(radius, (given.pitches, 1)),
         np.tile(travel, (given.pitches, 1)),
         np.maximum(over.left[number], 0.0).reshape(forces.shape),
-        error / most,
+        float(over.factor_error[number] / np.max(factors)),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -42,6 +42,15 @@ class FaceSetting:
     alignment: Alignment = ALIGNED
     leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
     model: str = FREE_ENDS
+
+    @property
+    def coupled(self) -> tuple[Any, ...]:
+        """What decides how cells are coupled, whatever stands between the flanks."""
+        return self.cells, self.model
+
+    def edges(self, pair: GearPair) -> Array:
+        """Edges of the cells (cells + 1,) [m], 0 at mid-face."""
+        return np.asarray(np.linspace(-0.5, 0.5, self.cells + 1) * pair.face_width)
 
     def middles(self, face_width: float) -> Array:
         """Middles of the cells (cells,) [m], 0 at mid-face."""

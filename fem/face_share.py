@@ -12,22 +12,27 @@ whose law holds tooth and body, change by W as those of a flank at its corner do
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, record
-from fem.face_compliance import pair_ends, pair_waves
-from fem.face_setting import FREE_ENDS, SLICES
+from fem.cell_matrix import cell_coupling
+from fem.face_setting import FREE_ENDS, WALLS
 from fem.local_law import FilmLaw, PairLaws
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
     from fem.contact_candidates import ContactCandidates
+    from fem.face_setting import FaceSetting
     from fem.setting import Setting
     from gears import LoadShare
 
-__all__ = ["FaceShare", "cell_matrix", "share_over_face"]
+__all__ = ["FaceShare", "face_load_factors", "share_over_face"]
+
+ENDS_ERROR = 0.1
+"""Part of what free ends do that their coarse section leaves uncertain."""
 
 
 @record
@@ -64,15 +69,71 @@ class FaceShare:
         [N]
     left : (torques, pitches, positions, pairs, cells) array
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
+    factor_error : (torques,) array
+        Estimated error of the greatest face-load factor: what twice as many cells would change there, and a part of
+        what free ends do.
     """
 
     forces: Array
     left: Array
+    factor_error: Array
 
     @property
     def open(self) -> Array:
         """Least gap that is left along the face (torques, pitches, positions, pairs) [m]."""
         return np.asarray(self.left.min(axis=-1))
+
+
+@record
+class _Face:
+    """What is shared over the face of whole pairs, arguments as of ``gears.share_load``."""
+
+    given: Setting
+    bodies: Compliance
+    whole: Array
+    where: ContactCandidates
+    kappa: Array
+    matrix: Array
+    laws: PairLaws
+    gaps: Array
+    oil: FilmLaw | None
+    levers: Array | None
+
+    def shared(self, face: FaceSetting, near: Array) -> tuple[LoadShare, Array]:
+        """Share over cells of a face from forces of pairs (..., pairs); and the gap that each is left with."""
+        from gears.load_sharing import share_load
+
+        cells, where = face.cells, self.where
+        radius = where.rho[0] * where.rho[1] / (where.rho[0] + where.rho[1])
+        apart = self.gaps[..., None] + face.gaps(self.given.pair, radius)
+        apart = np.maximum(apart - apart.min(axis=(-2, -1), keepdims=True), 0.0)
+        apart = np.where(where.touchable[..., None], apart, np.inf).reshape(*apart.shape[:-2], -1)
+        coupling = cell_coupling(face, self.bodies, where, self.kappa, self.matrix)
+        film = None if self.oil is None else CellLaws(self.oil, cells)
+        arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
+        start = np.repeat(near / cells, cells, axis=-1)
+        found = share_load(self.whole, coupling, CellLaws(self.laws, cells), apart, film, arms, start)
+        every = np.ones(found.stiffness.shape, dtype=bool)
+        bent = coupling.applied(found.forces, every, np.zeros_like(found.forces)) + apart
+        if film is not None:
+            bent = bent - film.approach(np.zeros_like(found.forces))
+        left = bent.reshape(*bent.shape[:-1], -1, cells) - found.transmission_error[..., None, None]
+        return found, left
+
+    def at(self, torque: int, pitch: int, position: int) -> _Face:
+        """The same at a single torque and position."""
+        one, where = slice(position, position + 1), self.where
+        return replace(
+            self,
+            whole=np.broadcast_to(self.whole, (len(self.whole), *self.gaps.shape[:2]))[torque, pitch, one],
+            where=replace(where, rho=where.rho[:, one], touchable=where.touchable[one]),
+            kappa=self.kappa[one],
+            matrix=self.matrix[one],
+            laws=self.laws.at(position),
+            gaps=self.gaps[pitch, one],
+            oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[one]),
+            levers=None if self.levers is None else self.levers[one],
+        )
 
 
 def share_over_face(
@@ -99,53 +160,38 @@ def share_over_face(
     from gears.load_sharing import LoadShare, share_load
 
     assert given.face is not None
-    cells, pair = given.face.cells, given.pair
-    radius = where.rho[0] * where.rho[1] / (where.rho[0] + where.rho[1])
-    along = given.face.gaps(pair, radius)
-    apart = gaps[..., None] + along
-    apart = np.maximum(apart - apart.min(axis=(-2, -1), keepdims=True), 0.0)
-    apart = apart.reshape(*apart.shape[:-2], -1)
-    by_cells = cell_matrix(given, bodies, where, kappa, matrix)
-    film = None if oil is None else CellLaws(oil, cells)
-    arms = None if levers is None else np.repeat(levers, cells, axis=-1)
+    over = _Face(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
     plane = share_load(whole, matrix, laws, gaps, oil, levers)
-    near = np.repeat(plane.forces / cells, cells, axis=-1)
-    found = share_load(whole, by_cells, CellLaws(laws, cells), apart, film, arms, near)
+    found, left = over.shared(given.face, plane.forces)
+    cells = given.face.cells
     forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
-    bent = (by_cells @ found.forces[..., None])[..., 0] + apart
-    if film is not None:
-        bent = bent - film.approach(np.zeros_like(found.forces))
-    left = bent.reshape(forces.shape) - found.transmission_error[..., None, None]
-    share = LoadShare(
-        forces.sum(axis=-1),
-        found.transmission_error,
-        found.stiffness,
-        slopes.sum(axis=-1),
-        found.iterations,
-    )
-    return share, FaceShare(forces, left)
+    pairs = forces.sum(axis=-1)
+    share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
+    return share, FaceShare(forces, left, _factor_error(over, given.face, forces, kappa))
 
 
-def cell_matrix(
-    given: Setting, bodies: Compliance, where: ContactCandidates, kappa: Array, matrix: Array
-) -> Array:
-    """Compliance between cells of all pairs (positions, pairs cells, pairs cells) [m/N]; ``matrix`` is the plane's."""
-    assert given.face is not None
-    cells, (positions, pairs) = given.face.cells, where.place.shape
-    modes, levers = _modes(cells), kappa[..., :, None] * kappa[..., None, :]
-    by_mode = np.repeat(matrix[..., None], cells, axis=-1)
-    if given.face.model != SLICES:
-        by_mode[..., 1:] += pair_waves(bodies, where.rho, cells) / levers[..., None]
-    found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
-    if given.face.model == FREE_ENDS:
-        found += pair_ends(bodies, where.rho, cells) / levers[:, :, None, :, None]
-    size = pairs * cells
-    return np.asarray(found.reshape(positions, size, size))
+def _factor_error(over: _Face, face: FaceSetting, forces: Array, kappa: Array) -> Array:
+    """Error of the greatest face-load factor of every torque, by half as many cells where it is greatest."""
+    factors = face_load_factors(forces / kappa[..., None])
+    few = 2 * (face.cells // 4)
+    models = (FREE_ENDS, WALLS) if face.model == FREE_ENDS else (face.model,)
+    found = np.zeros(len(forces))
+    for torque, some in enumerate(factors):
+        pitch, position = np.unravel_index(int(np.argmax(some)), some.shape)
+        at = over.at(torque, int(pitch), int(position))
+        pairs = forces[torque, pitch, position : position + 1].sum(axis=-1)
+        others = []
+        for model in models:
+            share, _ = at.shared(replace(face, cells=few, model=model), pairs)
+            cells = share.forces.reshape(1, -1, few) / at.kappa[..., None]
+            others.append(float(face_load_factors(cells)[0]))
+        halved = abs(float(np.max(some)) - others[0]) / (face.cells / few - 1)
+        found[torque] = halved + ENDS_ERROR * abs(others[0] - others[-1])
+    return found
 
 
-def _modes(cells: int) -> Array:
-    """Orthonormal cosines over the cells (modes, cells)."""
-    m, c = np.arange(cells)[:, None], np.arange(cells) + 0.5
-    found = np.cos(np.pi * m * c / cells) * np.sqrt(2.0 / cells)
-    found[0] = np.sqrt(1.0 / cells)
-    return np.asarray(found)
+def face_load_factors(forces: Array) -> Array:
+    """Greatest force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
+    most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
+    chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
+    return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))

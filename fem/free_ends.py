@@ -13,7 +13,6 @@ are equal on both sides of it and such that are opposite are solved apart, on ha
 from __future__ import annotations
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -60,21 +59,36 @@ class HalfFace:
             self.mixed.T[psi, phi],
         )
 
-    def means(self, edges: Array) -> Array:
-        """Mean of every function over cells between edges (k + 1,) [m]: (n, k)."""
+    def means(self, edges: Array) -> tuple[Array, Array]:
+        """Means over cells of every function, and of its opposite on the other half.
+
+        Parameters
+        ----------
+        edges : (k + 1,) array
+            Of the cells, growing, from mid-face [m].
+
+        Returns
+        -------
+        two (n, k) arrays
+            Of functions that are equal on both halves, and of such that change sign at mid-face.
+        """
         s, weight = legendre.leggauss(ORDER + 1)
-        found = np.zeros((len(self.mass), len(edges) - 1))
-        cuts = np.unique(np.concatenate([self.ends, edges]))
-        for low, high in pairwise(cuts):
-            middle = 0.5 * (low + high)
-            piece = int(np.searchsorted(self.ends, middle)) - 1
-            cell = int(np.searchsorted(edges, middle)) - 1
-            start, stop = self.ends[piece], self.ends[piece + 1]
-            z = middle + 0.5 * (high - low) * s
-            values = _values(2 * (z - start) / (stop - start) - 1)
-            share = 0.5 * (high - low) / (edges[cell + 1] - edges[cell])
-            found[ORDER * piece : ORDER * piece + ORDER + 1, cell] += share * (weight @ values)
-        return found
+        even, odd = np.zeros((2, len(self.mass), len(edges) - 1))
+        cuts = np.unique(np.concatenate([-self.ends, self.ends, edges]))
+        cuts = cuts[(cuts >= edges[0]) & (cuts <= edges[-1])]
+        middle, half = 0.5 * (cuts[:-1] + cuts[1:]), 0.5 * np.diff(cuts)
+        side = np.sign(middle)
+        piece = np.clip(np.searchsorted(self.ends, np.abs(middle)) - 1, 0, len(self.ends) - 2)
+        cell = np.searchsorted(edges, middle) - 1
+        start, stop = self.ends[piece], self.ends[piece + 1]
+        z = np.abs(middle[:, None] + half[:, None] * s)
+        local = (2 * (z - start[:, None]) / (stop - start)[:, None] - 1).ravel()
+        values = weight @ _values(local).reshape(len(middle), ORDER + 1, ORDER + 1)
+        values = values * (half / np.diff(edges)[cell])[:, None]
+        rows = ORDER * piece[:, None] + np.arange(ORDER + 1)
+        np.add.at(even, (rows, cell[:, None]), values)
+        np.add.at(odd, (rows, cell[:, None]), side[:, None] * values)
+        return even, odd
 
 
 @cache
@@ -132,23 +146,20 @@ class FreeEnds:
     cross: tuple[Array, Array]
 
 
-def over_cells(half: HalfFace, even: Array, odd: Array, cells: int) -> Array:
-    """Means over equal cells of the whole face (..., cells, cells) by a unit force on a cell.
+def over_cells(half: HalfFace, even: Array, odd: Array, edges: Array) -> Array:
+    """Means over cells (..., cells, cells) by a unit force on a cell.
 
     Parameters
     ----------
     half : HalfFace
     even, odd : (..., psi, psi) arrays
         By functions over half the face.
-    cells : int
-        Even.
+    edges : (cells + 1,) array
+        Of the cells, growing, from mid-face [m].
     """
-    means = half.means(np.linspace(0.0, float(half.ends[-1]), cells // 2 + 1))
-    even, odd = (at.T @ one @ at for one, at in ((even, means), (odd, means[1:])))
-    same, other = 0.5 * (even + odd), 0.5 * (even - odd)
-    far = np.concatenate([np.flip(same, (-2, -1)), np.flip(other, -2)], axis=-1)
-    near = np.concatenate([np.flip(other, -1), same], axis=-1)
-    return np.concatenate([far, near], axis=-2)
+    same, opposite = half.means(edges)
+    opposite = opposite[1:]
+    return np.asarray(0.5 * (same.T @ even @ same + opposite.T @ odd @ opposite))
 
 
 def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> FreeEnds:

@@ -23,6 +23,7 @@ from fem.line_load import flank_points
 from fem.prism import Face, Section, prism, section
 
 __all__ = [
+    "EndsOverCells",
     "FlankEnds",
     "FlankWaves",
     "between_waves",
@@ -175,18 +176,43 @@ class FlankEnds:
     own: tuple[Array, Array]
     cross: tuple[Array, Array]
 
-    def own_at(self, rho: Array, cells: int) -> Array:
-        """Means over cells by a unit force on a cell (..., cells, cells) [module per E* module^2 of force]."""
-        series = over_cells(self.half, *self.own, cells)
-        places = _by_root(rho, self.rho_range, self.rho_end, len(series))
-        return np.asarray(np.einsum("...i,icd->...cd", places, series, optimize=True))
+    def over(self, edges: Array) -> EndsOverCells:
+        """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
+        cross = over_cells(self.half, *self.cross, edges)
+        return EndsOverCells(self.rho_range, self.rho_end, over_cells(self.half, *self.own, edges), cross)
 
-    def cross_at(self, tooth: int, load: Array, point: Array, cells: int) -> Array:
+
+@record
+class EndsOverCells:
+    """What free ends add between cells, in modules and E*: [module per E* module^2 of force].
+
+    Attributes
+    ----------
+    rho_range, rho_end
+        As of ``FlankWaves``.
+    own : (places, cells, cells) array
+        Chebyshev coefficients over (rho_end - rho)^(1/2).
+    cross : (reach, places, places, cells, cells) array
+        Over the load's and the point's rho.
+    """
+
+    rho_range: tuple[float, float]
+    rho_end: float
+    own: Array
+    cross: Array
+
+    def own_at(self, rho: Array) -> Array:
+        """Means over cells by a unit force on a cell (..., cells, cells) for rho (...)."""
+        places = _by_root(rho, self.rho_range, self.rho_end, len(self.own))
+        return np.asarray(np.tensordot(places, self.own, axes=1))
+
+    def cross_at(self, tooth: int, load: Array, point: Array) -> Array:
         """The same on a neighbour; cells of the load first."""
-        even, odd = (one[tooth - 1] for one in self.cross)
-        series = over_cells(self.half, even, odd, cells)
-        loads, points = (_by_place(rho, self.rho_range, len(series)) for rho in (load, point))
-        return np.asarray(np.einsum("...i,ijcd,...j->...cd", loads, series, points, optimize=True))
+        size = self.cross.shape[1]
+        loads, points = (_by_place(rho, self.rho_range, size) for rho in (load, point))
+        both = (loads[..., :, None] * points[..., None, :]).reshape(*loads.shape[:-1], size**2)
+        series = self.cross[tooth - 1].reshape(size**2, *self.cross.shape[3:])
+        return np.asarray(np.tensordot(both, series, axes=1))
 
 
 def flank_ends(meshed: MeshedShape, face_width: float) -> FlankEnds:

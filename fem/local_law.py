@@ -123,6 +123,12 @@ class CutOff:
     quotient: Array
     slope: Array
 
+    def of(self, position: int) -> CutOff:
+        """Corrections at a single position."""
+        rows = np.nonzero(self.at)[0] == position
+        one = self.at[position : position + 1]
+        return CutOff(one, self.log_force[rows], self.quotient[rows], self.slope[rows])
+
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
         log = np.log(np.maximum(force, LEAST_FORCE))
@@ -159,6 +165,17 @@ class PairLaws:
     edge: Booleans
     table: Table | None = None
     cut_offs: tuple[CutOff, ...] = ()
+
+    def at(self, position: int) -> PairLaws:
+        """Laws of a single position."""
+        one = slice(position, position + 1)
+        per_log = np.broadcast_to(self.hertz.per_log, self.edge.shape)[one]
+        table = self.table
+        if table is not None:
+            rows = np.nonzero(self.edge)[0] == position
+            table = Table(table.force[rows], table.approach[rows], table.steepness[rows])
+        near = tuple(cut.of(position) for cut in self.cut_offs)
+        return PairLaws(HertzApproach(self.hertz.constant[one], per_log), self.edge[one], table, near)
 
     def approach(self, force: Array) -> Array:
         """Local deflection (positions, pairs) [m]."""

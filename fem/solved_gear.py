@@ -26,13 +26,14 @@ __all__ = ["Gears", "Kept", "SolvedFlanks", "forget_gears"]
 
 T = TypeVar("T")
 
-MOST_RECORDS, MOST_RINGS = 512, 2
+MOST_RECORDS, MOST_RINGS, MOST_FACES = 512, 2, 16
 
 BACK_SAMPLES = 20
 """Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
 _RINGS: Memo[tuple[Ring, Ring]] = Memo(MOST_RINGS)
+_FACES: Memo[Any] = Memo(MOST_FACES)
 
 
 def forget_gears() -> None:
@@ -45,6 +46,7 @@ def forget_gears() -> None:
     """
     _RECORDS.clear()
     _RINGS.clear()
+    _FACES.clear()
 
 
 class Kept(Protocol):
@@ -147,6 +149,11 @@ class Gears:
             return compute() if kept is None else kept(f"gear {name}", {"key": plain(key)}, compute)
 
         found: T = _RECORDS.obtain((name, key), lambda: read_only(missing()))
+        return found
+
+    def over_face(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """Give what gears do between cells of a face: large, and kept for the few that were used last."""
+        found: T = _FACES.obtain((name, key), compute)
         return found
 
     def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:

@@ -16,10 +16,10 @@ from .heat import WarmPair as WarmPair
 from .heat import warm_pair as warm_pair
 from .hertz import half_width as half_width
 from .hertz import peak_pressure as peak_pressure
+from .independent_pairs import independent_pairs as independent_pairs
 from .inspection import Dimensions as Dimensions
 from .inspection import dimensions as dimensions
 from .load_sharing import LoadShare as LoadShare
-from .load_sharing import independent_pairs as independent_pairs
 from .load_sharing import share_load as share_load
 from .material import STEEL as STEEL
 from .material import Material as Material

@@ -1,4 +1,4 @@
-"""How the tooth pairs in mesh share the load: coupled by Newton's method, or independent in proportion."""
+"""How coupled tooth pairs in mesh share the load, by Newton's method."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 
 from base import Array, Booleans, Faults, quantity, record
 from gears.errors import LoadSharingError
+from gears.load_coupling import Coupling, DenseCoupling
 
 _ITERATIONS = 200
 _STEP = 1e-11  # relative to the force; Newton's next step is of the order of its square
 _ROUNDING = 1e-14  # of deflections, relative to their size
-_START = 1e-2  # part of the force with which a pair is taken in
 _BACKOFF = 0.1  # part of a pair's force that is kept when a step would make it negative
 
 
@@ -48,7 +48,7 @@ class LoadShare:
 
 def share_load(
     force: float | Array,
-    bulk: ArrayLike,
+    bulk: ArrayLike | Coupling,
     hertz: DeflectionLaw,
     gaps: ArrayLike,
     film: DeflectionLaw | None = None,
@@ -73,7 +73,7 @@ def share_load(
     ----------
     force : float or (...) array
         F, sum of the normal forces, all above 0 or all 0 [N].
-    bulk : (..., pairs, pairs) array
+    bulk : (..., pairs, pairs) array, or Coupling
         Linear compliance of teeth and bodies, symmetric and positive semidefinite [m/N].
     hertz : DeflectionLaw
         Local deflection of each pair, zero at zero force, with slope > 0.
@@ -115,7 +115,8 @@ def share_load(
     >>> share_load(1e4, [[2e-9, 0.0], [0.0, 2e-9]], NoHertz(), gaps=[0.0, 2e-6]).forces
     array([5500., 4500.])
     """
-    stiff, clear = np.asarray(bulk, dtype=float), np.asarray(gaps, dtype=float)
+    stiff = bulk if isinstance(bulk, Coupling) else DenseCoupling(np.asarray(bulk, dtype=float))
+    clear = np.asarray(gaps, dtype=float)
     whole = np.asarray(force, dtype=float)
     arms = np.ones(clear.shape[-1:]) if levers is None else np.asarray(levers, dtype=float)
     _check(whole, stiff, clear, arms)
@@ -128,23 +129,28 @@ def share_load(
         return _first_touch(stiff, hertz, film, at_zero, arms)
     clear = np.where(touchable, clear, 0.0)
     active = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
-    start = np.full(clear.shape, _START)
+    start = np.full(clear.shape, stiff.start)
     loads, approach = np.where(active, each / arms, 0.0), at_zero.min(axis=-1)
     if near is not None:
         loads = near + nothing
         active = loads > 0.0
-        _, deflection = _linearise(stiff, hertz, film, clear, loads)
+    every = np.ones(clear.shape[:-1], dtype=bool)
+    wanted, slopes, bent = every, nothing, stiff.applied(loads, every, nothing)
+    if near is not None:
+        deflection = _linearise(bent, hertz, film, clear, loads)[1]
         approach = np.mean(deflection, axis=-1, where=active)
     for iteration in range(1, _ITERATIONS + 1):
-        jacobian, deflection = _linearise(stiff, hertz, film, clear, loads)
+        slope, deflection = _linearise(bent, hertz, film, clear, loads)
         overlap = deflection - approach[..., None]
-        step, lift, slopes = _newton_step(jacobian, overlap, loads, active, whole, arms)
+        step, lift, new = _newton_step(stiff, slope, overlap, loads, active, wanted, whole, arms)
+        slopes = np.where(wanted[..., None], new, slopes)
         tangent = (arms * slopes).sum(axis=-1)
         approach = approach + lift
         moved = np.where(active, loads + step, 0.0)
         negative = active & (moved <= 0.0)
         kept = np.where(negative, 0.0, moved)
-        unloaded = _coupled(stiff, kept) + at_zero - approach[..., None]
+        bent = stiff.applied(kept, wanted, bent)
+        unloaded = bent + at_zero - approach[..., None]
         size = np.abs(deflection).max(where=active, initial=0.0, axis=-1) + np.abs(approach)
         released = negative & (unloaded >= 0.0)
         taken = touchable & ~active & (unloaded < -_ROUNDING * size[..., None])
@@ -153,59 +159,60 @@ def share_load(
         loads = np.where(taken, start * each, loads)
         start = np.where(taken, _BACKOFF * start, start)
         active = (active & ~released) | taken
-        if settled.all() and not (negative.any() or taken.any()):
+        changed = np.any(negative | taken, axis=-1)
+        settled &= ~changed
+        if settled.all():
             return LoadShare(loads, approach, tangent, slopes, iteration)
+        bent = stiff.applied(loads, changed, bent)
+        wanted = ~settled if stiff.apart else every
     remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
     allowed = "must have deflections that grow with the force"
     raise LoadSharingError.at("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)
 
 
-def _coupled(bulk: Array, loads: Array) -> Array:
-    return np.asarray((bulk @ loads[..., None])[..., 0])
-
-
 def _linearise(
-    bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, clear: Array, loads: Array
+    bent: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, clear: Array, loads: Array
 ) -> tuple[Array, Array]:
-    """Jacobian (..., n, n) and deflection with clearance (..., n) of all pairs."""
+    """Slopes of the laws, and deflections with clearance of all pairs (..., n) that are bent so far by all forces."""
     slope = hertz.slope(loads)
-    residual = _coupled(bulk, loads) + hertz.approach(loads) + clear
+    residual = bent + hertz.approach(loads) + clear
     if film is not None:
         slope = slope - film.slope(loads)
         residual = residual - film.approach(loads)
     # an idle pair may have an infinite slope; its row is replaced in the Newton step
-    slope = np.where(loads > 0.0, slope, 1.0)
-    return bulk + slope[..., None] * np.eye(loads.shape[-1]), residual
+    return np.where(loads > 0.0, slope, 1.0), residual
 
 
 def _newton_step(
-    jacobian: Array, residual: Array, loads: Array, active: Booleans, force: Array, levers: Array
+    bulk: Coupling,
+    slope: Array,
+    residual: Array,
+    loads: Array,
+    active: Booleans,
+    wanted: Booleans,
+    force: Array,
+    levers: Array,
 ) -> tuple[Array, Array, Array]:
-    """Step of the active forces, step of the approach and slopes dF_i/dD.
+    """Step of the active forces, step of the approach and slopes dF_i/dD; zero where not wanted.
 
     Two right-hand sides, J a = 1 and J b = residual on the active pairs, give the bordered system's solution
     dF = a dD - b with dD from the sum of the moments.
     """
-    both = active[..., :, None] & active[..., None, :]
-    matrix = np.where(both, jacobian, np.eye(loads.shape[-1]))
-    scale = np.abs(jacobian).max()
-    sides = np.stack((np.where(active, 1.0, 0.0), np.where(active, residual / scale, 0.0)), axis=-1)
-    solved = np.linalg.solve(np.where(both, matrix / scale, matrix), sides)
-    unit, response = solved[..., 0], solved[..., 1]
-    total = (levers * unit).sum(axis=-1)
+    unit, response, scale = bulk.solved(slope, residual, active, wanted)
+    total = np.where(wanted, (levers * unit).sum(axis=-1), 1.0)
     carried = (levers * np.where(active, loads, 0.0)).sum(axis=-1)
-    reduced = (force - carried + (levers * response).sum(axis=-1)) / total
+    reduced = np.where(wanted, (force - carried + (levers * response).sum(axis=-1)) / total, 0.0)
     return unit * reduced[..., None] - response, reduced * scale, unit / scale
 
 
 def _first_touch(
-    bulk: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, at_zero: Array, levers: Array
+    bulk: Coupling, hertz: DeflectionLaw, film: DeflectionLaw | None, at_zero: Array, levers: Array
 ) -> LoadShare:
     """Share at zero force: the approach at which the first pair touches, and the stiffness there."""
     approach = at_zero.min(axis=-1)
     nothing = np.zeros_like(at_zero)
     slope = hertz.slope(nothing) if film is None else hertz.slope(nothing) - film.slope(nothing)
-    compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + slope
+    compliance = bulk.diagonal + slope
     first = np.arange(at_zero.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
     slopes = np.where(first, 1.0 / (compliance + nothing), 0.0)
     return LoadShare(nothing, approach, (levers * slopes).sum(axis=-1), slopes, 0)
@@ -228,7 +235,7 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
     return True
 
 
-def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
+def _check(force: Array, bulk: Coupling, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
     pairs = gaps.shape[-1:]
     with Faults(LoadSharingError) as found:
@@ -249,53 +256,5 @@ def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
         if not np.all((levers > 0.0) & np.isfinite(levers)):
             remedy = "reduce the friction, which tilts a force past the axis"
             found.add("levers", "not above 0", "must be finite and more than 0", remedy)
-        if not np.all(np.isfinite(bulk)):
+        if not bulk.finite:
             found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
-
-
-def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None = None) -> LoadShare:
-    """Share a force among independent pairs in proportion to their stiffness, the article's way.
-
-    k_i = 1 / (1/k_tooth,i + 1/k_film,i); F_i = F k_i / sum k; D = F / sum k.
-
-    Parameters
-    ----------
-    force : float
-        Sum of the normal forces [N].
-    stiffness : (positions, pairs) array
-        Secant stiffness of each pair by itself, 0 for a pair that does not touch [N/m].
-    film : (positions, pairs) array or None
-        Stiffness of each pair's film [N/m]; None is dry.
-
-    Returns
-    -------
-    LoadShare
-        `stiffness` holds the sum of the secant ones, which is all that this model knows.
-
-    Raises
-    ------
-    LoadSharingError
-        For negative stiffness, or positions where no pair carries.
-
-    Examples
-    --------
-    >>> independent_pairs(1e4, [[6e8, 4e8], [5e8, 0.0]]).forces
-    array([[ 6000.,  4000.],
-           [10000.,     0.]])
-    """
-    teeth = np.asarray(stiffness, dtype=float)
-    films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
-    sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
-    carries = (teeth > 0.0) & (films > 0.0)
-    with Faults(LoadSharingError) as found:
-        if not (sound and np.isfinite(force) and force >= 0.0):
-            allowed = "must be finite and at least 0 (a film may be inf)"
-            found.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
-        if not np.all(carries.any(axis=-1)):
-            allowed = "must have a pair that carries at each position"
-            found.add("stiffness", "zero for every pair", allowed, "add pairs")
-    compliance = 1.0 / np.where(carries, teeth, 1.0) + 1.0 / np.where(carries, films, 1.0)
-    series = np.where(carries, 1.0 / compliance, 0.0)
-    total = series.sum(axis=-1)
-    forces = force * series / total[..., None]
-    return LoadShare(forces, np.asarray(force / total), np.asarray(total), series, 0)

@@ -86,7 +86,8 @@ def test_compliances_are_symmetric_and_free_ends_yield_more(bodies):
     rho = np.stack([rho1, PAIR.line_of_action - rho1])
     waves = pair_waves(bodies, rho, 12)[0]
     np.testing.assert_array_equal(waves, np.swapaxes(waves, 0, 1))
-    ends = pair_ends(bodies, rho, 12)[0].reshape(24, 24)
+    edges, width = np.linspace(-0.5, 0.5, 13) * PAIR.face_width, PAIR.face_width
+    ends = pair_ends(bodies, rho, (edges, edges), (width, width))[0].reshape(24, 24)
     np.testing.assert_allclose(ends, ends.T, atol=1e-12 * np.abs(ends).max())
     assert np.linalg.eigvalsh(ends).min() > -1e-6 * np.abs(ends).max()
 

@@ -1,0 +1,83 @@
+"""Compliance between cells of the face, position by position: among cells that may touch, by Cholesky's method."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from base import Array, Booleans, Integers
+from gears.load_coupling import Coupling
+
+__all__ = ["CellCoupling"]
+
+
+START = 0.1
+"""Part of an even share of the force with which a cell is taken in."""
+
+
+class CellCoupling(Coupling):
+    """Compliance between the cells of all pairs that may touch at each position.
+
+    Attributes
+    ----------
+    cells : tuple of (m,) arrays of int
+        Of the pairs that may touch at each position, among all n.
+    blocks : tuple of (m, m) arrays
+        Their compliance [m/N].
+    unknowns : int
+        n, pairs times cells.
+    """
+
+    apart = True
+
+    def __init__(self, cells: tuple[Integers, ...], blocks: tuple[Array, ...], unknowns: int) -> None:
+        self.cells, self.blocks, self.unknowns = cells, blocks, unknowns
+        self.start = START / unknowns
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(positions, n, n)."""
+        return len(self.blocks), self.unknowns, self.unknowns
+
+    @property
+    def finite(self) -> bool:
+        """Whether all numbers are finite."""
+        return all(bool(np.all(np.isfinite(block))) for block in self.blocks)
+
+    @property
+    def diagonal(self) -> Array:
+        """Deflection of each cell by its own unit force (positions, n) [m/N]; 1 where it cannot touch."""
+        found = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+            row[cells] = np.diagonal(block)
+        return found
+
+    def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
+        """As of ``gears.load_coupling.Coupling``; 0 where cells cannot touch."""
+        found = known.copy()
+        for at in zip(*np.nonzero(wanted), strict=True):
+            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
+            found[at][cells] = block @ forces[at][cells]
+        return found
+
+    def solved(
+        self, slope: Array, residual: Array, active: Booleans, wanted: Booleans
+    ) -> tuple[Array, Array, float]:
+        """As of ``gears.load_coupling.Coupling``."""
+        unit, response = np.zeros_like(residual), np.zeros_like(residual)
+        for at in zip(*np.nonzero(wanted), strict=True):
+            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
+            bears = np.flatnonzero(active[at][cells])
+            chosen = cells[bears]
+            jacobian = block[bears[:, None], bears]
+            jacobian.flat[:: len(bears) + 1] += slope[at][chosen]
+            sides = np.stack([np.ones(len(bears)), residual[at][chosen]], axis=-1)
+            unit[at][chosen], response[at][chosen] = _solve(jacobian, sides).T
+        return unit, response, 1.0
+
+
+def _solve(matrix: Array, sides: Array) -> Array:
+    """Solve by Cholesky's method; where cells are narrower than the contact the matrix may be indefinite."""
+    from scipy.linalg.lapack import dposv
+
+    _, found, failed = dposv(matrix.T, sides, lower=True)
+    return np.asarray(np.linalg.solve(matrix, sides) if failed else found)
