@@ -140,7 +140,7 @@ def mesh_cycle(
         base_pitch_difference=base_pitch_difference,
         face=face_setting(pair, alignment, cells, face_model),
     )
-    _check(given, torque, compliance, reference, film, plane)
+    _check(given, torque, compliance, reference, plane)
     watch = Stopwatch()
     bodies = (
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
@@ -190,15 +190,11 @@ def _check(
     torque: Array,
     compliance: Compliance | None,
     reference: str,
-    film: Film | None,
     plane: str,
 ) -> None:
     found = Faults()
-    if given.face is not None:
-        if film is not None:
-            found.add("film", "given", "must be None where the face has cells", "leave cells and leads out")
-        if (plane if compliance is None else compliance.plane) != "strain":
-            found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
+    if given.face is not None and (plane if compliance is None else compliance.plane) != "strain":
+        found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     found.choice("reference", reference, REFERENCES)
     if not torque.size:
         found.add("torque", "none", "must be at least one", "give torques in N m")

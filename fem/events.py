@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, SolverError
 from fem.bodies import Compliance
 from fem.edge_tables import EdgeTables
+from fem.face_share import yielding_over_face
 from fem.local_law import Film, film_yielding
 from fem.relieved_flanks import ends_of_flanks, starts_of_relief
 from fem.setting import Setting
@@ -152,7 +153,11 @@ class ContactProblem:
         if self.film is not None and self.film_yields:
             rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
             shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
-            added = film_yielding(self.film, rho1, turned / found.kappa, shares)
+            if found.face is None:
+                added = film_yielding(self.film, rho1, turned / found.kappa, shares)
+            else:
+                forces = found.face.forces[0, 0] / found.kappa[..., None]
+                added = yielding_over_face(self.film, rho1, forces, shares)
             secant = size / (size / secant + added) if size else secant
         if self.given.back:
             moved = -(self.given.pair.backlash + moved)

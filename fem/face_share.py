@@ -20,7 +20,7 @@ import numpy as np
 from base import Array, record
 from fem.cell_matrix import cell_coupling
 from fem.face_setting import FREE_ENDS, WALLS
-from fem.local_law import FilmLaw, PairLaws
+from fem.local_law import Film, FilmLaw, PairLaws, film_yielding
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fem.setting import Setting
     from gears import LoadShare
 
-__all__ = ["FaceShare", "face_load_factors", "share_over_face"]
+__all__ = ["FaceShare", "face_load_factors", "share_over_face", "yielding_over_face"]
 
 ENDS_ERROR = 0.1
 """Part of what free ends do that their coarse section leaves uncertain."""
@@ -195,3 +195,25 @@ def face_load_factors(forces: Array) -> Array:
     most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
     chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
     return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))
+
+
+def yielding_over_face(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
+    """What films of all cells yield beyond the transmission error (positions,) [m], see ``film_yielding``.
+
+    Parameters
+    ----------
+    film : Film
+        Of a whole face.
+    rho1 : (positions, pairs) array
+        Places [m]; nan where a pair is dry.
+    forces : (positions, pairs, cells) array
+        [N]
+    shares : (positions, pairs) array
+        Of the pairs, of the whole force.
+    """
+    positions, pairs, cells = forces.shape
+    whole = forces.sum(axis=-1, keepdims=True)
+    part = np.divide(forces, whole, out=np.zeros_like(forces), where=whole > 0.0)
+    flat = (positions, pairs * cells)
+    places = np.repeat(rho1, cells, axis=-1)
+    return film_yielding(film, places, cells * forces.reshape(flat), (shares[..., None] * part).reshape(flat))

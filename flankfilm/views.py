@@ -31,6 +31,7 @@ PICTURES: Mapping[str, str] = {
     "dynamics.spectra:Spectrum": "spectrum",
     "dynamics.run_ups:RunUp": "run_up",
     "flankfilm.coupling.cycle:MeshCycle": "curves",
+    "flankfilm.coupling.face_films:FaceFilms": "face_films",
     "flankfilm.coupling.along_path:FilmAlongPath": "curves",
     "flankfilm.coupling.losses_along_path:LossesAlongPath": "losses_along_path",
     "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
@@ -56,7 +57,7 @@ PICTURES: Mapping[str, str] = {
 OF_SPEEDS = ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map")
 """Pictures of what drives the motion and of its orders, in `flankfilm.figures.of_speeds`."""
 
-OF_FACE = ("loaded_contact", "face_loads")
+OF_FACE = ("loaded_contact", "face_loads", "face_films")
 """Pictures of what the face bears, in `flankfilm.figures.face`."""
 
 RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")

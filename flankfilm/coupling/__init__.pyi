@@ -10,6 +10,7 @@ from .dynamic_map import dynamic_map as dynamic_map
 from .excitation import ErrorSeries as ErrorSeries
 from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error
+from .face_films import FaceFilms as FaceFilms
 from .film_damping import FilmDamping as FilmDamping
 from .film_damping import film_damping as film_damping
 from .films import FilmModel as FilmModel
@@ -31,10 +32,10 @@ from .losses import mesh_losses as mesh_losses
 from .losses_along_path import LossesAlongPath as LossesAlongPath
 from .losses_record import LossBand as LossBand
 from .losses_record import MeshLosses as MeshLosses
-from .lubricated import LubricatedCycle as LubricatedCycle
 from .lubricated import film_along_path as film_along_path
 from .lubricated import lubricate as lubricate
 from .lubricated import lubricated_cycle as lubricated_cycle
+from .lubricated_record import LubricatedCycle as LubricatedCycle
 from .mesh_cycles import mesh_cycle as mesh_cycle
 from .mesh_table import MeshTable as MeshTable
 from .mesh_table import mesh_table as mesh_table

@@ -23,7 +23,8 @@ from base import (
 from base.results import EXACT
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import FilmModel, contacts_of, supply_of, touching
-from flankfilm.coupling.lubricated import SOLVED, LubricatedCycle
+from flankfilm.coupling.lubricated import SOLVED
+from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.oscillator import pair_scales
 from flankfilm.coupling.warned import warned_once
 

@@ -137,22 +137,36 @@ def touching(cycle: MeshCycle) -> tuple[Integers, Integers]:
 
 
 def contacts_of(
-    pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
+    pair: gears.GearPair,
+    cycle: MeshCycle,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    line_load: Array | None = None,
 ) -> tuple[Array, tuple[ehl.LineContact, ...]]:
     """Line contacts that the loaded pairs of a cycle make, with their places on the path [m].
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : MeshCycle
+    speed : float
+        Of the pinion [rad/s].
+    lubricant : ehl.Lubricant
+    line_load : ndarray, shape (positions, pairs), optional
+        Force per length of face that counts [N/m]; that of an even load unless given.
 
     Raises
     ------
     InputError
-        For gears with leads, whose load varies along the face.
+        For loads that vary along the face, unless it is said which counts.
     """
-    if not pair.straight:
-        remedy = "leave the leads out; fem.mesh_cycle knows them"
-        raise InputError.at("pair", "with leads", "must be straight along the face where films are", remedy)
+    if line_load is None:
+        _require_even(pair, cycle)
+        line_load = cycle.forces / pair.face_width
     position, number = touching(cycle)
     rho1 = cycle.rho1[position, number]
     path = pair.path_at(rho1)
-    load = cycle.forces[position, number] / pair.face_width
+    load = line_load[position, number]
     each = np.stack((load, path.entrainment(speed), path.radius), axis=1).tolist()
     contacts = tuple(
         ehl.LineContact(
@@ -161,6 +175,15 @@ def contacts_of(
         for w, u, r in each
     )
     return rho1, contacts
+
+
+def _require_even(pair: gears.GearPair, cycle: MeshCycle) -> None:
+    """Refuse loads that vary along the face."""
+    by = "with leads" if not pair.straight else "with cells of the face"
+    if not pair.straight or (cycle.contact is not None and cycle.contact.face is not None):
+        allowed = "must be loaded evenly along the face for these films"
+        remedy = "leave leads, alignment and cells out; lubricated_cycle by finite elements has films over the face"
+        raise InputError.at("pair", by, allowed, remedy)
 
 
 def with_light_ends(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 from gears.events import Sampled, arcs_alike, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.film_table import FilmTable
 
 POSITIONS = 120
 """Positions of curves; figures follow from arcs, whatever the positions."""
@@ -183,7 +186,7 @@ class LoadedTeeth:
     def cycle(
         self,
         positions: int,
-        film: FilmLaw | None = None,
+        film: FilmLaw | FilmTable | None = None,
         tolerance: float = 1e-3,
         varied: tuple[tuple[FilmLaw, float], ...] = (),
     ) -> MeshCycle:
@@ -193,7 +196,7 @@ class LoadedTeeth:
         ----------
         positions : int
             Number of intervals.
-        film : FilmLaw, optional
+        film : FilmLaw or FilmTable, optional
             Films in series with the pairs; dry without.
         tolerance : float
             Relative, of means, extremes and harmonics.
@@ -206,6 +209,7 @@ class LoadedTeeth:
             Where the loaded contact did not converge.
         """
         if (self.model, self.pairs) != ("fem", "coupled"):
+            assert film is None or isinstance(film, FilmLaw)  # closed forms know no cells of the face
             return self._by_single_pairs(positions, film, tolerance, varied)
         found = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting

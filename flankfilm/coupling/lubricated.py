@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, replace
-from typing import Any, Self, Unpack
+from dataclasses import dataclass, replace
+from typing import Any, Unpack
 
 import numpy as np
 
 import ehl
 import gears
-from base import Array, SolverError, Stopwatch, described, part, quantity, record, unclocked
-from base.results import EXACT, ITSELF
+from base import Array, SolverError, Stopwatch, unclocked
 from fem.local_law import film_yielding
-from flankfilm.coupling.along_path import FORMULA, FilmAlongPath, gathered
+from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.coupling.films import (
@@ -27,6 +25,8 @@ from flankfilm.coupling.films import (
     with_light_ends,
 )
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
+from flankfilm.coupling.lubricated_face import lubricate_face
+from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.resolution import Resolution
 from flankfilm.coupling.warned import warned_once
@@ -52,66 +52,8 @@ Changes are added as squares, so this is their mean. A smooth law is off by a th
 and a half (`FilmLaw.halves`); extremes lie where pairs come and go, where halving the step halves the error.
 """
 
-DIFFERENCE = "not estimated: the difference of two means that have errors"
-
 SOLVED = FilmModel()
 """Flooded films between smooth flanks, solved."""
-
-
-@record
-class LubricatedCycle(MeshCycle):
-    """Mesh cycle with the film in series in each pair, in agreement with the load share.
-
-    For starved films ``otherwise`` holds the mesh with the flooded film, and with the same starved films where what is
-    held at the inlet is the other of meniscus and layer, each at the forces of the films found.
-    """
-
-    headline = ("mean_secant_stiffness", "mean_stiffness", "thinnest_film")
-
-    _: KW_ONLY
-    least_film: Array = quantity(
-        "m",
-        "least film of each pair; nan where unloaded",
-        "position pair",
-        shown="um",
-        no_error="not estimated in single positions; thinnest_film has one where films are solved",
-    )
-    rounds: int = quantity("1", "times that films and load share were brought into agreement", no_error=EXACT)
-    mismatch: float = quantity("1", "last change of a pair's force over the whole force", no_error=ITSELF)
-    dry: MeshCycle = part("the cycle without film")
-    film: FilmAlongPath = part("film along the path, with the error of its own")
-    otherwise: Mapping[str, MeshCycle] = part(
-        "the mesh with other films, by name; empty unless films are starved"
-    )
-
-    def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
-        """Measure the deflections of this cycle, of the dry one and of those with other films against something else.
-
-        See `MeshCycle.against`.
-        """
-        measured = super().against(reference, bore_inertia)
-        others = {name: one.against(reference, bore_inertia) for name, one in self.otherwise.items()}
-        return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
-
-    @described("m", shown="um", error="thinnest_film_error", no_error=FORMULA)
-    def thinnest_film(self) -> float:
-        """Least film of all pairs along the path."""
-        return self.film.least_film
-
-    @property
-    def thinnest_film_error(self) -> float | None:
-        """Relative error of the least film; None by formula."""
-        return self.film.least_film_error
-
-    @described("1", shown="%", no_error=DIFFERENCE)
-    def secant_stiffness_change(self) -> float:
-        """What the film changes the mean secant stiffness by, relative."""
-        return self.mean_secant_stiffness / self.dry.mean_secant_stiffness - 1
-
-    @described("1", shown="%", no_error=DIFFERENCE)
-    def stiffness_change(self) -> float:
-        """What the film changes the mean tangent stiffness by, relative."""
-        return self.mean_stiffness / self.dry.mean_stiffness - 1
 
 
 def lubricated_cycle(
@@ -238,6 +180,8 @@ def lubricate(
     """
     with unclocked():
         ehl.solve  # noqa: B018 - loads the solver
+    if dry.contact is not None and dry.contact.face is not None:
+        return lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
     run = _Run(teeth, dry, speed, lubricant, resolution, model)
     agreed = run.agree(min(FILM_POSITIONS, dry.position.size))
     path, law = agreed.path, agreed.law

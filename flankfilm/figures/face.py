@@ -20,11 +20,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     import fem
+    from flankfilm import coupling
 
 FACE = "run a scene whose pair has a lead or an alignment"
 
 MAPS = ("line_load", "hertz_pressure")
 """Figures of the cells that are painted."""
+
+
+FILMS = ("line_load", "minimum_thickness")
+"""Figures of the cells' films that are painted."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +138,13 @@ def face_loads(found: fem.FaceLoads) -> Figure:
     return drawn
 
 
+def face_films(found: coupling.FaceFilms) -> Figure:
+    """Draw line load and least film over path and face."""
+    with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
+        _painted(panels, found, FILMS)
+    return drawn
+
+
 def loaded_contact(found: fem.MeshCycle) -> Figure:
     """Draw stiffness and transmission error, or what the face bears where it has cells."""
     if found.face is None:
@@ -155,7 +167,7 @@ def loaded_contact(found: fem.MeshCycle) -> Figure:
     return drawn
 
 
-def _painted(panels: Sequence[Axes], found: fem.FaceLoads, names: Sequence[str]) -> None:
+def _painted(panels: Sequence[Axes], found: fem.FaceLoads | coupling.FaceFilms, names: Sequence[str]) -> None:
     """Paint figures of the cells of a record, with the points of its pair's path."""
     travel, face = read_figure(found, "travel"), read_figure(found, "face_position")
     for axes, name in zip(panels, names, strict=True):

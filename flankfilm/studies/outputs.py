@@ -18,7 +18,7 @@ from base.results import figures
 from flankfilm.build import pinion_speed, pinion_torque
 from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.lubricated import LubricatedCycle
+from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.single_pairs import CLOSED_FORMS
 from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE

@@ -1,0 +1,225 @@
+r"""Films over the face: solved at some places of the path under some line loads, and carried to all others.
+
+Under a given oil a film is a function of its place on the path, which has radius and speeds, and of its line load.
+Cells of a face bear any of these loads at any place, thousands of them, and what they ask for is smooth in both: films
+are solved on a grid of places and of logarithms of loads, and the logarithms of their separation and thicknesses are
+interpolated by bicubic splines. The error is read from the films that every second place, and every second load, leave
+out.
+
+The film of a cell is that of a line contact. Oil that flows along the face is left out: between cells, where the
+pressure changes over the length that the load changes over, many half-widths; and at the ends of the face, where oil
+leaks over about a half-width and the film is thinner than is said here.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+import ehl
+import gears
+from base import Array, InputError, RangeWarning
+from flankfilm.coupling.films import FilmModel, PathFilms, Solved, films_of
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.cycle import MeshCycle
+
+PLACES = 9
+"""Places of the path at which films are solved."""
+
+LOADS = 21
+"""Line loads at each of them."""
+
+LIGHTEST = 2e-3
+"""Least of these loads over the greatest of the dry contact."""
+
+HEAVIEST = 1.2
+"""Greatest of them over that: films move load to where there is most of it."""
+
+LEFT_OUT = 0.25
+"""Part of what a grid twice as coarse misses that this one does: a sixteenth where both resolve the films.
+
+Central films have a knee where the spike passes.
+"""
+
+FIGURES = ("separation", "minimum_thickness", "central_thickness")
+
+
+@dataclass(frozen=True, eq=False)
+class FilmTable:
+    """Films over place and line load, as load sharing over pairs and cells takes them.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (places,)
+        Curvature radius of the pinion's flank, rising [m].
+    load : ndarray, shape (loads,)
+        Force per length of face, rising [N/m].
+    face_width : float
+        By which a whole face's force is its line load [m].
+    separation, minimum_thickness, central_thickness : ndarray, shape (places, loads)
+        Of the films [m].
+    film_error : float or None
+        Largest relative error of the films' thicknesses; None by formula.
+    """
+
+    rho1: Array
+    load: Array
+    face_width: float
+    separation: Array
+    minimum_thickness: Array
+    central_thickness: Array
+    film_error: float | None
+
+    def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
+        """Separation [m] and its slope [m/N] at places and under forces that load a whole face evenly.
+
+        Below the lightest load the law goes on along its tangent, above the heaviest along its power.
+
+        Parameters
+        ----------
+        rho1 : ndarray
+            Places [m]; NaN where no film is wanted: zero there.
+        forces : ndarray
+            Of the same shape [N].
+        """
+        load = np.maximum(forces / self.face_width, self.load[0])
+        log = np.log(load)
+        inside = np.minimum(log, np.log(self.load[-1]))
+        exponent = np.maximum(-self._of("separation", rho1, inside, 1), 0.0)
+        separation = np.exp(self._of("separation", rho1, inside) - exponent * (log - inside))
+        slope = -exponent * separation / (self.face_width * load)
+        lighter = np.minimum(forces - self.face_width * load, 0.0)
+        some = np.isfinite(rho1)
+        return np.where(some, separation + slope * lighter, 0.0), np.where(some, slope, 0.0)
+
+    def thickness(self, figure: str, rho1: Array, load: Array) -> Array:
+        """Thickness of films [m], of a name in `FIGURES`, at places under line loads [N/m].
+
+        NaN below the lightest load, where films are thicker than the thickest that is known.
+        """
+        known = np.isfinite(rho1) & (load >= self.load[0])
+        log = np.log(np.where(known, load, self.load[0]))
+        return np.where(known, np.exp(self._of(figure, rho1, log)), np.nan)
+
+    def corners(self, pair: gears.GearPair) -> Array:
+        """No positions: the law is smooth along the path."""
+        return np.zeros(0)
+
+    @cached_property
+    def error(self) -> float:
+        """Relative error of thicknesses and separation by the grid of places and loads."""
+        found = 0.0
+        for along in (0, 1):
+            coarse = self._every_second(along)
+            left = np.arange(1, self.separation.shape[along], 2)
+            rho1, log = np.meshgrid(self.rho1, np.log(self.load), indexing="ij")
+            for name in FIGURES:
+                off = coarse._of(name, rho1, log) - np.log(getattr(self, name))
+                found = max(found, LEFT_OUT * float(np.abs(np.take(off, left, axis=along)).max()))
+        return found
+
+    def _every_second(self, along: int) -> FilmTable:
+        """Table by every second place (0), or load (1)."""
+        kept = (slice(None, None, 2), slice(None)) if along == 0 else (slice(None), slice(None, None, 2))
+        grid = {name: getattr(self, name)[kept] for name in FIGURES}
+        return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
+
+    @cached_property
+    def _splines(self) -> dict[str, RectBivariateSpline]:
+        at = np.log(self.load)
+        return {
+            name: RectBivariateSpline(self.rho1, at, np.log(getattr(self, name)), s=0) for name in FIGURES
+        }
+
+    def _of(self, figure: str, rho1: Array, log: Array, slope: int = 0) -> Array:
+        """Logarithm of a figure, or its slope by that of the load; places beyond the first and last have theirs."""
+        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
+        return np.asarray(self._splines[figure].ev(place, log, dy=slope))
+
+
+def film_table(
+    pair: gears.GearPair,
+    dry: MeshCycle,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    model: FilmModel,
+    tolerance: float,
+) -> FilmTable:
+    """Solve films at places of the path, under the line loads that cells of the dry contact bear.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    dry : MeshCycle
+        With cells of the face.
+    speed : float
+        Of the pinion [rad/s].
+    lubricant : ehl.Lubricant
+    model : FilmModel
+        Films that follow from place and load alone: not behind a meniscus.
+    tolerance : float
+        Relative, of the films.
+
+    Raises
+    ------
+    InputError
+        For films that depend on more.
+    SolverError
+        Where a film has no solution.
+    """
+    _check(model)
+    assert dry.contact is not None
+    assert dry.contact.face is not None
+    greatest = dry.contact.face.greatest_line_load
+    loaded = dry.rho1[np.isfinite(dry.rho1) & (dry.forces > 0.0)]
+    half = 0.5 * pair.base_pitch / dry.position.size
+    ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
+    rho1 = np.linspace(*ends, PLACES)
+    load = np.geomspace(HEAVIEST * greatest, LIGHTEST * greatest, LOADS)
+    path = pair.path_at(rho1)
+    rows: list[tuple[Solved, ...]] = []
+    before: PathFilms | None = None
+    for place, u, r in zip(
+        rho1.tolist(), path.entrainment(speed).tolist(), path.radius.tolist(), strict=True
+    ):
+        contacts = tuple(
+            ehl.LineContact(
+                load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
+            )
+            for w in load.tolist()
+        )
+        with warnings.catch_warnings():
+            if rows:  # what the first place has warned of
+                warnings.simplefilter("ignore", RangeWarning)
+            before = films_of(model, np.full(LOADS, place), contacts, before, tolerance)
+        rows.append(before.films)
+
+    def each(figure: str) -> Array:
+        return np.array([[getattr(film, figure) for film in row[::-1]] for row in rows])
+
+    solved = model.name == "ehl"
+    return FilmTable(
+        rho1,
+        load[::-1],
+        pair.face_width,
+        each("separation"),
+        each("minimum_thickness"),
+        each("central_thickness"),
+        float(each("error").max()) if solved else None,
+    )
+
+
+def _check(model: FilmModel) -> None:
+    """Refuse films that follow from more than place and line load."""
+    if model.held == "meniscus":
+        allowed = "must not be a meniscus where the load varies along the face: it lies where each cell's load puts it"
+        raise InputError.at("film.supply", "a meniscus", allowed, "take flooded contacts or a layer of oil")
+    if model.definition is not None:
+        allowed = "must be left out where the load varies along the face: films there have their own slope by the load"
+        raise InputError.at("film.definition", repr(model.definition), allowed, "leave it out")

@@ -1,0 +1,206 @@
+"""Films over the face: the table against films, the even load, mirror, balance, light loads, what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ehl
+import fem
+from base import InputError, SolverError
+from fem.local_law import film_yielding
+from flankfilm import coupling
+from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, PlacedMeniscus, lubricate
+from flankfilm.coupling.film_table import HEAVIEST, LIGHTEST
+from flankfilm.coupling.films import contacts_of
+from flankfilm.coupling.resolution import resolution_of
+from gears import Alignment, Gear, GearPair, Lead
+
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)
+OIL = ehl.Lubricant(0.05, 19e-9, 870.0)
+SPEED, TORQUE, CELLS = 200.0, 100.0, 8
+FORMULA = FilmModel("dowson")
+SLOPE = Alignment(20e-6)
+Cycles = Callable[..., LubricatedCycle]
+
+
+@pytest.fixture(scope="module")
+def bodies() -> fem.Compliance:
+    return fem.compliance(PAIR, tolerance=0.02)
+
+
+@pytest.fixture(scope="module")
+def cycles(bodies) -> Cycles:
+    def lubricated(film=FORMULA, torque=TORQUE, pair=PAIR, positions=8, cells=CELLS, alignment=SLOPE):
+        flanks = Flanks(alignment=alignment, cells=cells, face_model="walls")
+        teeth = LoadedTeeth(pair, torque, compliance=replace(bodies, pair=pair), flanks=flanks)
+        dry = teeth.cycle(positions)
+        return lubricate(teeth, dry, SPEED, OIL, resolution_of(0.01), film, profiles=False)
+
+    return lubricated
+
+
+@pytest.fixture(scope="module")
+def solved(cycles) -> LubricatedCycle:
+    return cycles(FilmModel())
+
+
+def _film(rho1: float, load: float) -> ehl.Film:
+    path = PAIR.path_at(np.array([rho1]))
+    u, radius = float(path.entrainment(SPEED)[0]), float(path.radius[0])
+    return ehl.solve(ehl.LineContact(load, u, radius, PAIR.reduced_modulus, OIL), 1e-3)
+
+
+def test_the_table_is_what_films_are_between_its_places_and_loads(solved):
+    """Films solved by themselves, ten times as sharply, where the table has none: within what it says of itself."""
+    table, over = solved.over_face.table, solved.over_face
+    assert 0.0 < over.error < 0.01
+    heaviest = HEAVIEST * solved.dry.contact.face.greatest_line_load
+    assert table.load[[0, -1]] == pytest.approx([LIGHTEST * heaviest / HEAVIEST, heaviest])
+    chance = np.random.default_rng(1)
+    for _ in range(6):
+        rho1 = chance.uniform(table.rho1[0], table.rho1[-1])
+        load = np.exp(chance.uniform(*np.log(table.load[[0, -1]])))
+        at = np.array([rho1]), np.array([load])
+        film = _film(rho1, float(load))
+        assert table.thickness("minimum_thickness", *at) == pytest.approx(
+            film.minimum_thickness, rel=over.error
+        )
+        assert table.thickness("central_thickness", *at) == pytest.approx(
+            film.central_thickness, rel=over.error
+        )
+        separation, _ = table(at[0], at[1] * PAIR.face_width)
+        assert separation == pytest.approx(film.separation, rel=over.error)
+
+
+def test_the_law_slopes_as_it_falls_at_all_loads(solved):
+    """Below the lightest load and above the heaviest as well: Newton's method of the load share asks for it."""
+    table = solved.over_face.table
+    forces = PAIR.face_width * np.geomspace(0.1 * table.load[0], 3.0 * table.load[-1], 60)
+    rho1, step = np.full(60, PAIR.points.C), 1e-5 * forces
+    rise = (table(rho1, forces + step)[0] - table(rho1, forces - step)[0]) / (2.0 * step)
+    separation, slope = table(rho1, forces)
+    # curvature of the splines times the step, and both sides of the lightest and heaviest load
+    np.testing.assert_allclose(slope, rise, rtol=1e-3, atol=1e-9 * float(np.max(np.abs(slope))))
+    assert np.all(np.diff(separation) < 0.0)
+    assert np.all(np.isfinite(table(rho1[:1], np.zeros(1))[0]))
+    assert table(np.array([np.nan]), forces[:1]) == (0.0, 0.0)
+
+
+def test_an_even_load_has_the_films_of_the_plane(cycles, bodies):
+    """Cells between walls without alignment bear alike: mesh and films are those of a plane pair."""
+    even = cycles(alignment=Alignment())
+    teeth = LoadedTeeth(PAIR, TORQUE, compliance=bodies)
+    plane = lubricate(teeth, teeth.cycle(8), SPEED, OIL, resolution_of(0.01), FORMULA, profiles=False)
+    prop = np.abs(plane.transmission_error - plane.dry.transmission_error)  # what films prop the flanks apart
+    assert np.all(np.abs(even.transmission_error - plane.transmission_error) < 2e-3 * prop)
+    for kind in ("secant_stiffness", "stiffness"):
+        change, other = (getattr(one, kind) / getattr(one.dry, kind) - 1.0 for one in (even, plane))
+        np.testing.assert_allclose(change, other, rtol=0.02, atol=2e-5)
+    np.testing.assert_allclose(even.least_film, plane.least_film, rtol=2e-3)
+    assert even.over_face.side_flow == pytest.approx(0.0, abs=1e-9)
+
+
+def test_without_cells_nothing_has_changed(cycles, bodies):
+    teeth = LoadedTeeth(PAIR, TORQUE, compliance=bodies)
+    plane = lubricate(teeth, teeth.cycle(8), SPEED, OIL, resolution_of(0.01), FORMULA, profiles=False)
+    assert plane.over_face is None
+    assert plane.rounds > 1
+
+
+def test_films_are_thinnest_where_most_is_borne(solved):
+    over, film = solved.over_face, solved.film
+    face = solved.contact.face
+    np.testing.assert_array_equal(over.line_load, face.line_load)
+    width = PAIR.face_width / CELLS
+    np.testing.assert_allclose(over.line_load.sum(axis=-1) * width, solved.forces, rtol=1e-9, atol=1e-6)
+    assert over.least_film_place == over.face_position[0] < 0.0  # the end that the alignment closes
+    assert np.nanmin(solved.least_film) == over.least_film
+    # films of the most loaded cells, solved by themselves
+    both = over.error + film.error
+    assert over.least_film == pytest.approx(film.minimum_thickness.min(), rel=both)
+    assert film.load.max() == over.line_load.max() > 1.3 * solved.forces.max() / PAIR.face_width
+    assert over.greatest_film_pressure == pytest.approx(film.greatest_pressure, rel=0.01)
+    assert over.end_zone < 0.02 * PAIR.face_width
+    assert 0.0 < over.side_flow < 0.05
+    mean = coupling.FilmModel().stiffness
+    assert film.stiffness[mean].min() > 10.0 * solved.stiffness.max()
+
+
+def test_an_alignment_turned_round_mirrors_the_films(cycles):
+    one, other = (cycles(alignment=Alignment(turn * 20e-6)).over_face for turn in (1, -1))
+    np.testing.assert_allclose(one.minimum_thickness, other.minimum_thickness[..., ::-1], rtol=1e-8)
+
+
+def test_light_load_on_a_large_slope(cycles):
+    """Cells that carry nothing have no film; oil spreads the load over more cells than touch without it."""
+    light = cycles(torque=5.0, alignment=Alignment(60e-6), cells=16)
+    over, dry = light.over_face, light.dry.contact.face
+    assert dry.contact_pattern < 0.2
+    idle = over.line_load < over.lightest_load
+    assert idle.any()
+    np.testing.assert_array_equal(np.isnan(over.minimum_thickness), idle | np.isnan(over.hertz_pressure))
+    assert light.contact.face.contact_pattern >= dry.contact_pattern
+    assert np.all(light.transmission_error < light.dry.transmission_error)  # films prop the flanks apart
+    assert light.contact.face.greatest_line_load < dry.greatest_line_load
+    assert over.least_film == pytest.approx(light.film.minimum_thickness.min(), rel=0.01)
+
+
+def test_a_contact_that_ends_within_the_face(cycles):
+    crowned = replace(PAIR, pinion=Gear(teeth=20, lead=Lead(crowning=150e-6)))
+    over = cycles(pair=crowned, alignment=None, cells=16).over_face
+    np.testing.assert_allclose(over.minimum_thickness, over.minimum_thickness[..., ::-1], rtol=1e-6)
+    assert np.isnan(over.minimum_thickness[..., [0, -1]]).all()
+    assert abs(over.least_film_place) < PAIR.face_width / 16
+
+
+def test_the_secant_counts_what_films_of_cells_yield(cycles):
+    """An even load over cells yields what a whole face does."""
+    even = cycles(alignment=Alignment())
+    table = even.over_face.table
+    whole = film_yielding(table, even.rho1, even.forces, even.load_share)
+    force = PAIR.normal_force(TORQUE)
+    yielded = force / even.secant_stiffness - (force / even.contact.secant_stiffness)
+    np.testing.assert_allclose(yielded, whole, rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_arcs_with_films_over_the_face_have_the_curves(cycles):
+    """Means of the arcs are those of many positions, secants counted alike."""
+    found = cycles(positions=24)
+    assert found.mean_secant_stiffness == pytest.approx(found.secant_stiffness.mean(), rel=2e-3)
+    assert found.secant_stiffness_change < 0.0
+
+
+@pytest.mark.slow
+def test_a_layer_of_oil_and_roughness(cycles):
+    flooded = cycles(FilmModel(), positions=4)
+    thin = 0.4 * flooded.over_face.least_film
+    starved = cycles(FilmModel(supply=ehl.OilLayer(thin)), positions=4).over_face
+    assert np.nanmax(starved.minimum_thickness) < thin
+    ground = ehl.Roughness(deviation=0.3e-6, density=3.3e9, tip_radius=4e-5)
+    rough = cycles(FilmModel(roughness=ground), positions=4).over_face
+    assert rough.least_film > flooded.over_face.least_film  # asperities carry a share
+
+
+def test_what_is_refused(cycles, bodies):
+    for film, where in (
+        (FilmModel(supply=PlacedMeniscus(1.3)), "film.supply"),
+        (FilmModel(definition="tangent"), "film.definition"),
+    ):
+        with pytest.raises(InputError) as told:
+            cycles(film)
+        assert where in str(told.value)
+    flanks = Flanks(alignment=SLOPE, cells=CELLS, face_model="walls")
+    dry = LoadedTeeth(PAIR, TORQUE, compliance=bodies, flanks=flanks).cycle(4)
+    with pytest.raises(InputError, match="with cells of the face"):
+        contacts_of(PAIR, dry, SPEED, OIL)
+
+
+@pytest.mark.slow
+def test_films_that_reach_the_other_flanks_are_refused(cycles):
+    with pytest.raises(SolverError, match="more backlash"):
+        cycles(FilmModel(), torque=2.0, pair=PAIR.with_backlash(15e-6))
