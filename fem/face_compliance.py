@@ -15,10 +15,21 @@ from fem.solved_gear import Gears
 if TYPE_CHECKING:
     from fem.bodies import Compliance
 
-__all__ = ["pair_ends", "pair_waves"]
+__all__ = ["ends_of", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
 DIGITS = 12
 """Of lengths over the module, by which what is solved of a face is known."""
+
+
+def waves_of(meshed: MeshedShape, gears: Gears) -> FlankWaves:
+    """Answer of a gear to waves of load, solved where it is kept nowhere."""
+    return gears.record("waves", (meshed,), partial(flank_waves, meshed))
+
+
+def ends_of(meshed: MeshedShape, width: float, gears: Gears) -> FlankEnds:
+    """What free ends add to it over a face of some width in modules, solved where it is kept nowhere."""
+    long = float(f"{width:.{DIGITS}g}")
+    return gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
 
 
 def pair_waves(bodies: Compliance, rho: Array, cells: int) -> Array:
@@ -55,7 +66,7 @@ def gear_waves(bodies: Compliance, gear: int, rho: Array, wavenumber: Array) -> 
         k times the module.
     """
     meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
-    waves: FlankWaves = Gears().record("waves", (meshed,), partial(flank_waves, meshed))
+    waves = waves_of(meshed, Gears())
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
     diagonal = np.arange(n)
@@ -109,7 +120,7 @@ def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndsOverCells:
     long = float(f"{width:.{DIGITS}g}")
 
     def over() -> EndsOverCells:
-        whole: FlankEnds = gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
+        whole = ends_of(meshed, width, gears)
         # the face that was solved ends where the cells do, to the last bit
         return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
 

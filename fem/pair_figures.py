@@ -8,6 +8,7 @@ from base import Array, described
 from base.results import EXACT
 from fem.contact_candidates import ContactCandidates
 from fem.elasticity import reduced_modulus
+from fem.face_loads import FaceLoads
 from fem.opposite_flanks import OppositeFlanks
 from gears import GearPair, half_width, peak_pressure
 
@@ -33,6 +34,7 @@ class PairFigures:
     further_lever_loss: Array | float
     flank: str
     opposite: OppositeFlanks | None
+    face: FaceLoads | None
 
     @described("N", "position")
     def opposite_force(self) -> Array:
@@ -56,15 +58,16 @@ class PairFigures:
         return np.asarray(np.hypot(self.separating_force, across * np.cos(self.pair.working_pressure_angle)))
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
-        """Line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
+        """Greatest line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
         touching = np.isfinite(self.rho1) & (self.forces > 0)
         rho1, rho2 = self.flank_rho
-        load = np.where(touching, self.forces / self.pair.face_width, np.nan)
+        even = self.forces / self.pair.face_width
+        load = np.where(touching, even if self.face is None else self.face.line_load.max(axis=-1), np.nan)
         return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
 
     @described("Pa", "position pair", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
-        """Greatest Hertz pressure; nan where two flanks do not touch.
+        """Greatest Hertz pressure, over the face too; nan where two flanks do not touch.
 
         nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
         """
@@ -72,7 +75,7 @@ class PairFigures:
 
     @described("m", "position pair", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
-        """Half-width of the Hertz contact; nan where two flanks do not touch."""
+        """Half-width of the Hertz contact, the greatest over the face; nan where two flanks do not touch."""
         return half_width(*self._loaded_radius())
 
     def surface_speeds(self, speed: float = 1.0) -> Array:

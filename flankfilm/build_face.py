@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypedDict
 
 import gears
@@ -15,7 +16,7 @@ from flankfilm.scene.ground import in_keys
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
 
-__all__ = ["face", "faults_of_face", "varies_by"]
+__all__ = ["even_along_face", "face", "faults_of_face", "varies_by"]
 
 EVEN = {
     "film": "films are of loads that are even along it",
@@ -41,6 +42,13 @@ def face(scene: Scene) -> FaceOptions:
         return {}
     alignment = gears.Alignment(**section.si())
     return {"alignment": alignment, "cells": section.cells, "face_model": section.face_model}
+
+
+def even_along_face(pair: gears.GearPair) -> gears.GearPair:
+    """The pair without leads."""
+    return replace(
+        pair, pinion=replace(pair.pinion, lead=gears.Lead()), wheel=replace(pair.wheel, lead=gears.Lead())
+    )
 
 
 def varies_by(scene: Scene) -> list[str]:

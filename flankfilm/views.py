@@ -36,6 +36,7 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.losses_along_path:LossesAlongPath": "losses_along_path",
     "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
     "flankfilm.coupling.loads:TorqueCurves": "curves",
+    "flankfilm.coupling.face_models:FaceLoadModels": "face_models",
     "flankfilm.coupling.film_damping:FilmDamping": "curves",
     "flankfilm.coupling.passage:PassageFilm": "curves",
     "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",
@@ -57,7 +58,7 @@ PICTURES: Mapping[str, str] = {
 OF_SPEEDS = ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map")
 """Pictures of what drives the motion and of its orders, in `flankfilm.figures.of_speeds`."""
 
-OF_FACE = ("loaded_contact", "face_loads", "face_films")
+OF_FACE = ("loaded_contact", "face_loads", "face_films", "face_models")
 """Pictures of what the face bears, in `flankfilm.figures.face`."""
 
 RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")

@@ -11,6 +11,8 @@ from .excitation import ErrorSeries as ErrorSeries
 from .excitation import error_series as error_series
 from .excitation import unloaded_error as unloaded_error
 from .face_films import FaceFilms as FaceFilms
+from .face_models import FaceLoadModels as FaceLoadModels
+from .face_models import face_load_models as face_load_models
 from .film_damping import FilmDamping as FilmDamping
 from .film_damping import film_damping as film_damping
 from .films import FilmModel as FilmModel

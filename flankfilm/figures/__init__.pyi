@@ -7,6 +7,7 @@ from .excitation import excitation as excitation
 from .excitation import spectrum as spectrum
 from .face import face_load_factor as face_load_factor
 from .face import flank_map as flank_map
+from .face import line_load_models as line_load_models
 from .film import film_along_path as film_along_path
 from .film import film_changes as film_changes
 from .film import film_families as film_families

@@ -10,9 +10,10 @@ import numpy as np
 
 from base import Array
 from flankfilm.figures.of_records import curves
+from flankfilm.figures.panels import curves as family
 from flankfilm.figures.panels import mark_path, over_path, over_two_pitches
 from flankfilm.figures.reading import Reading, need, read, read_figure
-from flankfilm.figures.style import Style, colours, sheet
+from flankfilm.figures.style import Style, colours, from_zero, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,6 +132,21 @@ def face_load_factor(results: xr.Dataset, *, prefix: str = "dry_face", style: St
     return drawn
 
 
+def line_load_models(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the line load over the face of the pair at the pitch point, by several models.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run whose pair has a lead or an alignment.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    face, load, model = (f"face_models_{name}" for name in ("face_position", "line_load", "model"))
+    need(results, FACE, face, load, model)
+    return _by_models(read(results, face), read(results, load), tuple(map(str, results[model].values)), style)
+
+
 def face_loads(found: fem.FaceLoads) -> Figure:
     """Draw line load and Hertz pressure over path and face."""
     with sheet(None, len(MAPS), height=2.3 * len(MAPS), legend=0) as (drawn, panels):
@@ -164,6 +180,25 @@ def loaded_contact(found: fem.MeshCycle) -> Figure:
         panels[1].sharex(panels[2])
         panels[1].tick_params(labelbottom=False)
         panels[1].set_xlabel("")
+    return drawn
+
+
+def face_models(found: coupling.FaceLoadModels) -> Figure:
+    """Draw the line load over the face of a comparison of models."""
+    return _by_models(read_figure(found, "face_position"), read_figure(found, "line_load"), found.model, None)
+
+
+def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Style | None) -> Figure:
+    """Curve of each model that has an answer."""
+    known = {
+        label: Reading(values, load.meaning, load.unit)
+        for label, values in zip(labels, load.values, strict=True)
+        if np.isfinite(values).all()
+    }
+    with sheet(style, height=3.0, legend=4) as (drawn, (axes,)):
+        family(axes, face.values, known, "line load at the pitch point")
+        axes.set_xlabel("place on the face [mm]")
+        from_zero(axes)
     return drawn
 
 

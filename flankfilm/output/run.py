@@ -82,6 +82,7 @@ RECORDS = {
     "single_pair": "closed forms",
     "dry": "dry cycle",
     "reference": "references",
+    "face_models": "load over the face",
     "damping": "film damping",
     "torque": "torques",
     "pair": "pair",
@@ -98,6 +99,12 @@ TABLES: Mapping[str, Table] = {
     "contacts_dry": Table(
         "dry", "hertz_pressure", ("position", "forces", "hertz_pressure", "half_width", "sliding")
     ),
+    "face_load_dry": Table(
+        "dry_face",
+        "line_load",
+        ("travel", "face_position", "line_load", "hertz_pressure", "face_load_factor"),
+    ),
+    "face_models": Table("face_models", "line_load", ("face_position", "model", "line_load")),
     "torques": Table("torque", "torque", axis="torque"),
     "revolution": Table(
         "revolution",
@@ -200,6 +207,8 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
     if (dry := values.get("dry cycle")) is not None and dry.contact is not None:
         yield of_record("dry", dry.contact, CONTACTS)
         yield of_quantities("dry", _sliding(dry.contact, speed))
+        if dry.contact.face is not None:
+            yield of_record("dry_face", dry.contact.face)
     if (revolution := values.get("revolution")) is not None:
         # curves alone: what follows from arcs is not looked for over a revolution
         known = [name for name in figures(type(revolution)) if name not in vars(MeshFigures)]

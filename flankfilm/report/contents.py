@@ -11,6 +11,7 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.figures.reading import read_figure
 from flankfilm.report import (
     excitation_parts,
+    face_parts,
     film_parts,
     losses_parts,
     mesh_parts,
@@ -25,6 +26,7 @@ from flankfilm.report.text import counted, percent, seconds
 if TYPE_CHECKING:
     import xarray as xr
 
+    import fem
     from flankfilm.coupling import LubricatedCycle
     from flankfilm.results import Results
 
@@ -69,6 +71,8 @@ def headlines(results: Results) -> list[Headline]:
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
     if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
         shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
+    if (bears := _over_face(results)) is not None:
+        shown += face_parts.headlines(bears)
     for name, numbers in HEADLINES.items():
         if (found := values.get(name)) is not None:
             shown += numbers(found)
@@ -102,6 +106,12 @@ def final_cycle(results: Results) -> MeshCycle | None:
     """Return the mesh cycle with the film where there is one, else the dry one."""
     found: MeshCycle | None = results.values.get("film", results.values.get("dry cycle"))
     return found
+
+
+def _over_face(results: Results) -> fem.FaceLoads | None:
+    """Line loads over the face of the dry cycle; None where they are even."""
+    dry: MeshCycle | None = results.values.get("dry cycle")
+    return None if dry is None or dry.contact is None else dry.contact.face
 
 
 def _film_failed(results: Results) -> bool:
@@ -158,6 +168,8 @@ def _result_parts(results: Results) -> list[Part]:
             parts.append(mesh_parts.stiffness(values.get("closed forms"), cycles, notes, width, data))
             if (references := values.get("references")) is not None:
                 parts.append(mesh_parts.references(references, width))
+    if pair is not None and (bears := _over_face(results)) is not None:
+        parts.append(face_parts.face(bears, values.get("load over the face"), data))
     if film is not None:
         parts.append(film_parts.film(film, data, results.scene.tolerance))
     if (lost := values.get("losses")) is not None:

@@ -11,9 +11,10 @@ from typing import Any, TypeVar
 
 import fem
 import gears
+from fem.face_setting import FREE_ENDS
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
-from flankfilm.build_face import face
+from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
@@ -112,6 +113,19 @@ def COMPLIANCE(run: Engine) -> fem.Compliance:
     return replace(run[BODIES], pair=run[PAIR])
 
 
+@stage(
+    "gears along the face",
+    "gears along the face, solved once and kept",
+    "alignment",
+    COMPLIANCE,
+    kept="gears meshes fem",
+    by_parts=True,
+)
+def FACE_GEARS(run: Engine) -> fem.FaceGears | None:
+    """How both gears answer loads that vary along the face; with free ends this takes longer than all else."""
+    return fem.face_gears(run[COMPLIANCE], face(run.scene).get("face_model", FREE_ENDS), run.parts)
+
+
 def loaded_teeth(
     run: Engine, *, by_elements: bool = False, every_tooth: bool = False
 ) -> coupling.LoadedTeeth:
@@ -128,6 +142,8 @@ def loaded_teeth(
         **face(scene),
     )
     compliance = run[COMPLIANCE] if model == "fem" else None
+    if compliance is not None and varies_by(scene):
+        _ = run[FACE_GEARS]  # contacts find them in the process
     return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)
 
 
@@ -140,12 +156,13 @@ def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
 
 @stage("verification", "closed forms against finite elements", TEETH, COMPLIANCE)
 def VERIFICATION(run: Engine) -> coupling.Verification:
-    """Every closed form beside finite elements."""
-    beyond = run.scene.stiffness.contact_beyond_path
-    return coupling.verification_of(run[PAIR], pinion_torque(run.scene), run[COMPLIANCE], beyond)
+    """Every closed form beside finite elements, of loads that are even along the face."""
+    beyond, pair = run.scene.stiffness.contact_beyond_path, even_along_face(run[PAIR])
+    compliance = replace(run[COMPLIANCE], pair=pair)
+    return coupling.verification_of(pair, pinion_torque(run.scene), compliance, beyond)
 
 
-@stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, settings=_TEETH_DECIDED)
+@stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, FACE_GEARS, settings=_TEETH_DECIDED)
 def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness without film, its figures by arcs between events."""
     asked = run[PLAN].resolution
@@ -162,14 +179,14 @@ def REFERENCES(run: Engine) -> coupling.StiffnessReferences | None:
     return coupling.stiffness_references(run[PAIR], cycle, run[COMPLIANCE], extra)
 
 
-@stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, DRY_CYCLE)
+@stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, FACE_GEARS, DRY_CYCLE)
 def TORQUES(run: Engine) -> coupling.TorqueCurves:
     """Mesh cycles at the scene's torques from one compliance."""
     torques = run.scene.operating.torques_Nm if run.scene.operating else ()
     return coupling.torque_curves(loaded_teeth(run, by_elements=True), torques, run[DRY_CYCLE].position.size)
 
 
-@stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE)
+@stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE, FACE_GEARS)
 def REVOLUTION(run: Engine) -> fem.MeshCycle:
     """Mesh cycle tooth by tooth, with the deviations of each."""
     operating = run.scene.operating

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from flankfilm.build_face import varies_by
 from flankfilm.scene import Scene, needs
 from flankfilm.scene.dynamics import BY_FILM
 from flankfilm.stages import catalogue as of
@@ -12,6 +13,7 @@ from flankfilm.stages import losses, motion
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.face import FACE_MODELS
 from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
 
 
@@ -28,7 +30,10 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
         yield of.CLOSED_FORMS
     if wants & {"stiffness", "film"} and not given:
-        yield from (of.PLAN, of.DRY_CYCLE, of.REFERENCES)
+        over_face = bool(varies_by(scene))
+        yield from (of.PLAN, *((of.FACE_GEARS,) if over_face else ()), of.DRY_CYCLE, of.REFERENCES)
+        if over_face:
+            yield FACE_MODELS
         if wants & {"closed-forms", "report"}:
             yield of.OTHER_CYCLES
         if scene.film.model != "none" or "film" in wants:

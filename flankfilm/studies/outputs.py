@@ -25,6 +25,7 @@ from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.variables import sentence
 from flankfilm.stages.catalogue import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.stages.engine import Engine
+from flankfilm.studies.face_outputs import FACE_OUTPUTS
 from flankfilm.studies.loss_outputs import LOSS_OUTPUTS
 from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
 from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
@@ -260,6 +261,7 @@ OUTPUTS: Mapping[str, Output] = dict(
             "film",
             in_result(FILM, attrgetter("film.error")),
         ),
+        *FACE_OUTPUTS,
         *LOSS_OUTPUTS,
         *_differences(),
         *MOTION_OUTPUTS,

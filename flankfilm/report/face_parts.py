@@ -1,0 +1,134 @@
+"""Section of the report about the load over the face."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.coupling.face_models import LABELS
+from flankfilm.figures.reading import read_figure
+from flankfilm.report.page import Headline, Part, Table, pictures, said
+from flankfilm.report.text import number, percent, plus_minus
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    import fem
+    from flankfilm.coupling import FaceLoadModels
+
+GREATEST = "greatest face-load factor"
+
+
+def face(found: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
+    """Flank maps, the face-load factor along the path, and other models beside it."""
+    drawn = pictures(results, "flank_map", "face_load_factor", model=LABELS[found.setting.model])
+    tables, notes = [_bears(found)], [said("face")]
+    if models is not None:
+        drawn += pictures(results, "line_load_models")
+        tables.append(_models(models))
+        notes += _failing(models)
+    return Part("face", "Load over the face", (_made_of(found),), drawn, tuple(tables), tuple(notes))
+
+
+def headlines(found: fem.FaceLoads) -> list[Headline]:
+    """Numbers for the page's head."""
+    load = read_figure(found, "greatest_line_load")
+    factor = number(found.greatest_face_load_factor)
+    note = f"{plus_minus(found.error)}; {LABELS[found.setting.model]}, {found.setting.cells} cells"
+    return [
+        Headline(GREATEST, factor, note),
+        Headline(load.meaning, number(float(load.values)), plus_minus(found.error), load.unit),
+    ]
+
+
+def _made_of(found: fem.FaceLoads) -> str:
+    """What makes the load vary."""
+    setting, parts = found.setting, []
+    for name, lead in zip(("pinion", "wheel"), setting.leads, strict=True):
+        for what, value in (
+            ("crowning", lead.crowning),
+            ("lead slope", lead.slope),
+            ("end relief", lead.end_relief),
+        ):
+            if value:
+                parts.append(f"{what} of the {name} {number(1e6 * value)} µm")
+    for plane, value in (("in", setting.alignment.in_plane), ("across", setting.alignment.out_of_plane)):
+        if value:
+            parts.append(f"axes {number(1e6 * value)} µm out of parallel {plane} the plane of action")
+    made = "; ".join(parts) or "straight leads and parallel axes: what varies is by the ends alone"
+    return said("face_made_of", made=made, cells=setting.cells, model=LABELS[setting.model])
+
+
+def _bears(found: fem.FaceLoads) -> Table:
+    """Greatest values over path and face, and the contact pattern."""
+    return Table(("over path and face", "value"), tuple(_rows(found)))
+
+
+def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
+    off, factor = plus_minus(found.error), found.face_load_factor
+    yield GREATEST, f"{number(found.greatest_face_load_factor)} {off}"
+    yield "mean of the face-load factor over the cycle", f"{number(float(factor.mean()))} {off}"
+    load = read_figure(found, "greatest_line_load")
+    position, _, cell = np.unravel_index(np.argmax(found.line_load), found.line_load.shape)
+    yield f"{load.meaning}", f"{number(float(load.values))} {load.unit} {off}"
+    at = f"{number(1e3 * float(found.face_position[cell]), 3)} mm"
+    yield "its place on the face, from the middle", at
+    pressure = read_figure(found, "hertz_pressure")
+    yield f"greatest {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
+    yield "contact pattern: part of the face that is touched", percent(found.contact_pattern, 3)
+    least = 1e-3 * float(found.line_load[position].sum(axis=0).min())
+    yield "least line load at that position", f"{number(least)} N/mm"
+
+
+def _models(models: FaceLoadModels) -> Table:
+    """Factors by every model, and how far its line load is from the first one's."""
+    columns = zip(
+        models.model,
+        models.face_load_factor,
+        models.face_load_factor_error,
+        models.pitch_point_factor,
+        1e-3 * models.greatest_line_load,
+        models.line_load_difference,
+        strict=True,
+    )
+    rows = tuple(
+        (
+            label,
+            f"{number(whole)} {plus_minus(error)}" if np.isfinite(error) else number(whole),
+            number(at_c),
+            number(load),
+            percent(apart) if apart else "-",
+        )
+        for label, whole, error, at_c, load, apart in columns
+    )
+    heads = (
+        "model",
+        "greatest face-load factor",
+        "at the pitch point",
+        "greatest line load [N/mm]",
+        "line load differs from the first, root mean square",
+    )
+    return Table(
+        heads,
+        rows,
+        "Behind ± stands the numerical error; how far slices and ISO 6336-1 err is not known to them.",
+    )
+
+
+def _failing(models: FaceLoadModels) -> Iterator[str]:
+    """Where slices and ISO 6336-1 fail, in numbers."""
+    at_c = dict(zip(models.model, models.pitch_point_factor, strict=True))
+    first, (slices, iso) = models.model[0], (LABELS["slices"], models.model[-1])
+    if first != slices:
+        yield said("face_slices", off=_signed(at_c[slices] / at_c[first] - 1.0), first=first)
+    if models.iso_fault:
+        yield f"ISO 6336-1 has no answer: {models.iso_fault}"
+    else:
+        off = _signed(at_c[iso] / at_c[first] - 1.0)
+        yield said("face_iso", off=off, first=first, misalignment=number(1e6 * abs(models.misalignment), 3))
+
+
+def _signed(part: float) -> str:
+    return f"{100 * part:+.1f} %"

@@ -1,0 +1,76 @@
+"""What a study can ask of a row whose load varies along the face; nan where it is even."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import fem
+from base import Figure
+from base.results import figures
+from flankfilm.build_face import varies_by
+from flankfilm.coupling.face_models import LABELS, FaceLoadModels
+from flankfilm.stages.catalogue import DRY_CYCLE
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.face import FACE_MODELS
+from flankfilm.studies.output import Named, Take, output_of
+
+EVEN = "{}; nan where the load is even along the face"
+
+
+def _of_face(name: str, figure: str, take: Take = float, said: str = EVEN) -> Named:
+    """Figure of the line loads over the face."""
+
+    def value(engine: Engine) -> Any:
+        contact = engine[DRY_CYCLE].contact
+        found = None if contact is None else contact.face
+        return None if found is None else take(getattr(found, figure))
+
+    return output_of(name, figures(fem.FaceLoads)[figure], "stiffness", value, said)
+
+
+def _by_model(name: str, about: Figure, value: Take) -> Named:
+    """Figure of the comparison with other models."""
+
+    def of(engine: Engine) -> Any:
+        return value(engine[FACE_MODELS]) if varies_by(engine.scene) else None
+
+    return output_of(name, about, "stiffness", of)
+
+
+def _factor_of(model: str) -> Take:
+    """Factor at the pitch point by a model."""
+    return lambda found: dict(zip(found.model, found.pitch_point_factor, strict=True))[model]
+
+
+_AT_C = figures(FaceLoadModels)["pitch_point_factor"].meaning
+
+FACE_OUTPUTS: tuple[Named, ...] = (
+    _of_face("face_load_factor", "greatest_face_load_factor"),
+    _of_face("greatest_line_load", "greatest_line_load"),
+    _of_face(
+        "face_pressure",
+        "hertz_pressure",
+        np.nanmax,
+        "greatest Hertz pressure; nan where even",
+    ),
+    _of_face("contact_pattern", "contact_pattern"),
+    _of_face("face_load_factor_error", "error"),
+    _by_model(
+        "face_load_factor_at_C",
+        Figure("1", f"{_AT_C}, nan where even"),
+        lambda found: found.pitch_point_factor[0],
+    ),
+    _by_model(
+        "slices_face_load_factor",
+        Figure("1", f"{_AT_C} by independent slices, nan where even"),
+        _factor_of(LABELS["slices"]),
+    ),
+    _by_model(
+        "iso_face_load_factor",
+        Figure("1", "face-load factor by ISO 6336-1, method C, nan where even"),
+        lambda found: found.pitch_point_factor[-1],
+    ),
+)
+"""Outputs by name."""
