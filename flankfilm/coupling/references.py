@@ -29,7 +29,7 @@ PARTS: Mapping[str, str] = {
     "coupling": "coupling of teeth through the bodies",
     "windup": "wind-up of the hubs",
     "support": "supports",
-    "rest": "gaps, tip edges and contacts that move",
+    "rest": "gaps, tip edges, contacts that move and loads that vary along the face",
 }
 """Parts of a deflection, in words."""
 

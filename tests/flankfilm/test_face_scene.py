@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
 import pytest
 
 from base import InputError
+from fem import forget_gears
+from flankfilm import figures
 from flankfilm.beforehand import refuse
 from flankfilm.build import gear_pair
-from flankfilm.build_face import face, varies_by
+from flankfilm.build_face import even_along_face, face, varies_by
+from flankfilm.cache import Cache
+from flankfilm.coupling.face_models import _linear
+from flankfilm.output.run import results_dataset, results_tables
+from flankfilm.report import face_parts
 from flankfilm.scene import parse_scene
 from flankfilm.scene.plain_gears import plain_flanks
-from gears import Alignment, Lead
+from flankfilm.stages.catalogue import DRY_CYCLE, FACE_GEARS, PAIR
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.face import FACE_MODELS
+from flankfilm.stages.goals import goals
+from flankfilm.studies.outputs import OUTPUTS
+from gears import Alignment, Lead, closed_form
 from tests.flankfilm.scenes import ishikawa
 
 SCENE = ishikawa("Face", "stiffness").replace('model = "ishikawa"\npairs = "independent"\n', "")
@@ -79,3 +95,122 @@ def test_what_is_of_even_loads_is_refused_at_once_before_anything_is_computed():
         "film.model = 'ehl'",
     ]
     assert all("by [alignment]" in one and "or drop [alignment]" in one for one in found)
+
+
+QUICK = (
+    LEADS.replace("teeth = 36", "teeth = 20")
+    .replace("teeth = 40", "teeth = 30")
+    .replace("width_mm = 40", "width_mm = 20")
+    + '[alignment]\nin_plane_um = 26\ncells = 8\nface_model = "slices"\n'
+).replace("Nm = 600", "Nm = 100")
+
+
+@pytest.fixture(scope="module")
+def ran() -> Engine:
+    """Slices and walls, which take a second."""
+    engine = Engine(parse_scene(QUICK), Cache(None))
+    for stage in (PAIR, DRY_CYCLE, FACE_MODELS):
+        engine[stage]
+    return engine
+
+
+def test_only_an_uneven_load_asks_for_the_face():
+    names = {stage.name for stage in goals(parse_scene(QUICK))}
+    assert {"gears along the face", "load over the face"} <= names
+    assert not {"gears along the face", "load over the face"} & {s.name for s in goals(parse_scene(SCENE))}
+    pair = gear_pair(parse_scene(LEADS))
+    assert even_along_face(pair) == gear_pair(parse_scene(SCENE))
+
+
+def test_the_cycle_has_the_scenes_cells_and_leads(ran):
+    found = ran[DRY_CYCLE].contact.face
+    assert found.setting.cells == 8
+    assert found.setting.model == "slices"
+    assert found.setting.leads == (ran[PAIR].pinion.lead, ran[PAIR].wheel.lead)
+    # the load of the cells is that of the pairs, and the end that the axes open bears less
+    np.testing.assert_allclose(found.line_load.mean(axis=-1) * 20e-3, ran[DRY_CYCLE].forces, rtol=1e-9)
+    assert found.line_load[..., 0].sum() > 1.2 * found.line_load[..., -1].sum()
+    # the greatest pressure of a pair is that of its cells
+    contact = ran[DRY_CYCLE].contact
+    np.testing.assert_allclose(contact.hertz_pressure, found.hertz_pressure.max(axis=-1), rtol=1e-12)
+
+
+def test_other_models_beside_it(ran):
+    found, pair = ran[FACE_MODELS], ran[PAIR]
+    assert found.model == ("independent slices", "between walls", "ISO 6336-1, method C")
+    assert found.misalignment == pytest.approx(20e-6)  # 26 less the slope of 6
+    iso = closed_form.iso6336_face_load(pair, 100.0, 20e-6).K_Hbeta
+    assert found.pitch_point_factor[-1] == found.face_load_factor[-1] == pytest.approx(iso)
+    assert found.line_load_difference[0] == 0.0
+    assert found.pitch_point_factor[1] > found.pitch_point_factor[0]  # slices bear too evenly
+    # all have the load of the pair at the pitch point
+    np.testing.assert_allclose(found.line_load[:2].mean(axis=1), found.line_load[0].mean(), rtol=0.01)
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.3, 2.0, 3.7])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_line_of_iso_has_its_factor_and_its_mean(factor: float, side: float):
+    x = (np.arange(20_000) + 0.5) / 20_000 - 0.5
+    load = _linear(443.0, factor, side, x)
+    assert load.mean() == pytest.approx(443.0, rel=1e-6)
+    assert load.max() == pytest.approx(factor * 443.0, rel=1e-3)
+    if factor > 1.0:
+        assert (x[np.argmax(load)] > 0.0) == (side > 0.0)
+
+
+def test_files_and_pictures_of_the_face(ran):
+    values: Mapping[str, Any] = {stage.name: ran[stage] for stage in (PAIR, DRY_CYCLE, FACE_MODELS)}
+    data = results_dataset(ran.scene, values)
+    face_loads = ran[DRY_CYCLE].contact.face
+    assert float(data["dry_face_greatest_face_load_factor"]) == face_loads.greatest_face_load_factor
+    assert data["dry_face_face_load_factor"].attrs["error"] == face_loads.error
+    assert (
+        data["face_models_face_load_factor"].attrs["error_variable"] == "face_models_face_load_factor_error"
+    )
+    assert data["dry_face_line_load"].sizes["dry_face_cell"] == 8
+    rows = results_tables(data)["face_load_dry"]
+    assert rows["line_load_N_per_mm_pair_1"].size == 120 * 8
+    for draw in (figures.flank_map, figures.face_load_factor, figures.line_load_models):
+        assert all("[" in axes.get_xlabel() + axes.get_ylabel() for axes in draw(data).axes)
+    curves = figures.line_load_models(data).axes[0].lines
+    np.testing.assert_allclose(curves[1].get_ydata(), 1e-3 * ran[FACE_MODELS].line_load[1])
+    part = face_parts.face(face_loads, ran[FACE_MODELS], data)
+    assert "crowning of the pinion 10 µm" in part.paragraphs[0]
+    assert "axes 26 µm out of parallel in the plane of action" in part.paragraphs[0]
+    assert [row[0] for row in part.tables[1].rows] == list(ran[FACE_MODELS].model)
+    assert len(part.figures) == 3
+    assert "20 µm of slopes" in part.notes[-1]
+    head = {one.name: one.note for one in face_parts.headlines(face_loads)}
+    assert "slices, 8 cells" in head["greatest face-load factor"]
+
+
+def test_outputs_of_studies_are_those_of_the_face(ran):
+    loads, models = ran[DRY_CYCLE].contact.face, ran[FACE_MODELS]
+    expected = {
+        "face_load_factor": loads.greatest_face_load_factor,
+        "greatest_line_load_N_per_mm": 1e-3 * loads.greatest_line_load,
+        "face_pressure_MPa": 1e-6 * np.nanmax(loads.hertz_pressure),
+        "contact_pattern": loads.contact_pattern,
+        "face_load_factor_error": loads.error,
+        "face_load_factor_at_C": models.pitch_point_factor[0],
+        "slices_face_load_factor": models.pitch_point_factor[0],
+        "iso_face_load_factor": models.pitch_point_factor[-1],
+    }
+    assert {name: OUTPUTS[name].value(ran) for name in expected} == pytest.approx(expected, rel=1e-12)
+    even = Engine(parse_scene(ishikawa("Even", "stiffness")), Cache(None))
+    assert all(np.isnan(OUTPUTS[name].value(even)) for name in expected)
+
+
+def test_gears_along_the_face_are_announced_once_and_kept(tmp_path: Path):
+    scene = parse_scene(QUICK.replace('"slices"', '"walls"'))
+
+    def told() -> list[str]:
+        forget_gears()
+        titles: list[str] = []
+        engine = Engine(scene, Cache(tmp_path), lambda stage: titles.append(stage.title))
+        assert engine[FACE_GEARS].ends is None
+        return titles
+
+    line = "gears along the face, solved once and kept"
+    assert line in told()
+    assert line not in told()
