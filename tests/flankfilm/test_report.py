@@ -83,7 +83,7 @@ OF_OTHERS = {"optimum", "optimum_map", "study", "verification"}
 ELSEWHERE = {
     "Frame", "animate_cycle", "film_families", "losses_along_path", "teeth_scene", "temperature_field",
     "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum", "run_up", "waterfall",
-    "dynamic_map",
+    "dynamic_map", "flank_map", "face_load_factor", "line_load_models",
 }  # fmt: skip
 
 PURE = {"motion n-p-q", "evaluation"}
