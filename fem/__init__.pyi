@@ -3,8 +3,8 @@ from .contact import mesh_cycle as mesh_cycle
 from .contact_candidates import unloaded_transmission_error as unloaded_transmission_error
 from .cycle import MeshCycle as MeshCycle
 from .export import write_mesh as write_mesh
-from .face_compliance import FaceGears as FaceGears
-from .face_compliance import face_gears as face_gears
+from .face_gears import FaceGears as FaceGears
+from .face_gears import face_gears as face_gears
 from .face_loads import FaceLoads as FaceLoads
 from .local_law import Film as Film
 from .pair_compliance import compliance as compliance
