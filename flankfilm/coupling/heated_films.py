@@ -19,6 +19,9 @@ T = TypeVar("T")
 LOOSER = 5.0
 """Times the tolerance that a single film may err by where it has no better solution; its own error says so."""
 
+LOOSEST = 0.2
+"""What a film may be asked for at most."""
+
 
 @dataclass(frozen=True)
 class HeatedOil:
@@ -43,6 +46,11 @@ class HeatedOil:
     boundary_friction: float
     tolerance: float
     supply: Held = None
+
+    @property
+    def looser(self) -> float:
+        """Tolerance where a film has no better solution."""
+        return min(LOOSER * self.tolerance, max(LOOSEST, self.tolerance))
 
     def supply_of(self, contact: ehl.LineContact) -> Supply:
         """Supply of one contact."""
@@ -137,10 +145,14 @@ class HeatedFilms:
 
 
 def sliding_contacts(
-    pair: gears.GearPair, cycle: MeshCycle, speed: float, lubricant: ehl.Lubricant
+    pair: gears.GearPair,
+    cycle: MeshCycle,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    line_load: Array | None = None,
 ) -> tuple[Array, tuple[ehl.LineContact, ...]]:
-    """Line contacts of a cycle with their sliding speeds, with their places on the path [m]."""
-    rho1, contacts = contacts_of(pair, cycle, speed, lubricant)
+    """Line contacts of a cycle with their sliding speeds, with their places on the path [m]; see `contacts_of`."""
+    rho1, contacts = contacts_of(pair, cycle, speed, lubricant, line_load)
     slides = pair.path_at(rho1).sliding(speed).tolist()
     return rho1, tuple(replace(contact, sliding=slip) for contact, slip in zip(contacts, slides, strict=True))
 
@@ -195,7 +207,7 @@ def _rough(
     """Share the load with asperities, from the neighbour; where that fails from nothing, and less sharply."""
     supply = oil.supply_of(contact)
     for start in (None,) if near is None else (near, None):
-        for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
+        for tolerance in (oil.tolerance, oil.looser):
             found = ehl.solve_mixed_thermal(
                 contact, roughness, oil.solids, bulk, tolerance, supply, oil.boundary_friction, start
             )
@@ -219,14 +231,14 @@ def _film(
 
     starts = (None,) if near is None else (near, None)
     for start in starts:
-        for tolerance in (oil.tolerance, LOOSER * oil.tolerance):
+        for tolerance in (oil.tolerance, oil.looser):
             found = solved(contact, tolerance, start)
             if found.converged:
                 return found
     if near is not None:
-        half = solved(_halfway(near.contact, contact), LOOSER * oil.tolerance, near)
+        half = solved(_halfway(near.contact, contact), oil.looser, near)
         if half.converged:
-            found = solved(contact, LOOSER * oil.tolerance, half)
+            found = solved(contact, oil.looser, half)
     if not found.converged:
         raise _none_at(rho1, found.message)
     return found

@@ -11,12 +11,16 @@ import numpy as np
 import ehl
 import gears
 from base import Array, Cost, Faults, SolverError, Stopwatch, unclocked
+from flankfilm.coupling.bulk_balance import BulkBalance
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import Held
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
+from flankfilm.coupling.heated_table import FEW as FEW_GRID
+from flankfilm.coupling.heated_table import GRID, HeatedTable, heated_table
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.losses_along_path import losses_along
 from flankfilm.coupling.losses_faults import TEMPERATURE, check_bodies, check_numbers, check_temperatures
+from flankfilm.coupling.losses_over_face import face_losses, of_all_cells
 from flankfilm.coupling.losses_record import LossBand, MeshLosses
 from flankfilm.coupling.mean_losses import Carried, Means, means_of
 from flankfilm.coupling.mesh_cycles import resolved
@@ -27,6 +31,12 @@ POSITIONS = 40
 
 FINER = 8
 """Times as many positions that means are taken over, friction and rolling being carried between the films."""
+
+FINER_FACE = 3
+"""The same where the load varies along the face, whose cells take their time; that of films is told as an error."""
+
+HALVED = 0.5
+"""Part of what films at half as many places or loads change that those left out may: a quarter where these resolve."""
 
 FEW = 9
 """Films that first values are found from, and the losses at either end of the band."""
@@ -148,7 +158,7 @@ def mesh_losses(
 class _Agreed:
     """Films, forces and temperatures that agree."""
 
-    films: HeatedFilms
+    films: HeatedFilms | HeatedTable
     cycle: MeshCycle
     bulk: tuple[float, float]
     means: Means
@@ -175,13 +185,18 @@ class _Run:
         watch = Stopwatch()
         first = self._agree(FEW, FIRST_FRICTION, bulk)
         agreed = self._agree(None, first.means.friction, first.bulk, first.films)
-        band = self._band(agreed)
-        path, means = losses_along(self.teeth.pair, agreed.films, agreed.bulk), agreed.means
-        sampled = self._means(self._cycle(means.friction, self.positions), agreed.films)
-        left_out = abs(sampled.mesh_loss / means.mesh_loss - 1.0) if means.mesh_loss else 0.0
+        means, every = agreed.means, self._cycle(agreed.means.friction, self.positions)
+        along = self._along(agreed, every)
+        band, path = self._band(agreed, along), losses_along(self.teeth.pair, along, agreed.bulk)
+        over, carried = None, 0.0
+        if isinstance(agreed.films, HeatedTable):
+            halves = (self._means(agreed.cycle, agreed.films.every_second(axis)) for axis in (0, 1))
+            carried = sum(HALVED * _off(half, means) for half in halves)
+            over = face_losses(self.teeth.pair, every, self.speed, agreed.films, carried)
+            path = of_all_cells(path, over, every)
         lost = path.sliding_loss
         by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
-        error = float(by_films) + left_out + agreed.shares
+        error = float(by_films) + _off(self._means(every, agreed.films), means) + agreed.shares + carried
         return MeshLosses(
             cycle=agreed.cycle,
             path=path,
@@ -203,6 +218,7 @@ class _Run:
             error=error,
             message=f"errs by {error:.1e}: {MORE}" if error > self.oil.tolerance else "",
             cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
+            over_face=over,
         )
 
     @property
@@ -213,18 +229,31 @@ class _Run:
         flanks = replace(self.teeth.flanks, friction=friction)
         return replace(self.teeth, flanks=flanks).cycle(positions)
 
-    def _means(self, cycle: MeshCycle, films: HeatedFilms, ratios: Carried | None = None) -> Means:
-        return means_of(self.teeth.pair, cycle, self.speed, self._power, Carried.of(films, ratios))
+    def _means(
+        self, cycle: MeshCycle, films: HeatedFilms | HeatedTable, ratios: Carried | None = None
+    ) -> Means:
+        known = replace(films, ratios=ratios) if isinstance(films, HeatedTable) else Carried.of(films, ratios)
+        return means_of(self.teeth.pair, cycle, self.speed, self._power, known)
+
+    def _along(self, agreed: _Agreed, cycle: MeshCycle) -> HeatedFilms:
+        """Films along the path; those of the most loaded cells where the load varies along the face."""
+        if isinstance(agreed.films, HeatedFilms):
+            return agreed.films
+        assert cycle.contact is not None
+        assert cycle.contact.face is not None
+        greatest = cycle.contact.face.line_load.max(axis=-1)
+        rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant, greatest)
+        return heated_films(rho1, contacts, self.oil, agreed.bulk)
 
     def _agree(
         self,
         most: int | None,
         friction: float,
         bulk: tuple[float, float],
-        films: HeatedFilms | None = None,
+        films: HeatedFilms | HeatedTable | None = None,
     ) -> _Agreed:
         """Iterate films, load share and temperatures, with so many films at most, from some where they are as many."""
-        balance, rounds = _Balance(), 0
+        balance, rounds = BulkBalance(), 0
         cycle = self._cycle(friction, self.positions)
         while True:
             rounds += 1
@@ -232,7 +261,8 @@ class _Run:
             means = self._means(cycle, films)
             before, cycle = cycle, self._cycle(means.friction, self.positions)
             shares = float(np.nanmax(np.abs(cycle.load_share - before.load_share)))
-            finer = self._cycle(means.friction, FINER * self.positions)
+            by = FINER if isinstance(films, HeatedFilms) else FINER_FACE
+            finer = self._cycle(means.friction, by * self.positions)
             means = self._means(finer, films)
             asked = bulk if self.transfer is None else self._balanced(means)
             warmer = float(np.max(np.abs(np.subtract(asked, bulk))))
@@ -246,14 +276,37 @@ class _Run:
             bulk = bulk if self.transfer is None else balance.next(bulk, asked)
 
     def _films(
-        self, cycle: MeshCycle, most: int | None, bulk: tuple[float, float], before: HeatedFilms | None
-    ) -> HeatedFilms:
+        self,
+        cycle: MeshCycle,
+        most: int | None,
+        bulk: tuple[float, float],
+        before: HeatedFilms | HeatedTable | None,
+    ) -> HeatedFilms | HeatedTable:
+        if cycle.contact is not None and cycle.contact.face is not None:
+            return self._table(cycle, GRID if most is None else FEW_GRID, bulk, before)
+        assert not isinstance(before, HeatedTable)
         rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant)
         kept = thinned(len(contacts), most or len(contacts))
         same = before is not None and before.rho1.size == kept.size
         return heated_films(
             rho1[kept], [contacts[k] for k in kept.tolist()], self.oil, bulk, before if same else None
         )
+
+    def _table(
+        self,
+        cycle: MeshCycle,
+        grid: tuple[int, int],
+        bulk: tuple[float, float],
+        before: HeatedFilms | HeatedTable | None,
+    ) -> HeatedTable:
+        """Films over place and line load: those of the round before where these are the same."""
+        assert cycle.contact is not None
+        assert cycle.contact.face is not None
+        table = before if isinstance(before, HeatedTable) and len(before.rows) == grid[0] else None
+        greatest = cycle.contact.face.greatest_line_load
+        if table is not None and table.bulk == bulk and greatest <= table.load[0]:
+            return table
+        return heated_table(self.teeth.pair, cycle, self.speed, self.lubricant, self.oil, bulk, grid, table)
 
     def _balanced(self, means: Means) -> tuple[float, float]:
         """Temperatures at which the losses are taken away."""
@@ -266,9 +319,9 @@ class _Run:
             )
         return first, second
 
-    def _band(self, agreed: _Agreed) -> LossBand:
-        """Losses at the ends of the band of Eyring's stress, by the ratios of some films."""
-        some = agreed.films.some(FEW)
+    def _band(self, agreed: _Agreed, path: HeatedFilms) -> LossBand:
+        """Losses at the ends of the band of Eyring's stress, by the ratios of some films along the path."""
+        some = path.some(FEW)
         found, along, off = [], [], [0.0]
         for stress in BAND:
             ratios = self._ratios(some, stress, agreed.bulk)
@@ -276,9 +329,8 @@ class _Run:
                 self._means(agreed.cycle, agreed.films, one) for one in (ratios, ratios.some((FEW + 1) // 2))
             )
             found.append(means)
-            along.append(Carried.of(agreed.films, ratios).friction)
-            if means.mesh_loss:
-                off.append(abs(coarser.mesh_loss / means.mesh_loss - 1.0))
+            along.append(Carried.of(path, ratios).friction)
+            off.append(_off(coarser, means))
         return _band(found, np.array(along), max(off), self._power)
 
     def _ratios(self, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
@@ -290,22 +342,9 @@ class _Run:
         return Carried.of(heated_films(some.rho1, contacts, self.oil, bulk, some)).over(Carried.of(some))
 
 
-class _Balance:
-    """Bulk temperatures that are sought: the mean of both by secants, what they differ by as it comes."""
-
-    def __init__(self) -> None:
-        self.last: tuple[float, float] | None = None
-
-    def next(self, given: tuple[float, float], asked: tuple[float, float]) -> tuple[float, float]:
-        """Temperatures to try next, after given ones have asked for others."""
-        at, wanted = 0.5 * sum(given), 0.5 * sum(asked)
-        slope = 0.0
-        if self.last is not None and at != self.last[0]:
-            slope = float(np.clip((wanted - self.last[1]) / (at - self.last[0]), -3.0, 0.5))
-        self.last = at, wanted
-        mean = at + (wanted - at) / (1.0 - slope)
-        apart = 0.5 * (asked[0] - asked[1])
-        return mean + apart, mean - apart
+def _off(one: Means, other: Means) -> float:
+    """Relative difference of mean losses."""
+    return abs(one.mesh_loss / other.mesh_loss - 1.0) if other.mesh_loss else 0.0
 
 
 def _band(found: Sequence[Means], along: Array, error: float, power: float) -> LossBand:

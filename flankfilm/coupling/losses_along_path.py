@@ -20,7 +20,8 @@ _CLOSED_FORM = "unknown: a closed form"
 class LossesAlongPath:
     """Friction, losses and temperatures at the loaded contacts of a mesh cycle, in the order of the path.
 
-    Powers are those of a single contact over the whole face.
+    Powers are those of a single contact over the whole face. Where the load varies along it, loads, friction,
+    temperatures and films are those of the most loaded cell.
     """
 
     no_error = "not estimated in single places; films have an error, and so have friction and temperatures"

@@ -6,6 +6,7 @@ from base import Array, Cost, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.losses_along_path import LossesAlongPath
+from flankfilm.coupling.losses_over_face import FaceLosses
 
 ROLLING = "not estimated: by the grid it errs as the film does"
 
@@ -83,6 +84,9 @@ class MeshLosses:
     cost: Cost
     converged: bool = True
     message: str = ""
+    over_face: FaceLosses | None = part(
+        "friction, losses and temperatures over the face; None where the load is even along it", default=None
+    )
 
     @described("W", error="error")
     def mesh_loss(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -10,6 +11,37 @@ import gears
 from base import Array
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.heated_films import HeatedFilms, thinned
+
+
+@dataclass(frozen=True)
+class Borne:
+    """What contacts, or cells of them, bear over a cycle.
+
+    Attributes
+    ----------
+    rho1 : ndarray, shape (n,)
+        Places [m].
+    force : ndarray, shape (n,)
+        [N]
+    width : float
+        Length of face that each has [m].
+    friction, rolling, first_part : ndarray, shape (n,)
+        As of `Carried`.
+    """
+
+    rho1: Array
+    force: Array
+    width: float
+    friction: Array
+    rolling: Array
+    first_part: Array
+
+
+class Known(Protocol):
+    """Films that say what contacts of a cycle lose."""
+
+    def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
+        """What the contacts of a cycle bear, with friction and rolling."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +103,14 @@ class Carried:
         values = (np.interp(rho1, self.rho1, one) for one in (self.friction, self.rolling, self.first_part))
         return Carried(rho1, *values)
 
+    def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
+        """What the contacts of a cycle bear, whose load is even along the face."""
+        touching = np.isfinite(cycle.rho1) & (cycle.forces > 0.0)
+        here = self.at(cycle.rho1[touching])
+        return Borne(
+            here.rho1, cycle.forces[touching], face_width, here.friction, here.rolling, here.first_part
+        )
+
 
 @dataclass(frozen=True)
 class Means:
@@ -89,7 +129,7 @@ class Means:
         return self.sliding_loss + self.rolling_loss + self.edge_loss
 
 
-def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, given: Carried) -> Means:
+def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, given: Known) -> Means:
     """Average over the positions of a cycle.
 
     Parameters
@@ -101,16 +141,13 @@ def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float,
         Of the pinion [rad/s].
     power : float
         Put in [W].
-    given : Carried
+    given : Known
         Friction and rolling.
     """
-    positions = cycle.position.size
-    touching = np.isfinite(cycle.rho1) & (cycle.forces > 0.0)
-    rho1, force = cycle.rho1[touching], cycle.forces[touching]
-    here = given.at(rho1)
-    slid = force * np.abs(pair.path_at(rho1).sliding(speed))
+    positions, here = cycle.position.size, given.borne(cycle, pair.face_width)
+    slid = here.force * np.abs(pair.path_at(here.rho1).sliding(speed))
     lost = here.friction * slid
-    rolled = pair.face_width * here.rolling
+    rolled = here.width * here.rolling
     both = float(slid.sum())
     friction = float(lost.sum()) / both if both else 0.0
     edges = _edges(cycle, speed)

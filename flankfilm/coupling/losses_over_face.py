@@ -1,0 +1,152 @@
+"""Friction, losses and temperatures of the cells of the face."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import gears
+from base import Array, described, part, quantity, record
+from base.results import EXACT, ITSELF
+from flankfilm.coupling.films import touching
+from flankfilm.coupling.heated_table import HeatedTable
+from flankfilm.coupling.losses_along_path import LossesAlongPath
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.cycle import MeshCycle
+
+__all__ = ["FaceLosses", "face_losses", "of_all_cells"]
+
+_AS_FILMS = "that of the films: see the path, and table_error for what is interpolated"
+
+
+@record
+class FaceLosses:
+    """Friction, losses and temperatures of all cells of the face, each a line contact under its line load.
+
+    Heat does not flow along the face here, and oil neither; cells that bear less than the lightest film have its
+    figures.
+    """
+
+    no_error = "not estimated cell by cell; the mean losses have an error"
+    headline = ("greatest_cell_temperature", "table_error")
+
+    face_position: Array = quantity(
+        "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
+    )
+    travel: Array = quantity(
+        "m",
+        "travel of each pair along the path of contact from A; nan where a pair cannot touch",
+        "position pair",
+        shown="mm",
+        no_error=EXACT,
+    )
+    line_load: Array = quantity("N/m", "force per length of face", "position pair cell", shown="N/mm")
+    friction_coefficient: Array = quantity(
+        "1", "coefficient of friction of each cell", "position pair cell", no_error=_AS_FILMS
+    )
+    minimum_thickness: Array = quantity(
+        "m", "least film with heat of each cell", "position pair cell", shown="um", no_error=_AS_FILMS
+    )
+    oil_temperature_rise: Array = quantity(
+        "K",
+        "greatest oil temperature of each cell above the mean of the flanks' bulk",
+        "position pair cell",
+        no_error=_AS_FILMS,
+    )
+    contact_temperature: Array = quantity(
+        "K", "greatest temperature of the flanks of each cell", "position pair cell", no_error=_AS_FILMS
+    )
+    sliding_loss: Array = quantity(
+        "W/m", "power lost by sliding per length of face", "position pair cell", no_error=_AS_FILMS
+    )
+    rolling_loss: Array = quantity(
+        "W/m", "power lost by rolling per length of face", "position pair cell", no_error=_AS_FILMS
+    )
+    films: int = quantity("1", "films solved, over places of the path and line loads", no_error=EXACT)
+    table_error: float = quantity(
+        "1",
+        "relative error of the mean losses by what is interpolated between places and loads",
+        no_error=ITSELF,
+    )
+    pair: gears.GearPair = part("the gears")
+
+    @described("W/m", "cell", no_error=_AS_FILMS)
+    def mean_loss(self) -> Array:
+        """Mean power lost by sliding and rolling per length of face."""
+        both = self.sliding_loss + self.rolling_loss
+        return np.asarray(both.sum(axis=(0, 1)) / both.shape[0])
+
+    @described("K")
+    def greatest_cell_temperature(self) -> float:
+        """Greatest temperature of the flanks of all cells."""
+        return float(np.nanmax(self.contact_temperature))
+
+
+def face_losses(
+    pair: gears.GearPair, cycle: MeshCycle, speed: float, table: HeatedTable, table_error: float
+) -> FaceLosses:
+    """Read friction, losses and temperatures of a cycle's cells off films with heat.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : MeshCycle
+        With cells of the face.
+    speed : float
+        Of the pinion [rad/s].
+    table : HeatedTable
+    table_error : float
+        Of the mean losses.
+    """
+    assert cycle.contact is not None
+    assert cycle.contact.face is not None
+    face = cycle.contact.face
+    load = face.line_load
+    rho1 = np.broadcast_to(cycle.rho1[..., None], load.shape)
+    bears = np.isfinite(rho1) & (load > 0.0)
+
+    def each(figure: str) -> Array:
+        return np.where(bears, table.at(figure, rho1, load), np.nan)
+
+    friction = each("friction")
+    slip = np.abs(pair.path_at(np.where(bears, rho1, pair.points.C).ravel()).sliding(speed)).reshape(
+        load.shape
+    )
+    first, second = (
+        each(f"{side}_rise") + at for side, at in zip(("first", "second"), table.bulk, strict=True)
+    )
+    return FaceLosses(
+        face_position=face.face_position,
+        travel=face.travel,
+        line_load=load,
+        friction_coefficient=friction,
+        minimum_thickness=each("minimum_thickness"),
+        oil_temperature_rise=each("oil_rise"),
+        contact_temperature=np.maximum(first, second),
+        sliding_loss=np.nan_to_num(friction) * load * slip,
+        rolling_loss=np.nan_to_num(each("rolling")),
+        films=len(table.films),
+        table_error=table_error,
+        pair=pair,
+    )
+
+
+def of_all_cells(path: LossesAlongPath, found: FaceLosses, cycle: MeshCycle) -> LossesAlongPath:
+    """Losses along the path of the most loaded cells, with the powers of all cells together.
+
+    Parameters
+    ----------
+    path : LossesAlongPath
+    found : FaceLosses
+    cycle : MeshCycle
+        Of both.
+    """
+    position, number = touching(cycle)
+    width = found.pair.face_width / found.face_position.size
+    sliding, rolling = (
+        width * one.sum(axis=-1)[position, number] for one in (found.sliding_loss, found.rolling_loss)
+    )
+    return replace(path, sliding_loss=sliding, rolling_loss=rolling)
