@@ -124,7 +124,7 @@ def _solid(
     layer = len(used) * np.arange(len(z) - 1)[:, None, None]
     wedges = np.concatenate([triangles + layer, triangles + layer + len(used)], axis=-1).reshape(-1, 6)
     size = len(used) * len(z)
-    section = module * ready.mesh.points[used]
+    section = module * ready.points[used]
     return ToothField(
         np.concatenate([one.points(section, z) for one in place]),
         np.concatenate([wedges + size * i for i in range(len(teeth))]),

@@ -33,6 +33,9 @@ __all__ = ["FaceWaves", "GearPrisms", "gear_prisms", "on_flank"]
 DEPTH = 2.0
 """Depth below the root circle down to which the body is drawn, in modules."""
 
+SLIVER = 1e-6
+"""Twice the area of a triangle that is left out where the body is cut off, in square modules."""
+
 LAYERS = 12
 """Layers of the solid along the face, or as many as there are cells if these are fewer."""
 
@@ -48,11 +51,14 @@ class GearPrisms:
         For the waves of ``fem.gear_face.solved_waves``.
     triangles : (t, 3) array of int
         What is drawn of a sector: second-order triangles in four.
+    points : (nodes, 2) array
+        Where its nodes are drawn: those below a depth on the circle there, which cuts the body off.
     """
 
     mesh: SectorMesh
     prisms: tuple[Prism, ...]
     triangles: Integers
+    points: Array
 
     def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
         """Displacements (waves, teeth, nodes, 3, loads) in each tooth's frame by unit line loads on tooth 0."""
@@ -80,10 +86,16 @@ def _gear_prisms(bodies: Compliance, gear: int) -> GearPrisms:
     mesh = over.mesh
     a, b, c, ab, bc, ca = mesh.triangles.T
     quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-    middle = np.linalg.norm(mesh.points[mesh.triangles[:, :3]].mean(axis=1), axis=1)
-    shown = middle > meshed.shape.profile.root_radius - DEPTH
-    triangles = np.concatenate([np.column_stack(part)[shown] for part in quarters])
-    return GearPrisms(mesh, tuple(prism(over, Face.wave(float(k))) for k in waves), triangles)
+    triangles = np.concatenate([np.column_stack(part) for part in quarters])
+    depth = meshed.shape.profile.root_radius - DEPTH
+    points = mesh.points * np.maximum(1.0, depth / np.linalg.norm(mesh.points, axis=1))[:, None]
+    p, q, r = (points[triangles[:, k]] for k in range(3))
+    (ux, uy), (vx, vy) = (q - p).T, (r - p).T
+    shown = (ux * vy - uy * vx > SLIVER) & np.any(
+        np.linalg.norm(mesh.points[triangles], axis=2) > depth, axis=1
+    )
+    prisms = tuple(prism(over, Face.wave(float(k))) for k in waves)
+    return GearPrisms(mesh, prisms, triangles[shown], points)
 
 
 @record

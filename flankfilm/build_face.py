@@ -22,7 +22,6 @@ EVEN = {
     "film": "films are of loads that are even along it",
     "losses": "films are of loads that are even along it",
     "root-stress": "root stresses are of loads that are even along it",
-    "vtk": "fields are of loads that are even along it",
 }
 """Wants that know no load that varies along the face."""
 

@@ -16,7 +16,8 @@ from base.files import replacing
 from flankfilm.children import module, python
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
-from flankfilm.figures.rendering import UNREADABLE, View, draw, plotter_of, steps
+from flankfilm.figures.rendering import UNREADABLE, draw, plotter_of
+from flankfilm.figures.view import View, steps
 from flankfilm.folder import readable
 from flankfilm.manifest import changed
 
@@ -28,6 +29,15 @@ STILL = (".png", ".jpg", ".webp")
 
 SHOWN = 0.12
 """What the greatest deflection is drawn as, in modules."""
+
+STRESS, FLANKS_FIELD = "von_mises_Pa", "pressure_Pa"
+"""Fields that are drawn unless one is asked for: of even loads, and of loads that vary along the face."""
+
+EVEN, OVER_FACE = ("field_point", "pair_module"), ("path_point_place", "pair_module")
+"""Variables without which there is no picture."""
+
+IN_DEPTH, BESIDE_FACE = 0.44, 7.6
+"""Half the width of a picture over the face: parts of the face width, and modules."""
 
 PATIENCE = 600.0
 """Seconds that the drawing may take."""
@@ -48,15 +58,16 @@ class Frame:
         Width and height [pixels].
     scale : float, optional
         Factor of the displacements; chosen so that they show unless given.
-    field : str
-        Field of the files for ParaView that gives the colours, such as ``von_mises_Pa`` or ``displacement_m``.
+    field : str, optional
+        Field of the files for ParaView that gives the colours, such as ``displacement_m``; unless given the von Mises
+        stress, ``von_mises_Pa``, or the pressure on the flanks, ``pressure_Pa``, where the load varies along the face.
     position : float, optional
         Base pitches from A, of the one picture or of the window's start; a pair at the pitch point unless given.
     """
 
     size: tuple[int, int] = (1440, 960)
     scale: float | None = None
-    field: str = "von_mises_Pa"
+    field: str | None = None
     position: float | None = None
 
 
@@ -179,7 +190,10 @@ def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tupl
 
 
 def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
-    need(results, 'run a scene that wants "vtk" with this version', "field_point", "pair_module")
+    width = (
+        float(results["pair_face_width"]) if "pinion_flanks" in next(iter(steps(folder).values())) else 0.0
+    )
+    need(results, 'run a scene that wants "vtk" with this version', *(OVER_FACE if width else EVEN))
     prefix = "lubricated" if "lubricated_position" in results else "dry"
     error = results[f"{prefix}_transmission_error"].values
     scale, position = frame.scale, frame.position
@@ -188,8 +202,15 @@ def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
     if position is None:
         at_pitch = float(results["path_point_rho1"][2] - results["path_point_rho1"][0])
         position = at_pitch / float(results["pair_base_pitch"]) % 1.0
-    x, y = results["field_centre"].values.tolist()
-    step, ticks = _scale_of_colours(results, folder, frame.field)
+    names = results["path_point"].values.tolist()
+    x, y = results["path_point_place"].values[names.index("C")].tolist()
+    reach = (
+        IN_DEPTH * width + BESIDE_FACE * float(results["pair_module"])
+        if width
+        else 0.8 * float(results["field_reach"])
+    )
+    field = frame.field or (FLANKS_FIELD if width else STRESS)
+    step, ticks = _scale_of_colours(results, folder, field, over_face=width > 0.0)
     return View(
         folder=str(folder.absolute()),
         size=frame.size,
@@ -197,30 +218,37 @@ def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
         greatest=step * ticks,
         ticks=ticks,
         centre=(x, y),
-        reach=0.8 * float(results["field_reach"]),
+        reach=reach,
         base_radius=float(results["pair_base_radii"][0]),
         position=tuple(results[f"{prefix}_position"].values.tolist()),
         error=tuple(error.tolist()),
         only=position,
-        field=frame.field,
+        field=field,
+        face_width=width,
     )
 
 
-def _scale_of_colours(results: xr.Dataset, folder: Path, field: str) -> tuple[float, int]:
+def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_face: bool) -> tuple[float, int]:
     """Step between the ticks of the scale of colours, and their number; from all but the peaks under contacts."""
     import pyvista as pv
 
-    if field == Frame.field:
+    if field == STRESS and not over_face:
         top = 1e6 * stress_of_nearly_all(results)
     else:
-        files = next(iter(steps(folder).values()))
-        grids = [pv.read(files[gear]) for gear in ("pinion", "wheel")]
-        if missing := [grid for grid in grids if field not in grid.point_data]:
-            held = ", ".join(missing[0].point_data.keys())
+        each = list(steps(folder).values())
+        chosen = each if over_face else each[:1]
+        names = ("pinion_flanks",) if over_face else ("pinion", "wheel")
+        grids = [pv.read(files[name]) for files in chosen for name in names]
+        if missing := [grid for grid in grids if field not in grid.array_names]:
+            held = ", ".join(missing[0].array_names)
             raise InputError.at("field", field, "must be a field of the files", f"Such as {held}")
         values = [np.asarray(grid[field]) for grid in grids]
-        sizes = [v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]
-        top = float(np.quantile(np.abs(np.concatenate(sizes)), 0.997))
+        if (
+            over_face and field in grids[0].cell_data
+        ):  # pressures of tip edges are over widths that are assumed
+            values = [one[grid["tip_edge"] == 0] for one, grid in zip(values, grids, strict=True)]
+        sizes = np.abs(np.concatenate([v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]))
+        top = float(np.nanquantile(sizes, 1.0 if over_face else 0.997)) or 1.0
     step = _round(top / 3)
     return step, math.ceil(top / step)
 

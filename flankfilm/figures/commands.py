@@ -12,7 +12,7 @@ def view(
     results: Path,
     /,
     *,
-    field: str = "von_mises_Pa",
+    field: str | None = None,
     position: float | None = None,
     scale: float | None = None,
     out: Path | None = None,
@@ -24,7 +24,8 @@ def view(
     results : Path
         Folder of a run that wants vtk.
     field : str
-        Field of the files for ParaView, such as von_mises_Pa, displacement_m.
+        Field of the files for ParaView, such as displacement_m; the von Mises stress if left out. Where the load varies
+        along the face: the pressure on the flanks if left out, line_load_N_per_m, gap_m.
     position : float
         Base pitches from A; a pair at the pitch point if left out.
     scale : float
@@ -50,7 +51,7 @@ def animate(
     seconds: Annotated[float, Parameter(validator=validators.Number(gte=0.1, lte=600))] = 2.0,
     width: Annotated[int, Parameter(validator=validators.Number(gte=120, lte=4000))] = 720,
 ) -> int:
-    """Draw the mesh cycle in the folder RESULTS as an animation: stress on the deformed teeth.
+    """Draw the mesh cycle in the folder RESULTS as an animation: stress on the deformed teeth, or pressure on flanks.
 
     Parameters
     ----------

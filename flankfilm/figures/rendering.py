@@ -8,86 +8,22 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from flankfilm.figures.face_rendering import draw_face
 from flankfilm.figures.style import load_matplotlib
-
-INK, PAPER = "#1c2126", "#ffffff"
-
-SHOWN_UNITS = {"Pa": (" [MPa]", 1e-6), "m": (" [um]", 1e6)}
-"""Ending of a field's name to the unit that people read, and its factor."""
+from flankfilm.figures.view import INK, PAPER, View, bar_of, nearest, note_scale, steps, titled
 
 UNREADABLE = 2
 """Exit status where a file that is drawn cannot be read."""
 
 COLOURS = 160
 """Colours of the scale in a GIF, which can hold 256 in all."""
-
-
-@dataclass(frozen=True)
-class View:
-    """What is drawn, and how.
-
-    Attributes
-    ----------
-    folder : str
-        Of the run.
-    size : tuple of int
-        Width and height [pixels].
-    scale : float
-        Factor of the displacements.
-    greatest, ticks : float, int
-        End of the scale of colours [Pa], and its parts.
-    centre : tuple of float
-        Middle of the picture [m].
-    reach : float
-        Half its width [m].
-    base_radius : float
-        Of the pinion [m].
-    position, error : tuple of float
-        Positions of the mesh cycle [base pitches], and the loaded transmission error there [m].
-    only : float
-        Position of the one picture [base pitches].
-    field : str
-        Name of the field that is drawn.
-    target : str
-        Picture or animation; its suffix is the format.
-    seconds : float
-        Length of the animation; 0 for one picture.
-    window : bool
-        Whether a window is opened instead of a file written.
-    """
-
-    folder: str
-    size: tuple[int, int]
-    scale: float
-    greatest: float
-    ticks: int
-    centre: tuple[float, float]
-    reach: float
-    base_radius: float
-    position: tuple[float, ...]
-    error: tuple[float, ...]
-    only: float
-    field: str
-    target: str = ""
-    seconds: float = 0.0
-    window: bool = False
-
-
-def steps(folder: Path) -> dict[float, dict[str, Path]]:
-    """Files of each position in ``mesh_cycle.pvd``, by the position [base pitches] and the start of their name."""
-    found: dict[float, dict[str, Path]] = {}
-    for entry in ElementTree.parse(folder / "mesh_cycle.pvd").iter("DataSet"):
-        file = folder / str(entry.get("file"))
-        found.setdefault(float(str(entry.get("timestep"))), {})[file.stem.rpartition("_")[0]] = file
-    return dict(sorted(found.items()))
 
 
 def frames(view: View) -> Iterator[Any]:
@@ -104,7 +40,8 @@ def plotter_of(view: View, **options: Any) -> Any:
     load_matplotlib()
     import pyvista as pv
 
-    plotter = pv.Plotter(window_size=list(view.size), lighting="none", **options)
+    lights = "light kit" if view.face_width else "none"
+    plotter = pv.Plotter(window_size=list(view.size), lighting=lights, **options)
     plotter.set_background(PAPER)
     plotter.enable_parallel_projection()
     return plotter
@@ -121,20 +58,18 @@ def show(view: View) -> None:
     plotter.show(title="flankfilm")
 
 
-def nearest(places: Iterable[float], at: float) -> float:
-    """Position that lies nearest to `at`."""
-    return min(places, key=lambda place: abs(place - at))
-
-
 def draw(plotter: Any, view: View, at: float) -> None:
     """The position nearest to `at`: a field on the deformed teeth, and their outlines; replaces the one before."""
+    if view.face_width:
+        draw_face(plotter, view, at)
+        return
     load_matplotlib()
     import pyvista as pv
 
     chosen = steps(Path(view.folder))
     at = nearest(chosen, at)
     files = chosen[at]
-    unit, factor = SHOWN_UNITS.get(view.field.rpartition("_")[2], ("", 1.0))
+    words, unit, factor = titled(view.field)
     # the pinion turns ahead by the deflection, as much exaggerated as the displacements
     turn = view.scale * float(np.interp(at, view.position, view.error)) / view.base_radius
     for name, angle in (("pinion", turn), ("wheel", 0.0)):
@@ -146,11 +81,7 @@ def draw(plotter: Any, view: View, at: float) -> None:
         values = np.asarray(gear[view.field])
         gear["shown"] = factor * (values if values.ndim == 1 else np.linalg.norm(values, axis=1))
         surface = gear.extract_surface(nonlinear_subdivision=1, algorithm="dataset_surface")
-        bar = {
-            "title": f"{title(view.field)}{unit}\n ", "color": PAPER, "vertical": False, "n_labels": view.ticks + 1,
-            "fmt": "%.0f", "position_x": 0.3, "position_y": 0.03, "width": 0.4, "height": 0.13,
-            "title_font_size": view.size[1] // 32, "label_font_size": view.size[1] // 36,
-        }  # fmt: skip
+        bar = bar_of(view, f"{words}{unit}", PAPER)
         plotter.add_mesh(
             surface, scalars="shown", cmap="viridis", clim=(0.0, factor * view.greatest), lighting=False, name=name,
             show_scalar_bar=name == "pinion", scalar_bar_args=bar if name == "pinion" else None,
@@ -159,17 +90,10 @@ def draw(plotter: Any, view: View, at: float) -> None:
         if edges.n_cells:
             width = view.size[1] / 400
             plotter.add_mesh(edges, color=INK, line_width=width, lighting=False, name=f"{name} outline")
-    text, corner = f"displacements x {view.scale:g}", (view.size[1] // 40, view.size[1] - view.size[1] // 15)
-    plotter.add_text(text, position=corner, font_size=view.size[1] // 56, color=PAPER, name="scale")
+    note_scale(plotter, view, PAPER)
     x, y = view.centre
     plotter.camera_position = [(x, y, 1.0), (x, y, 0.0), (0.0, 1.0, 0.0)]
     plotter.camera.parallel_scale = view.reach * view.size[1] / view.size[0]
-
-
-def title(field: str) -> str:
-    """Words of a field's name without its unit."""
-    words = field.rpartition("_")[0] if field.rpartition("_")[2] in SHOWN_UNITS else field
-    return "von Mises stress" if words == "von_mises" else words.replace("_", " ")
 
 
 def _outline(surface: Any) -> Any:

@@ -57,4 +57,4 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)
     if "vtk" in wants:
-        yield of.FIELDS
+        yield of.MESH if varies_by(scene) else of.FIELDS

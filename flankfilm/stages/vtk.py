@@ -15,7 +15,10 @@ STEPS = 20
 
 
 def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
-    """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files, and the state that opens it."""
+    """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files, and the state that opens it.
+
+    Fields over the face have no state.
+    """
     from fem.paraview_state import STATE
     from fem.vtk import write_vtk_series
 
@@ -30,4 +33,4 @@ def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list
         rows,
         lambda done, total: progress("fields for ParaView", done, total),
     )
-    return [series, series.with_name(STATE)]
+    return [series, series.with_name(STATE)] if cycle.face is None else [series]
