@@ -62,7 +62,7 @@ def cell_matrix(face: FaceSetting, bodies: Compliance, rho: Array, kappa: Array,
     modes, levers = _modes(cells), kappa[..., :, None] * kappa[..., None, :]
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     if face.model != SLICES:
-        by_mode[..., 1:] += pair_waves(bodies, rho, cells) / levers[..., None]
+        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip) / levers[..., None]
     found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
     if face.model == FREE_ENDS:
         edges = face.edges(bodies.pair)

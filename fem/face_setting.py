@@ -36,17 +36,20 @@ class FaceSetting:
         Of pinion and wheel.
     model : {"free-ends", "walls", "slices"}
         What couples the cells: bodies with free ends, or between frictionless walls; nothing but the approach.
+    strip : float
+        Half-width of strips of pressure over a cell's length, where cells are narrow (``fem.wide_contact``); else 0.
     """
 
     cells: int
     alignment: Alignment = ALIGNED
     leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
     model: str = FREE_ENDS
+    strip: float = 0.0
 
     @property
     def coupled(self) -> tuple[Any, ...]:
         """What decides how cells are coupled, whatever stands between the flanks."""
-        return self.cells, self.model
+        return self.cells, self.model, self.strip
 
     def edges(self, pair: GearPair) -> Array:
         """Edges of the cells (cells + 1,) [m], 0 at mid-face."""

@@ -17,13 +17,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, record
+from base import Array, Integers, record
 from fem.cell_matrix import cell_coupling
 from fem.face_setting import FREE_ENDS, WALLS
+from fem.flamant import hertz_half_width
 from fem.local_law import Film, FilmLaw, PairLaws, film_yielding
+from fem.wide_contact import shared_by_width
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
+    from fem.cell_coupling import CellCoupling
     from fem.contact_candidates import ContactCandidates
     from fem.face_setting import FaceSetting
     from fem.setting import Setting
@@ -100,37 +103,65 @@ class _Face:
     levers: Array | None
 
     def shared(self, face: FaceSetting, near: Array) -> tuple[LoadShare, Array]:
-        """Share over cells of a face from forces of pairs (..., pairs); and the gap that each is left with."""
+        """Share over cells of a face from forces of pairs (torques, ..., pairs); and the gap that each is left with."""
         from gears.load_sharing import share_load
 
-        cells, where = face.cells, self.where
-        radius = where.rho[0] * where.rho[1] / (where.rho[0] + where.rho[1])
+        cells, radius, unit = face.cells, self._radius, self.given.pair.face_width / face.cells
         apart = self.gaps[..., None] + face.gaps(self.given.pair, radius)
         apart = np.maximum(apart - apart.min(axis=(-2, -1), keepdims=True), 0.0)
-        apart = np.where(where.touchable[..., None], apart, np.inf).reshape(*apart.shape[:-2], -1)
-        coupling = cell_coupling(face, self.bodies, where, self.kappa, self.matrix)
+        apart = np.where(self.where.touchable[..., None], apart, np.inf).reshape(*apart.shape[:-2], -1)
         film = None if self.oil is None else CellLaws(self.oil, cells)
         arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
-        start = np.repeat(near / cells, cells, axis=-1)
-        found = share_load(self.whole, coupling, CellLaws(self.laws, cells), apart, film, arms, start)
-        every = np.ones(found.stiffness.shape, dtype=bool)
-        bent = coupling.applied(found.forces, every, np.zeros_like(found.forces)) + apart
+        start, laws = np.repeat(near / cells, cells, axis=-1), CellLaws(self.laws, cells)
+
+        def coupling(strip: float) -> CellCoupling:
+            return cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
+
+        def share(strip: float, some: Integers) -> LoadShare:
+            return share_load(self.whole[some], coupling(strip), laws, apart, film, arms, start[some])
+
+        def widest(found: LoadShare) -> Array:
+            most = found.forces.reshape(*found.forces.shape[:-1], -1, cells).max(axis=-1)
+            return self._half_widths(most / unit)
+
+        mean = self._half_widths(near / self.given.pair.face_width)
+        found, strips = shared_by_width(share, widest, unit, mean)
+        bent = np.zeros_like(found.forces) + apart
+        for strip in np.unique(strips):
+            some = np.flatnonzero(strips == strip)
+            forces = found.forces[some]
+            every = np.ones(forces.shape[:-1], dtype=bool)
+            bent[some] += coupling(float(strip)).applied(forces, every, np.zeros_like(forces))
         if film is not None:
             bent = bent - film.approach(np.zeros_like(found.forces))
         left = bent.reshape(*bent.shape[:-1], -1, cells) - found.transmission_error[..., None, None]
         return found, left
+
+    @property
+    def _radius(self) -> Array:
+        rho1, rho2 = self.where.rho
+        return np.asarray(rho1 * rho2 / (rho1 + rho2))
+
+    def _half_widths(self, line_load: Array) -> Array:
+        """Greatest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
+        flanks, modulus = self.where.touchable & ~self.where.edge, self.bodies.pinion.law.plane_modulus
+        other = self.bodies.wheel.law.plane_modulus
+        load = np.where(flanks, line_load / self.kappa, 0.0)
+        radius = np.where(flanks, self._radius, 1.0)
+        wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
+        return np.asarray(wide.max(axis=(1, 2, 3)))
 
     def at(self, torque: int, pitch: int, position: int) -> _Face:
         """The same at a single torque and position."""
         one, where = slice(position, position + 1), self.where
         return replace(
             self,
-            whole=np.broadcast_to(self.whole, (len(self.whole), *self.gaps.shape[:2]))[torque, pitch, one],
-            where=replace(where, rho=where.rho[:, one], touchable=where.touchable[one]),
+            whole=self.whole[torque : torque + 1],
+            where=replace(where, rho=where.rho[:, one], touchable=where.touchable[one], edge=where.edge[one]),
             kappa=self.kappa[one],
             matrix=self.matrix[one],
             laws=self.laws.at(position),
-            gaps=self.gaps[pitch, one],
+            gaps=self.gaps[pitch : pitch + 1, one],
             oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[one]),
             levers=None if self.levers is None else self.levers[one],
         )
@@ -179,7 +210,7 @@ def _factor_error(over: _Face, face: FaceSetting, forces: Array, kappa: Array) -
     for torque, some in enumerate(factors):
         pitch, position = np.unravel_index(int(np.argmax(some)), some.shape)
         at = over.at(torque, int(pitch), int(position))
-        pairs = forces[torque, pitch, position : position + 1].sum(axis=-1)
+        pairs = forces[torque, pitch, position].sum(axis=-1)[None, None, None]
         others = []
         for model in models:
             share, _ = at.shared(replace(face, cells=few, model=model), pairs)

@@ -82,7 +82,7 @@ def gear_prisms(bodies: Compliance) -> tuple[GearPrisms, GearPrisms]:
 
 def _gear_prisms(bodies: Compliance, gear: int) -> GearPrisms:
     meshed = bodies.meshed[gear]
-    over, (_, waves) = section_of(meshed, coarse=True), solved_waves()
+    over, (_, waves) = section_of(meshed, meshed.sizes, 0), solved_waves()
     mesh = over.mesh
     a, b, c, ab, bc, ca = mesh.triangles.T
     quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))

@@ -26,7 +26,7 @@ __all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells"]
 ORDER = 3
 """Of the polynomials of one piece of the face."""
 
-LAST, GROWTH = 0.75, 2.0
+LAST, GROWTH = 0.375, 2.6
 """Length of the piece at the end [modules], and of each piece over the one nearer to the end."""
 
 
