@@ -29,6 +29,9 @@ LARGE_DEFLECTION = 0.03
 WIDE_CONTACT = 0.07
 """Part of the radius of relative curvature above which a contact's half-width is told."""
 
+FEW_CELLS = 4
+"""Cells that a contact needs, or those who ask are told."""
+
 
 def cycle_of(
     given: Setting,
@@ -121,7 +124,21 @@ def _large(given: Setting, contact: Solution, number: int, forces: Array, plane:
         found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
     if wide > WIDE_CONTACT:
         found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
-    return found
+    return found if contact.face is None else found + _short(contact.face.forces[number])
+
+
+def _short(forces: Array) -> list[str]:
+    """Contacts that are too short along the face for its cells (pitches, positions, pairs, cells)."""
+    pairs = forces.sum(axis=-1)
+    most = np.argmax(pairs, axis=-1)[..., None]
+    bears = np.take_along_axis(np.count_nonzero(forces, axis=-1), most, axis=-1)
+    least, cells = int(bears.min()), forces.shape[-1]
+    if least >= FEW_CELLS or least == cells:
+        return []
+    return [
+        f"the most loaded pair bears on {least} of {cells} cells of the face at some positions, where {FEW_CELLS} are "
+        "needed to tell how the load is spread; give more cells, or less slope and crowning"
+    ]
 
 
 def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans) -> list[str]:

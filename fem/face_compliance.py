@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array
-from fem.gear_face import (
-    CellWaves,
-    EndsOverCells,
-    FlankEnds,
-    FlankWaves,
-    flank_ends,
-    flank_waves,
-    over_cells,
-)
+from fem.gear_face import EndsOverCells, FlankEnds, FlankWaves, flank_ends, flank_waves
 from fem.gear_shape import MeshedShape
 from fem.solved_gear import Gears
 from fem.wide_contact import beyond_logarithm
@@ -56,15 +48,17 @@ def pair_waves(bodies: Compliance, rho: Array, cells: int, strip: float = 0.0) -
     """
     width = bodies.pair.face_width
     long = width / bodies.pair.module
-    waves = over_cells(cells, long)
+    wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi / long)
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape[1:], n, cells - 1))
     for gear in range(2):
-        found += gear_waves(bodies, gear, rho[gear], waves, strip * long / cells) / width
+        found += gear_waves(bodies, gear, rho[gear], wavenumber, strip * long / cells) / width
     return found
 
 
-def gear_waves(bodies: Compliance, gear: int, rho: Array, along: CellWaves, half_width: float = 0.0) -> Array:
+def gear_waves(
+    bodies: Compliance, gear: int, rho: Array, wavenumber: Array, half_width: float = 0.0
+) -> Array:
     """What waves of line load yield beyond even ones on one gear (..., n, n, waves) [m per N/m].
 
     Parameters
@@ -74,23 +68,24 @@ def gear_waves(bodies: Compliance, gear: int, rho: Array, along: CellWaves, half
         0 is the pinion, 1 the wheel.
     rho : (..., n) array
         Curvature radii of n pairs on it, in order of rho1, one tooth apart [m].
-    along : CellWaves
+    wavenumber : (waves,) array
+        k times the module.
     half_width : float
         Of strips of pressure, over the module; 0 is a line.
     """
     meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
     waves = waves_of(meshed, Gears())
     n = rho.shape[-1]
-    found: Array = np.zeros((*rho.shape, n, len(along.numbers)))
+    found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
     diagonal = np.arange(n)
     unit, at = 1.0 / flexible.law.plane_modulus, rho / bodies.pair.module
-    wide = along.mean(beyond_logarithm(along.numbers * half_width)) if half_width else 0.0
-    found[..., diagonal, diagonal, :] = unit * (waves.own_at(at, along) + 2 / np.pi * wide)
+    wide = beyond_logarithm(wavenumber * half_width) if half_width else 0.0
+    found[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
     for apart in range(1, min(n, bodies.reach + 1)):
         behind, ahead = diagonal[:-apart], diagonal[apart:]
         # the pair ahead has the smaller rho2
         load, point = (behind, ahead) if gear == 0 else (ahead, behind)
-        cross = unit * waves.cross_at(apart, at[..., load], at[..., point], along)
+        cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
         found[..., behind, ahead, :] = found[..., ahead, behind, :] = cross
     return found
 

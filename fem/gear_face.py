@@ -7,10 +7,6 @@ What a wave of load yields less than the same load spread evenly falls as a loga
 which is taken out before the rest is interpolated by Chebyshev polynomials, in s = k/(k + kappa) and in places as in
 ``fem.gear_compliance``. Beyond the shortest wave that the mesh shows the logarithm goes on alone. Neighbours feel long
 waves alone. Free ends (``fem.free_ends``) are looked at on a coarse section and at few places.
-
-Equal cells cannot tell a wave of m half-waves over n of them from those of |m + 2 n j|. Even loads on the cells, and
-means over them, hold all of these by their share sinc^2((m + 2 n j)/(2 n)), sinc x = sin(pi x)/(pi x), the sum of which
-is 1 (``over_cells``): what a wave yields is the mean of what they do.
 """
 
 from __future__ import annotations
@@ -21,22 +17,19 @@ from numpy.polynomial import chebyshev
 from base import Array, record
 from fem.elasticity import PlaneElasticity
 from fem.flank_samples import sample_places
-from fem.free_ends import FreeEnds, HalfFace, free_ends, half_face
-from fem.free_ends import over_cells as ends_over_cells
+from fem.free_ends import FreeEnds, HalfFace, free_ends, half_face, over_cells
 from fem.gear_shape import MeshedShape
 from fem.line_load import flank_points
 from fem.prism import Face, Section, prism, section
 from meshes.outline import Sizes
 
 __all__ = [
-    "CellWaves",
     "EndsOverCells",
     "FlankEnds",
     "FlankWaves",
     "between_waves",
     "flank_ends",
     "flank_waves",
-    "over_cells",
     "section_of",
     "solved_waves",
 ]
@@ -47,38 +40,8 @@ WAVES, PLACES, END_PLACES = 13, 16, 10
 BEND, SHORTEST = 0.6, 16.0
 """kappa and the largest wave number that is solved [1/module]."""
 
-ALIASES = 16
-"""Waves to either side that look the same on cells; those beyond share less than a hundredth."""
-
 ENDS_SIZES = Sizes(flank=0.3, fillet=0.35, root=0.4, corner=0.3, top=1.2, growth=1.0)
 """Of the section on which free ends are looked at: loads at the end feel the elements that are nearer than a cell."""
-
-
-@record
-class CellWaves:
-    """Waves of line load that cells of the face can tell apart, each with all those that look the same on them.
-
-    Attributes
-    ----------
-    numbers : (waves, aliases) array
-        k times the module.
-    weights : (waves, aliases) array
-        Share of each in the wave of even loads on cells; rows sum to one.
-    """
-
-    numbers: Array
-    weights: Array
-
-    def mean(self, values: Array) -> Array:
-        """Mean over the aliases of what belongs to wave numbers (waves, aliases, ...)."""
-        return np.asarray(np.einsum("ma,ma...->m...", self.weights, values))
-
-
-def over_cells(cells: int, face_width: float) -> CellWaves:
-    """Waves of 1 .. n - 1 half-waves over n equal cells; face width in modules."""
-    half_waves = np.abs(np.arange(1, cells)[:, None] + 2 * cells * np.arange(-ALIASES, ALIASES + 1))
-    weights = np.sinc(half_waves / (2 * cells)) ** 2
-    return CellWaves(half_waves * (np.pi / face_width), weights / weights.sum(axis=1, keepdims=True))
 
 
 @record
@@ -102,21 +65,21 @@ class FlankWaves:
     own: Array
     cross: Array
 
-    def own_at(self, rho: Array, waves: CellWaves) -> Array:
-        """c(k) - c(0) at each load (..., waves) for rho (...)."""
+    def own_at(self, rho: Array, wavenumber: Array) -> Array:
+        """c(k) - c(0) at each load (..., waves) for rho (...) and k (waves,)."""
         near, far = (np.sqrt(self.rho_end - end) for end in self.rho_range[::-1])
         root = np.sqrt(self.rho_end - np.clip(rho, *self.rho_range))
         places = chebyshev.chebvander(
             np.clip((2 * root - near - far) / (far - near), -1, 1), len(self.own) - 1
         )
-        by_wave = waves.mean(_waves(waves.numbers, self.own.shape[1]))
-        return np.asarray(places @ (self.own @ by_wave.T) - waves.mean(_logarithm(waves.numbers)))
+        found = places @ (self.own @ _waves(wavenumber, self.own.shape[1]).T)
+        return np.asarray(found - _logarithm(wavenumber))
 
-    def cross_at(self, tooth: int, load: Array, point: Array, waves: CellWaves) -> Array:
+    def cross_at(self, tooth: int, load: Array, point: Array, wavenumber: Array) -> Array:
         """c(k) - c(0) on a neighbour (..., waves), counted from 1 to the side of growing rho."""
-        size = self.cross.shape[1]
+        size, waves = self.cross.shape[1], self.cross.shape[3]
         loads, points = (_by_place(rho, self.rho_range, size) for rho in (load, point))
-        by_wave = self.cross[tooth - 1] @ waves.mean(_waves(waves.numbers, self.cross.shape[3])).T
+        by_wave = self.cross[tooth - 1] @ _waves(wavenumber, waves).T
         return np.asarray(np.einsum("...i,ijk,...j->...k", loads, by_wave, points, optimize=True))
 
 
@@ -140,7 +103,7 @@ def _logarithm(wavenumber: Array) -> Array:
 
 
 def _waves(wavenumber: Array, count: int) -> Array:
-    """Chebyshev polynomials of s (..., count); constant beyond the shortest wave."""
+    """Chebyshev polynomials of s (waves, count); constant beyond the shortest wave."""
     s = wavenumber / (wavenumber + BEND)
     most = SHORTEST / (SHORTEST + BEND)
     return np.asarray(chebyshev.chebvander(np.clip(2 * s / most - 1, -1.0, 1.0), count - 1), dtype=float)
@@ -217,10 +180,8 @@ class FlankEnds:
 
     def over(self, edges: Array) -> EndsOverCells:
         """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
-        cross = ends_over_cells(self.half, *self.cross, edges)
-        return EndsOverCells(
-            self.rho_range, self.rho_end, ends_over_cells(self.half, *self.own, edges), cross
-        )
+        cross = over_cells(self.half, *self.cross, edges)
+        return EndsOverCells(self.rho_range, self.rho_end, over_cells(self.half, *self.own, edges), cross)
 
 
 @record

@@ -10,12 +10,14 @@ tensor, d_z on the section the identity, and Z the products along the face,
 
     K_ac = sum over j, l of c_ajcl S_jl (x) Z_jl,   S_jl = Int d_j N d_l N,
 
-the integrals by scikit-fem. Loads are strips of Hertz pressure, observed by their own work. Conjugate gradients solve
-for all nodal loads along the face at once, for loads that are equal and such that are opposite on the other half.
-Of the plane the approach D(q) of a single pair is taken (`fem.single_pair_stiffness`, which has tests of its own), and
-the section's own plane strain c is taken out:
+the integrals by scikit-fem. Loads are strips of the pressure p ~ 1/(a^2 - s^2)^(1/2), which is what more load adds to
+Hertz's, observed by their own work. Conjugate gradients solve for all nodal loads along the face at once, for loads
+that are equal and such that are opposite on the other half. Of the plane the approach D(q) of a single pair is taken
+(`fem.single_pair_stiffness`, which has tests of its own), and the section's own plane strain c is taken out,
 
-    C q + (D(q) - c q) + gap - D >= 0,  q >= 0 .
+    C q + (D(q) - c q) + gap - D >= 0,  q >= 0 ,
+
+which is definite where the strip is at least as wide as the contact.
 """
 
 from __future__ import annotations
@@ -152,22 +154,21 @@ class Solid:
         self.load = self._strip(fine, whole.nodes[0], unknown, profile, rho, half_width, basis.N)
 
     def _strip(self, fine, nodes, unknown, profile, rho, half_width, size):
-        """Work of a strip of Hertz pressure of unit force (2, free nodes), along the flank's normal at its middle."""
+        """Work of a strip of pressure of unit force (2, free nodes), along the flank's normal at its middle."""
         inward = -profile.normal(rho) * MIRROR
         middle = rho**2 / (2 * profile.base_radius)
         edges, ends = fine.facets["flank_left"], fine.parameters["flank_left"]
         t, weight = np.polynomial.legendre.leggauss(12)
         found = np.zeros(size)
         for (a, b, c), (first, last) in zip(nodes[edges], ends, strict=True):
-            low = max(min(first, last), middle - half_width)
-            high = min(max(first, last), middle + half_width)
-            if high <= low:
-                continue
-            s = 0.5 * (low + high) + 0.5 * (high - low) * t
-            pressure = 2 / (np.pi * half_width) * np.sqrt(1 - ((s - middle) / half_width) ** 2)
+            places = np.clip((np.sort([first, last]) - middle) / half_width, -1.0, 1.0)
+            low, high = np.arcsin(places)
+            angle = 0.5 * (low + high) + 0.5 * (high - low) * t
+            s = middle + half_width * np.sin(angle)
+            part = 0.5 * (high - low) * weight / np.pi
             shape = quadratic((s - first) / (last - first))
             for node, column in zip((a, c, b), shape.T, strict=True):
-                found[unknown[node]] += 0.5 * (high - low) * np.sum(weight * pressure * column)
+                found[unknown[node]] += np.sum(part * column)
         print(f"strip's force {found.sum():.5f}")
         return inward[:, None] * found[self.free] / found.sum()
 
@@ -390,7 +391,7 @@ def compare(file, half_width, cells):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("file", type=Path)
-    parser.add_argument("--pressure", type=float, default=0.18)
+    parser.add_argument("--pressure", type=float, default=0.22)
     parser.add_argument("--cells", type=int, default=CELLS)
     chosen = parser.parse_args()
     compare(chosen.file.with_suffix(".npz"), 1e-3 * chosen.pressure, chosen.cells)

@@ -1,0 +1,99 @@
+"""The face at its limits: contacts that end at an edge or on one cell, deep crowning, narrow and wide faces."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fem
+from base import InputError, RangeWarning
+from gears import Alignment, Gear, GearPair, Lead
+
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(200e-6)
+LINE_LOAD = 400e3
+ON_FEW = "most loaded pair bears on"
+
+
+@pytest.fixture(scope="module")
+def bodies() -> fem.Compliance:
+    return fem.compliance(PAIR, 0.02)
+
+
+def _cycle(bodies, load=LINE_LOAD, lead=None, across=0.0, slenderness=10.0, **more):
+    pair = replace(PAIR, face_width=slenderness * PAIR.module)
+    if lead is not None:
+        pair = replace(pair, pinion=replace(pair.pinion, lead=lead))
+    own = replace(bodies, pair=pair) if slenderness == 10.0 else fem.compliance(pair, 0.02)
+    torque = load * pair.face_width * pair.base_radii[0]
+    options = {"face_model": "walls", "alignment": Alignment(across)} | more
+    found = fem.mesh_cycle(pair, torque, 8, own, **options)
+    assert found.converged, found.message
+    assert np.all(found.line_load >= 0.0)
+    borne = found.line_load.sum(axis=(1, 2)) * pair.face_width / found.line_load.shape[2]
+    np.testing.assert_allclose(borne, found.forces.sum(axis=1), rtol=1e-9)
+    return found
+
+
+@pytest.mark.parametrize("model", ["walls", pytest.param("free-ends", marks=pytest.mark.slow)])
+def test_contact_that_reaches_a_free_edge(bodies, model):
+    """The length in contact grows with the load up to the far edge, which takes no load before."""
+    lengths, far = [], []
+    for part in (0.02, 0.1, 0.3, 1.0):
+        load = _cycle(bodies, part * LINE_LOAD, across=20e-6, face_model=model).line_load[3].sum(axis=0)
+        lengths.append(np.count_nonzero(load))
+        far.append(load[-1])
+        assert np.array_equal(np.flatnonzero(load), np.arange(lengths[-1]))
+    assert lengths == sorted(lengths)
+    assert lengths[0] < 32
+    assert lengths[-1] == 64
+    assert far[0] == far[1] == 0.0 < far[3]
+
+
+def test_hardly_any_load_on_60_um(bodies):
+    with pytest.warns(RangeWarning, match=ON_FEW):
+        found = _cycle(bodies, load=100.0, across=60e-6)
+    assert found.face_load_factor.min() > 30.0
+    assert found.face.error >= 0.5
+
+
+def test_slope_that_opens_all_but_one_cell(bodies):
+    with pytest.warns(RangeWarning, match="bears on 1 of 64 cells"):
+        found = _cycle(bodies, load=50.0, across=2e-3)
+    assert np.all(np.count_nonzero(found.line_load.sum(axis=1), axis=1) == 1)
+    np.testing.assert_allclose(found.face_load_factor, 64.0)
+
+
+@pytest.mark.parametrize("load", [LINE_LOAD, 0.05 * LINE_LOAD])
+def test_crowning_of_200_um(bodies, load):
+    found = _cycle(bodies, load, Lead(crowning=200e-6))
+    np.testing.assert_allclose(found.line_load, found.line_load[..., ::-1], rtol=1e-7, atol=1e-3)
+    assert found.face_load_factor.min() > 3.0
+    assert np.all(found.line_load[:, :, 0] == 0.0)
+
+
+@pytest.mark.parametrize("slenderness", [0.5, 2.0, 40.0])
+def test_face_of_half_to_forty_modules(bodies, slenderness):
+    """Slopes of equal angle: the wider the face, the more uneven."""
+    found = _cycle(bodies, across=1e-6 * slenderness, slenderness=slenderness)
+    ratio = found.face_load_factor.max()
+    assert 1.0 < ratio < {0.5: 1.15, 2.0: 1.3, 40.0: 4.0}[slenderness]
+    assert found.face.error < 0.06
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slenderness", [0.5, 40.0])
+def test_free_ends_of_half_and_forty_modules(bodies, slenderness):
+    found = _cycle(bodies, slenderness=slenderness, face_model="free-ends")
+    walls = _cycle(bodies, slenderness=slenderness)
+    assert np.all(found.stiffness < walls.stiffness)
+    # plane stress is softer by nu^2 at most
+    assert np.all(found.stiffness > 0.9 * walls.stiffness)
+
+
+def test_what_is_too_much_is_refused_by_name(bodies):
+    with pytest.raises(InputError, match=r"alignment.in_plane = 0.006: .*at most 0.005 m. Give"):
+        _cycle(bodies, across=6e-3)
+    with pytest.raises(InputError, match="crowning"):
+        _cycle(bodies, lead=Lead(crowning=2e-3))
