@@ -61,7 +61,7 @@ class OrbitProblem(BranchProblem):
         """Packed parameters of the oscillator with every parameter at its lower bound."""
         packed = self.oscillator.packed()
         for name, low in zip(self.parameters, self.low, strict=True):
-            packed[self.oscillator.place(name)] = low
+            packed[self.oscillator.places(name)] = low
         return packed
 
     @cached_property
@@ -69,13 +69,18 @@ class OrbitProblem(BranchProblem):
         """Change of the packed parameters over the range of each parameter, shape (m, any)."""
         ways = np.zeros((len(self.parameters), len(self.origin)))
         for row, name, width in zip(ways, self.parameters, self.high - self.low, strict=True):
-            row[self.oscillator.place(name)] = width
+            row[self.oscillator.places(name)] = width
         return ways
 
     @cached_property
     def _rooms(self) -> dict[int, Any]:
         """Tables and room of the corrector for numbers of cells: what a parameter does not touch stays tabulated."""
         return {}
+
+    @cached_property
+    def even(self) -> bool:
+        """Whether the damping in the dead zone changes as that in contact."""
+        return np.array_equal(self.ways[:, 1], self.ways[:, 9])
 
     def evaluate(self, u: Array, refinement: int = 1) -> Point | None:
         """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
@@ -101,7 +106,7 @@ class OrbitProblem(BranchProblem):
         if cells and cells not in self._rooms:
             self._rooms[cells] = rooms_of(len(self.parameters), len(self.origin), cells, DEGREE)
         while cells:
-            u, counts = guess.copy(), np.empty(2, dtype=np.int64)
+            u, counts, clock = guess.copy(), np.empty(2, dtype=np.int64), np.empty(1)
             image, lin, bend, turns = (
                 np.empty(2),
                 np.empty((2, m)),
@@ -110,12 +115,13 @@ class OrbitProblem(BranchProblem):
             )
             flag, turned, iterations, residual = correct(
                 self.origin, self.ways, u, across, self.scale, self.periods, limit, image, lin, bend, counts, turns,
-                self._rooms[cells],
+                clock, self._rooms[cells],
             )  # fmt: skip
             if flag != 0:
                 return None
             if turned <= room:
-                return self._point(u, image, lin, bend, counts, turns[:turned], iterations, residual)
+                contact = float(clock[0])
+                return self._point(u, image, lin, bend, counts, contact, turns[:turned], iterations, residual)
             room = turned
         return None
 
@@ -132,16 +138,20 @@ class OrbitProblem(BranchProblem):
         return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
 
     def _point(
-        self, u: Array, image: Array, lin: Array, bend: Array, counts: Integers, turns: Array, iterations: int,
-        residual: float,
+        self, u: Array, image: Array, lin: Array, bend: Array, counts: Integers, contact: float, turns: Array,
+        iterations: int, residual: float,
     ) -> Point:  # fmt: skip
         packed = self._packed(u).tolist()
-        damping, frequency, play = packed[1], packed[4], packed[6]
-        # log det = -4 pi zeta n / omega
+        damping, frequency, play, free = packed[1], packed[4], packed[6], packed[9]
+        # log det = -4 pi zeta n / omega, and the difference of the dampings in contact
         decay = 4.0 * math.pi * self.periods / frequency
-        determinant = math.exp(-decay * damping)
+        determinant = math.exp(-decay * free - 2.0 * (damping - free) * contact)
         change = np.zeros(len(u))
-        change[2:] = -decay * determinant * (self.ways[:, 1] - damping / frequency * self.ways[:, 4])
+        if self.even and damping == free:
+            change[2:] = -decay * determinant * (self.ways[:, 1] - damping / frequency * self.ways[:, 4])
+        else:  # as exact as the entries of the Jacobian
+            (a, b), (c, d) = lin[:, :2].tolist()
+            change = d * bend[:, 0, 0] + a * bend[:, 1, 1] - c * bend[:, 0, 1] - b * bend[:, 1, 0]
         p, q = counts.tolist()
         return Point(
             u, self.values(u), 2.0 * math.pi / frequency, image / self.scale, lin, determinant, (p, q),

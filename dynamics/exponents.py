@@ -26,6 +26,9 @@ class LyapunovResult(AsArray):
         "1", "the largest first; their sum is minus the mean of all damping, -2 zeta if it is linear in one freedom, "
         "which is not used to compute them", "exponent",
     )  # fmt: skip
+    damping: float = quantity(
+        "1", "mean along the motion of the trace of all linear damping, 2 zeta in one freedom"
+    )
     standard_errors: Array = quantity(
         "1",
         "of each, from the scatter of 20 batches of the motion; equal to rounding where the sum is exact",
@@ -112,7 +115,8 @@ def lyapunov_exponents(
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
     cost = Cost(watch.seconds, periods=skip + n)
     error = float(spread[0]) / largest if largest > 0.0 else float(spread[0])
-    return LyapunovResult(exponents, spread, error, motion.states[-1], cost, bool(sure), message)
+    damping = float(np.sum(motion.damped[1:])) / (n * oscillator.period)
+    return LyapunovResult(exponents, damping, spread, error, motion.states[-1], cost, bool(sure), message)
 
 
 @record
@@ -213,7 +217,7 @@ def lyapunov_scan(
                 progress(i + 1, len(grid))
         exponents[i], errors[i], states[i] = result.exponents, result.standard_errors, result.state
         at = result.state
-        defect = max(defect, abs(float(result.exponents.sum()) + here.contraction))
+        defect = max(defect, abs(float(result.exponents.sum()) + result.damping))
         used += result.cost.periods
         unsure += not result.converged
     lost = int(np.sum(np.isnan(exponents[:, 0])))

@@ -58,30 +58,38 @@ class Tables(Flow):
         from dynamics.kernels.flow import iterate
 
         watch = Stopwatch()
-        states, counts, jacobian = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(2)
+        states, counts, frame = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(4, 2)
         at = np.array(state, dtype=np.float64)
-        flag = int(iterate(self.arrays, at, skip, int(derivatives), jacobian, states, counts))
+        flag = int(iterate(self.arrays, at, skip, int(derivatives), frame, states, counts))
+        jacobian = frame[:2]
         if flag:
             states[:], jacobian[:] = np.nan, np.nan
-        decay = -self.damped(0.0, periods + skip)
+        contact = self._time(frame[3, 0]) if derivatives else math.nan
+        decay = -self.damped(contact, periods + skip)
         cost = Cost(watch.seconds, periods=periods + skip)
         return MapResult(states, jacobian, decay, counts, REASONS.get(flag, ""), cost)
 
     def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
-        """State after some cells, its derivative by the state before, time in contact (not looked at); `counts` grow.
+        """State after some cells, its derivative by the state before, time in contact; `counts` grow.
 
         All nan if the motion is lost.
         """
         from dynamics.kernels.flow import partial
 
-        end, factor = np.array(state, dtype=np.float64), np.eye(2)
-        if partial(self.arrays, first, number, end, factor, counts) != 0:
+        end, frame = np.array(state, dtype=np.float64), np.eye(4, 2)
+        if partial(self.arrays, first, number, end, frame, counts) != 0:
             end[:] = np.nan
-        return end, factor, 0.0
+        return end, frame[:2], self._time(frame[3, 0])
 
     def damped(self, contact: float, periods: int) -> float:
-        """Integral of the trace of all damping: it is the same in every region."""
-        return float(2.0 * self.packed[1] * (2.0 * math.pi / self.packed[4]) * periods)
+        """Integral of the trace of all damping, by the time in contact, which it asks for where damping jumps."""
+        pressed, free = 2.0 * self.packed[[1, 9]]
+        whole = free * (2.0 * math.pi / self.packed[4]) * periods
+        return float(whole + (pressed - free) * contact if pressed != free else whole)
+
+    def _time(self, cells: float) -> float:
+        """Time that so many cells take."""
+        return float(2.0 * math.pi / self.packed[4] / self.cells * cells)
 
     def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
         """Samples, extrema and impacts; repeated with more room if the last two did not fit."""
@@ -102,17 +110,17 @@ class Tables(Flow):
         """Growth of two directions, made orthonormal every eight cells."""
         from dynamics.kernels.flow import iterate
 
-        frame, at = np.vstack([np.eye(2), np.zeros((1, 2))]), np.array(state, dtype=np.float64)
-        logs, kept, flag = np.zeros((len(sizes), 2)), [], 0
-        for row, size in zip(logs, sizes, strict=True):
+        frame, at = np.eye(4, 2), np.array(state, dtype=np.float64)
+        logs, kept, damped, flag = np.zeros((len(sizes), 2)), [], np.zeros(len(sizes)), 0
+        for k, (row, size) in enumerate(zip(logs, sizes, strict=True)):
             part = np.empty((size if keep else min(size, 1), 2))
-            frame[2] = 0.0
+            frame[2:] = 0.0
             if size:
                 unseen = np.zeros((len(part), 2), dtype=np.int64)
                 flag = flag or int(iterate(self.arrays, at, size - len(part), 2, frame, part, unseen))
-            row[:] = frame[2]
+            row[:], damped[k] = frame[2], self.damped(self._time(frame[3, 0]), size)
             kept.append(part)
-        return Stretches(logs, np.vstack(kept) if keep else at[None], REASONS.get(flag, ""))
+        return Stretches(logs, np.vstack(kept) if keep else at[None], damped, REASONS.get(flag, ""))
 
     def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
         """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""

@@ -17,7 +17,7 @@ from dynamics.limits import ordered
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import EPS, exact_only
-from dynamics.shooting import exact_determinant, floquet_multipliers
+from dynamics.shooting import floquet_multipliers
 
 
 @record
@@ -108,7 +108,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
         acceleration = float(linear.force(0.0) - linear.stiffness(0.0) * state[0])
     return ContactOrbit(
         state=state + np.array([side * oscillator.half_backlash, 0.0]),
-        multipliers=floquet_multipliers(float(np.trace(image.jacobian)), exact_determinant(linear, 1)),
+        multipliers=floquet_multipliers(float(np.trace(image.jacobian)), math.exp(image.log_determinant)),
         clearance=float(side * nearest),
         tau=float(tau),
         acceleration=float(acceleration),

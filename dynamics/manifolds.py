@@ -16,7 +16,7 @@ from dynamics.limits import POSITIVE
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
-from dynamics.shooting import Orbit, exact_determinant, floquet_multipliers
+from dynamics.shooting import Orbit, floquet_multipliers
 from dynamics.states import Region, within
 
 FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
@@ -65,8 +65,8 @@ def reversed_tables(oscillator: GearOscillator) -> Tables:
     """
     packed = oscillator.packed()
     for name in oscillator.parameters:
-        if name == "damping_ratio" or "phase" in name:
-            packed[oscillator.place(name)] *= -1.0
+        if "damping" in name or "phase" in name:
+            packed[oscillator.places(name)] *= -1.0
     cells = math.ceil(oscillator.cells)
     return tabulated(packed, cells)
 
@@ -193,8 +193,9 @@ class _Grower:
     def direction(self, point: Array) -> Array:
         """Eigenvector at a point of the orbit, from its exact multiplier."""
         n = self.orbit.periods
-        jacobian = period_map(self.forward, point, n).jacobian
-        trace, determinant = float(np.trace(jacobian)), exact_determinant(self.orbit.oscillator, n)
+        image = period_map(self.forward, point, n)
+        jacobian = image.jacobian
+        trace, determinant = float(np.trace(jacobian)), math.exp(image.log_determinant)
         wanted = float(np.real(floquet_multipliers(trace, determinant)[1 if self.backwards else 0]))
         return np.asarray(np.linalg.svd(jacobian - wanted * np.eye(2))[2][1])
 

@@ -33,9 +33,11 @@ _PLACES = {
     "frequency": 4,
     PHASE: 5,
     "half_backlash": 6,
+    "free_damping_ratio": 9,
 }
+_ORDER, _FREE = 8, _PLACES["free_damping_ratio"]
 _SERIES = (
-    9  # where amplitudes and phases of the stiffness begin; those of the error's further harmonics follow
+    10  # where amplitudes and phases of the stiffness begin; those of the error's further harmonics follow
 )
 MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
 
@@ -46,7 +48,7 @@ class GearOscillator(PlanarOscillator):
 
     .. math::
 
-        \ddot X + 2 \zeta \dot X + K(\tau) f(X)
+        \ddot X + 2 \zeta(X) \dot X + K(\tau) f(X)
         = F_m + \omega^2 \sum_j j^2 \varepsilon_j \cos(j \omega \tau + \varphi_{e,j}),
         \qquad f(X) = X - D, \; 0, \; X + D \quad \text{for } X > D, \; |X| \le D, \; X < -D.
 
@@ -55,7 +57,7 @@ class GearOscillator(PlanarOscillator):
     stiffness : FourierStiffness
         :math:`K(\tau)`; mean 1 in the usual scaling.
     damping_ratio : float
-        :math:`\zeta \ge 0`; the damping acts in the dead zone too.
+        :math:`\zeta \ge 0`, in contact; in the dead zone too unless `free_damping_ratio` is given.
     mean_force : float
         :math:`F_m`; positive presses the driving flanks together.
     error_amplitude : float or sequence of float
@@ -70,6 +72,8 @@ class GearOscillator(PlanarOscillator):
         amplitude, or 0 for all of them.
     one_sided : bool
         No second flank: f(X) = 0 for all X <= D, as for a gear with much backlash or a follower on a cam.
+    free_damping_ratio : float, optional
+        :math:`\zeta` in the dead zone, where f is 0: at least 0. Left out: as in contact.
 
     Raises
     ------
@@ -89,6 +93,7 @@ class GearOscillator(PlanarOscillator):
     half_backlash: float
     error_phase: Harmonics = 0.0
     one_sided: bool = False
+    free_damping_ratio: float | None = None
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
@@ -100,6 +105,11 @@ class GearOscillator(PlanarOscillator):
                 if name not in (AMPLITUDE, PHASE)
             }
             values[AMPLITUDE], values[PHASE] = checked_error(faults, self.error_amplitude, self.error_phase)
+            if self.free_damping_ratio is not None:
+                limit = OSCILLATOR["damping_ratio"]
+                values["free_damping_ratio"] = faults.number(
+                    "free_damping_ratio", self.free_damping_ratio, limit
+                )
             faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -118,6 +128,12 @@ class GearOscillator(PlanarOscillator):
         """Half the backlash."""
         return max(self.half_backlash, 1e-300)
 
+    @property
+    def damping_ratios(self) -> tuple[float, float]:
+        """Damping ratios in contact and in the dead zone."""
+        free = self.free_damping_ratio
+        return self.damping_ratio, self.damping_ratio if free is None else free
+
     def packed(self) -> Array:
         """All parameters in one vector, `par` of the kernels."""
         mean, *harmonics = series(self.stiffness)
@@ -125,7 +141,7 @@ class GearOscillator(PlanarOscillator):
         errors = self.error_series
         own = (
             mean, self.damping_ratio, self.mean_force, errors[0, 0], self.frequency, errors[1, 0],
-            self.half_backlash, sides, self.stiffness.order,
+            self.half_backlash, sides, self.stiffness.order, self.damping_ratios[1],
         )  # fmt: skip
         return np.array([*own, *harmonics, *errors[:, 1:].ravel()])
 
@@ -134,10 +150,11 @@ class GearOscillator(PlanarOscillator):
         """Names of all parameters: ``frequency``, ..., ``stiffness.mean``, ``stiffness.amplitudes[0]``, ..."""
         amplitudes, phases = error_names(self.error_series.shape[1])
         own = ("frequency", *amplitudes, *phases, "mean_force", "damping_ratio", "half_backlash")
+        own += () if self.free_damping_ratio is None else ("free_damping_ratio",)
         return own + series_names(self.stiffness.order)
 
-    def place(self, parameter: str) -> int:
-        """Index of a parameter in the vector of `packed`.
+    def places(self, parameter: str) -> list[int]:
+        """Indices of a parameter in the vector of `packed`: two of a damping that is the same in the dead zone.
 
         Raises
         ------
@@ -146,11 +163,13 @@ class GearOscillator(PlanarOscillator):
         """
         self._known(parameter)
         known = parameter.removesuffix("[0]")
+        if known == "damping_ratio" and self.free_damping_ratio is None:
+            return [_PLACES[known], _FREE]
         if known in _PLACES:
-            return _PLACES[known]
+            return [_PLACES[known]]
         amplitudes, phases = error_names(self.error_series.shape[1])
         further = (*series_names(self.stiffness.order)[1:], *amplitudes[1:], *phases[1:])
-        return _SERIES + further.index(parameter)
+        return [_SERIES + further.index(parameter)]
 
     def rest_state(self) -> Array:
         """State at rest with the flanks pressed together by the mean force, at the centre without one."""
@@ -174,10 +193,10 @@ class GearOscillator(PlanarOscillator):
 def cells_per_period(packed: Array) -> float:
     """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
     values: list[float] = packed.tolist()  # plain numbers: branches ask for every point
-    order = int(values[_SERIES - 1])
+    order = int(values[_ORDER])
     further = values[_SERIES + 2 * order :]
     highest = highest_harmonic(order, further[: len(further) // 2])
     stiffest = abs(values[0]) + sum(abs(size) for size in values[_SERIES : _SERIES + order])
     period = 2.0 * math.pi / values[4]
-    drag = 2.0 * values[1] * period
+    drag = 2.0 * max(values[1], values[_FREE]) * period
     return 2.0 * max(period * math.sqrt(stiffest), 2.0 * math.pi * highest, drag)

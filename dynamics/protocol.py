@@ -76,12 +76,15 @@ class Stretches(NamedTuple):
         Of the length of the first direction, and of each further one across those before it.
     states : ndarray, shape (periods, dimension)
         States after every period if asked for, else the last one alone.
+    damped : ndarray, shape (stretches,)
+        Integral of the trace of all damping: what volumes of states shrank by, as far as damping is linear.
     message : str
         Empty, or why the motion could not be followed.
     """
 
     logs: Array
     states: Array
+    damped: Array
     message: str
 
 
@@ -212,11 +215,6 @@ class Oscillator(ABC):
         """Rate at which damping shrinks a disturbance."""
 
     @property
-    @abstractmethod
-    def contraction(self) -> float:
-        """Rate at which damping shrinks volumes of states, where it is linear."""
-
-    @property
     def directions(self) -> int:
         """Independent directions of a disturbance."""
         return self.dimension
@@ -272,13 +270,8 @@ class PlanarOscillator(Oscillator):
 
     @property
     def decay(self) -> float:
-        """The damping ratio."""
+        """The damping ratio, that in contact."""
         return self.damping_ratio
-
-    @property
-    def contraction(self) -> float:
-        """Twice the damping ratio."""
-        return 2.0 * self.damping_ratio
 
     @property
     def natural_size(self) -> float:

@@ -17,7 +17,7 @@ from dynamics.flows import flow_of
 from dynamics.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
 from dynamics.multiple_shooting import shoot_in_stretches
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import EPS, Flow, MapResult, Oscillator, PlanarOscillator
+from dynamics.protocol import EPS, Flow, MapResult, Oscillator
 from dynamics.states import checked_state
 
 FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
@@ -72,11 +72,6 @@ class Orbit:
         """States after each excitation period, shape (periods, dimension)."""
         flow = flow_of(self.oscillator, self.tolerance)
         return flow.follow(self.state, self.periods, derivatives=False).states
-
-
-def exact_determinant(oscillator: PlanarOscillator, periods: int) -> float:
-    r"""Return :math:`\det DP^n = e^{-4 \pi \zeta n / \omega}`; the damping is the same in every region."""
-    return math.exp(-2.0 * oscillator.damping_ratio * oscillator.period * periods)
 
 
 def floquet_multipliers(trace: float, determinant: float) -> npt.NDArray[np.complex128] | Array:

@@ -25,7 +25,12 @@ both = dynamics.GearOscillator(
     damping_ratio=0.05, mean_force=0.1, error_amplitude=0.2, frequency=0.62, half_backlash=0.2,
 )
 found = {}
-for name, pair in (("both sides", both), ("one side", dataclasses.replace(both, one_sided=True))):
+pairs = {
+    "both sides": both,
+    "one side": dataclasses.replace(both, one_sided=True),
+    "damping jumps": dataclasses.replace(both, free_damping_ratio=0.3),
+}
+for name, pair in pairs.items():
     for x, v in ((0.3, 0.0), (0.0, 0.9), (-0.7, -0.4)):
         image = dynamics.period_map(pair, (x, v), 2)
         found[f"map, {name}, {x}"] = [*image.states.ravel(), *image.jacobian.ravel(), *image.counts.ravel()]

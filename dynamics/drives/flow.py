@@ -123,12 +123,12 @@ class DriveFlow(Flow):
         from dynamics.kernels.drives.carrying import iterate
 
         moved = self.oscillator.lowered(np.asarray(state, dtype=np.float64)[None], np.zeros(1))[0]
-        n, clock = len(moved), np.zeros(1)
+        n, clock, damped = len(moved), np.zeros(1), np.zeros(len(sizes))
         frame = np.vstack([np.eye(n), np.zeros((1, n))])
         logs, kept, flag = np.zeros((len(sizes), n)), [moved[None, :][:0]], 0
-        for row, size in zip(logs, sizes, strict=True):
+        for k, (row, size) in enumerate(zip(logs, sizes, strict=True)):
             part = np.empty((size if keep else min(size, 1), n))
-            frame[n] = 0.0
+            frame[n] = clock[0] = 0.0
             if size:
                 unseen = np.zeros((len(part), 2), dtype=np.int64)
                 flag = flag or int(
@@ -136,11 +136,14 @@ class DriveFlow(Flow):
                         self.arrays, 0, self.cells, moved, size - len(part), 2, frame, part, unseen, clock
                     )
                 )
-            row[:] = frame[n]
+            row[:], damped[k] = frame[n], self.damped(float(clock[0]), size)
             kept.append(part)
         states: Array = np.vstack(kept) if keep else moved[None]
         return Stretches(
-            logs, self.oscillator.lifted(np.asarray(states), np.zeros(len(states))), REASONS.get(flag, "")
+            logs,
+            self.oscillator.lifted(np.asarray(states), np.zeros(len(states))),
+            damped,
+            REASONS.get(flag, ""),
         )
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
@@ -181,7 +184,7 @@ def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> 
     load = np.stack([oscillator.load * h**2, at.damping[:, 0] * h])
     mesh = np.array([[series.mean, *series.amplitudes], [0.0, *series.phases]])
     mesh[0] *= at.gain * h**2
-    own = np.zeros(9)
+    own = np.zeros(10)
     own[2], own[4], own[6] = oscillator.load[0], oscillator.frequency, oscillator.half_backlash
     own[7] = 1.0 if oscillator.one_sided else 2.0
     tables = tabulate(mesh, oscillator.error_series, cells, degree, systems, load)

@@ -208,11 +208,6 @@ class DriveOscillator(Oscillator):
         return slowest if slowest > 1e-12 * float(np.max(np.abs(values))) else 0.0
 
     @property
-    def contraction(self) -> float:
-        """Trace of all damping, that of the mesh as in contact."""
-        return float(np.trace(self.coordinates.damping)) + self.coordinates.gain * self.mesh_damping
-
-    @property
     def directions(self) -> int:
         """Directions of a disturbance, without free rotations."""
         return 2 * len(self.load)

@@ -26,7 +26,8 @@ Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]  # see tables.room_of
 F = TypeVar("F", bound=Callable[..., Any])
 
-MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES, ORDER, SERIES = range(10)  # places in `par`
+# places in `par`; FREE is the damping ratio in the dead zone
+MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES, ORDER, FREE, SERIES = range(11)
 # all well, not finite, too many events in a cell, Newton's method failed
 FINE, DIVERGED, CROWDED, LOST = range(4)
 # a literal would have numba compile callees twice

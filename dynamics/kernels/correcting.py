@@ -7,6 +7,7 @@ import numpy as np
 
 from dynamics.kernels.compiling import (
     FINE,
+    FREE,
     FREQUENCY,
     HALF_BACKLASH,
     LOST,
@@ -78,7 +79,7 @@ def move(origin: FloatArray, ways: FloatArray, u: FloatArray, q: FloatArray) -> 
         q[i] = origin[i]
         for k in range(len(ways)):
             q[i] += u[2 + k] * ways[k, i]
-    return bool(q[FREQUENCY] > 0.0 and q[HALF_BACKLASH] >= 0.0 and q[ZETA] >= 0.0)
+    return bool(q[FREQUENCY] > 0.0 and q[HALF_BACKLASH] >= 0.0 and min(q[ZETA], q[FREE]) >= 0.0)
 
 
 @helper
@@ -123,7 +124,8 @@ def newton_step(
 @kernel
 def correct(
     origin: FloatArray, ways: FloatArray, u: FloatArray, across: FloatArray, scale: float, periods: int, limit: int,
-    state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, rooms: Rooms,
+    state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, clock: FloatArray,
+    rooms: Rooms,
 ) -> tuple[int, int, int, float]:  # fmt: skip
     """Newton's method for a periodic orbit in the plane across . (u - guess) = 0, `u` being the guess.
 
@@ -153,7 +155,7 @@ def correct(
         state[0], state[1] = u[0] * scale, u[1] * scale
         flag, turned = probe(
             (q, coef, edge), (dcoef, dedge), ways, state, periods, lin,
-            bend if whole else bend[:0], counts, turns if whole else turns[:0], work, choose, there, none,
+            bend if whole else bend[:0], counts, turns if whole else turns[:0], clock, work, choose, there, none,
         )  # fmt: skip
         if flag != FINE:
             return flag, 0, done, best

@@ -21,7 +21,7 @@ from dynamics.kernels.compiling import (
     kernel,
     shared,
 )
-from dynamics.kernels.regions import clear, enter, leave, start
+from dynamics.kernels.regions import clear, drag_jump, enter, leave, start
 from dynamics.kernels.roots import binomials, poly, shift, sole_root
 
 
@@ -127,7 +127,7 @@ def cross_cell(
     par: FloatArray, coef: FloatArray, edge: FloatArray, cell: int, region: int, y: float, w: float, want: int,
     jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
-    """State at the end of a cell that may hold impacts; counts exits and entries.
+    """State at the end of a cell that may hold impacts; counts exits and entries, and the time in contact up to there.
 
     Between impacts the motion, and its sensitivities, are those of its state at the middle of the cell.
     """
@@ -167,7 +167,10 @@ def cross_cell(
             return region, y_end, w_end, FINE
         if want > 0:
             f0, f1, _, g0, g1, _ = basis(coef, row, s)
-            advance(f0, f1, g0, g1, jac)
+            new = enter(region, hit, par)[0]
+            jump = drag_jump(par, region, new) * (2.0 * math.pi / par[FREQUENCY] / cells)
+            advance(f0, f1, g0 - jump * f0, g1 - jump * f1, jac)
+            jac[3, 0] += (cell + s + 0.5) * ((new == 0) - (region == 0))
         old = region
         region, y = enter(region, hit, par)
         fresh = hit
@@ -242,8 +245,9 @@ def iterate(
     """Carry `state` over `skip` periods, then fill `states` (periods, 2) and `counts` (periods, 2).
 
     Row i is the state after i + 1 further periods and the exits and entries during the last of them. `state`
-    ends at the last period. `want` 1: the rows 0 and 1 of `jac` are multiplied by the derivative of the map;
-    2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2.
+    ends at the last period. `want` 1: the rows 0 and 1 of `jac`, (4, 2), are multiplied by the derivative of the map;
+    2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2. In both cases
+    jac[3, 0] takes the time in contact, in cells.
     """
     par, coef, edge = table
     cells = len(edge) // 2
@@ -262,6 +266,8 @@ def iterate(
         )
         if flag != FINE:
             return flag
+        if want > 0 and region != 0:
+            jac[3, 0] += cells
         if period >= skip:
             states[period - skip, 0] = y + region * par[HALF_BACKLASH]
             states[period - skip, 1] = w / h
@@ -279,7 +285,7 @@ def iterate(
 def partial(
     table: Table, first: int, number: int, state: FloatArray, jac: FloatArray, counts: IntArray
 ) -> int:
-    """Carry `state` and the columns of `jac` over some cells from cell `first`; adds to `counts` (2).
+    """Carry `state` and the columns of `jac`, as of `iterate`, over some cells from cell `first`; adds to `counts` (2).
 
     The state is taken in (X, V) at the start of the first cell. The region of a state on a boundary is decided by
     its speed.
@@ -294,11 +300,15 @@ def partial(
     jac[1, 1] *= h
     while number > 0:
         last = min(cells, first + number)
+        if region != 0:
+            jac[3, 0] -= first
         region, y, w, flag = some_cells(
             par, coef, edge, first, last, region, y, w, ONE, jac, work, choose, counts
         )
         if flag != FINE:
             return flag
+        if region != 0:
+            jac[3, 0] += last
         number -= last - first
         first = ZERO
     state[0] = y + region * par[HALF_BACKLASH]

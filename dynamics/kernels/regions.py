@@ -4,9 +4,11 @@ import math
 
 from dynamics.kernels.compiling import (
     FORCE,
+    FREE,
     FREQUENCY,
     HALF_BACKLASH,
     SIDES,
+    ZETA,
     FloatArray,
     helper,
 )
@@ -47,6 +49,13 @@ def enter(region: int, hit: int, par: FloatArray) -> tuple[int, float]:
     if region == 0:
         return hit, 0.0
     return 0, hit * d
+
+
+@helper
+def drag_jump(par: FloatArray, old: int, region: int) -> float:
+    """Damping, 2 zeta, past a boundary less that before it."""
+    jump = 2.0 * (par[ZETA] - par[FREE])
+    return float(0.0 if (old == 0) == (region == 0) else jump if old == 0 else -jump)
 
 
 @helper

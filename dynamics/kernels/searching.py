@@ -34,7 +34,7 @@ def settle(
     cells = len(edge) // 2
     h, d = 2.0 * math.pi / par[FREQUENCY] / cells, par[HALF_BACKLASH]
     work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
-    count, jac = np.zeros(2, dtype=np.int64), np.zeros((3, 2))
+    count, jac = np.zeros(2, dtype=np.int64), np.zeros((4, 2))
     used = 0
     for i in range(len(starts)):
         region, y = start(starts[i, 0], starts[i, 1], par)
@@ -73,7 +73,7 @@ def calm(
     `states`, (2 n, 2), and `counts` are work space: the motion is looked at every 2 n periods and must repeat after
     n periods or fewer, within `tolerance` of its size.
     """
-    jac = np.zeros((3, 2))
+    jac = np.zeros((4, 2))
     longest = len(states) // 2
     used = 0
     while used + len(states) <= limit:
@@ -106,7 +106,7 @@ def hunt(
     pushes later searches away: the residual is multiplied by 1 + (scale/distance)^2 of each, which scales Newton's
     step by 1/(1 - step . grad log of that factor). Returns the number of points and of periods used.
     """
-    image, jac = np.empty((1, 2)), np.empty((2, 2))
+    image, jac = np.empty((1, 2)), np.zeros((4, 2))
     counts = np.zeros((1, 2), dtype=np.int64)
     x = np.empty(2)
     used = 0
@@ -122,7 +122,7 @@ def hunt(
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
-            stretch = max(1.0, largest(jac, 2))
+            stretch = max(1.0, largest(jac[:2], 2))
             if near <= 1e-13 * scale * stretch:
                 break
             a, b, c, e = 1.0 - jac[0, 0], -jac[0, 1], -jac[1, 0], 1.0 - jac[1, 1]
@@ -143,7 +143,7 @@ def hunt(
             if not (abs(at0) < 1e3 * scale and abs(at1) < 1e3 * scale):
                 near = math.inf
                 break
-        if not near <= 1e-12 * scale * max(1.0, largest(jac, 2)):
+        if not near <= 1e-12 * scale * max(1.0, largest(jac[:2], 2)):
             continue
         new = True
         for k in range(known):

@@ -1,8 +1,10 @@
 """The period map with first and second derivatives and with every extremum.
 
-Directions: 0 and 1 are X and V at tau = 0, then come the given directions of the parameters. The force is continuous
-at an impact, so that first derivatives pass it unchanged; the restoring force has a corner there, so that the
-derivative of the Jacobian jumps by (K - K') M dt, with dt the shift of the instant of the impact.
+Directions: 0 and 1 are X and V at tau = 0, then come the given directions of the parameters. With W = V + g(X), g the
+integral of the damping c over X, it is X' = W - g(X), W' = push - K f(X), continuous at an impact, so that first
+derivatives of X and W pass it unchanged; that of V jumps by (c - c') (dX - dD). The slopes of g and f jump there, so
+that the derivative of the Jacobian M of X and W jumps by (A - A') M dt, with A = (-c, 1; -K, 0) and dt the shift of the
+instant of the impact.
 """
 
 import math
@@ -11,10 +13,12 @@ from dynamics.kernels.compiling import (
     CROWDED,
     DIVERGED,
     FINE,
+    FREE,
     FREQUENCY,
     HALF_BACKLASH,
     MAX_EVENTS,
     ZERO,
+    ZETA,
     FloatArray,
     IntArray,
     Table,
@@ -22,7 +26,7 @@ from dynamics.kernels.compiling import (
     shared,
 )
 from dynamics.kernels.flow import basis, expand
-from dynamics.kernels.regions import clear, enter, leave, note_extremum, start
+from dynamics.kernels.regions import clear, drag_jump, enter, leave, note_extremum, start
 from dynamics.kernels.roots import copy, find_turn, poly
 
 
@@ -145,35 +149,51 @@ def finish(
 
 @helper
 def pass_boundary(
-    ways: FloatArray, old: int, region: int, hit: int, k_old: float, w: float, lin: FloatArray, bend: FloatArray
+    par: FloatArray, ways: FloatArray, old: int, region: int, hit: int, k_old: float, h: float, w: float,
+    lin: FloatArray, bend: FloatArray,
 ) -> None:  # fmt: skip
     """Jumps of the derivatives at an impact; `k_old` is the stiffness there in contact."""
+    fall = -h * drag_jump(par, old, region)  # of the damping, in cells
     if len(bend) > 0 and (old == 0 or region == 0):
         k_jump = k_old if old != 0 else -k_old
         for k in range(lin.shape[1]):
             shifted = lin[0, k] + (old - hit) * play(ways, k)
             for j in range(2):
                 bend[k, 1, j] += k_jump * lin[0, j] * shifted / w
+    if fall != 0.0:
+        past = 2.0 * par[ZETA if region != 0 else FREE] * h
+        sign = 2.0 * h if old != 0 else -2.0 * h
+        for k in range(len(bend)):
+            shifted = lin[0, k] + (old - hit) * play(ways, k)
+            more = fall * stretch(par, ways, k)
+            if k >= 2:
+                more += sign * (ways[k - 2, ZETA] - ways[k - 2, FREE])
+            for j in range(2):
+                turn = fall * lin[0, j] * shifted / w
+                bend[k, 1, j] += fall * bend[k, 0, j] + more * lin[0, j] - past * turn
+                bend[k, 0, j] += turn
+        for k in range(lin.shape[1]):
+            lin[1, k] += fall * (lin[0, k] + (old - hit) * play(ways, k))
     for k in range(2, lin.shape[1]):
         lin[0, k] += (old - region) * play(ways, k)
 
 
 @shared(
     "UniTuple(i8, 2)(Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1])), Tuple((f8[:, :, :, ::1], f8[:, :, ::1])),"
-    " f8[:, ::1], f8[::1], i8, f8[:, ::1], f8[:, :, ::1], i8[::1], f8[:, ::1],"
+    " f8[:, ::1], f8[::1], i8, f8[:, ::1], f8[:, :, ::1], i8[::1], f8[:, ::1], f8[::1],"
     " f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, :, ::1])"
 )
 def probe(
     table: Table, slopes: tuple[FloatArray, FloatArray], ways: FloatArray, state: FloatArray, periods: int,
-    lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray,
+    lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, clock: FloatArray,
     work: FloatArray, choose: FloatArray, there: FloatArray, none: FloatArray,
 ) -> tuple[int, int]:  # fmt: skip
     """Carry `state` over whole periods with its derivatives; returns flag and number of extrema.
 
     `lin`, (2, m): derivatives of the image in m directions, two of the state and those of `ways`. `bend`, (m, 2, 2) or
     empty: derivatives of the Jacobian lin[:, :2]. `counts`, (2): exits and entries. `turns`, (any, 5 + m): time, X,
-    X'', region and its coordinate at every extremum of X, and the derivatives of X there; none wanted if empty. The
-    rest is room: five rows, `binomials`, (2, m), and no second derivatives.
+    X'', region and its coordinate at every extremum of X, and the derivatives of X there; none wanted if empty.
+    `clock`, (1,): time in contact. The rest is room: five rows, `binomials`, (2, m), and no second derivatives.
     """
     par, coef, edge = table
     dcoef, dedge = slopes
@@ -184,6 +204,7 @@ def probe(
     w = state[1] * h
     begin(par, ways, region, w, h, lin, bend)
     counts[0] = counts[1] = 0
+    clock[0] = 0.0
     turned = 0
     way = ZERO
     wanted = len(turns) > 0
@@ -241,11 +262,17 @@ def probe(
             fresh = hit
             counts[0] += old == 1
             counts[1] += region == -1
-            pass_boundary(ways, old, region, hit, poly(coef[cell, 3], ZERO, s)[0], w, lin, bend)
+            pass_boundary(par, ways, old, region, hit, poly(coef[cell, 3], ZERO, s)[0], h, w, lin, bend)
+            if old == 0:
+                clock[0] -= (global_cell + s + 0.5) * h
+            if region == 0:
+                clock[0] += (global_cell + s + 0.5) * h
             if s >= 0.5:
                 break
         if not (abs(y) < 1e150 and abs(w) < 1e150):
             return DIVERGED, turned
+    if region != 0:
+        clock[0] += periods * cells * h
     state[0] = y + region * d
     state[1] = w / h
     finish(par, ways, region, w, h, lin, bend)

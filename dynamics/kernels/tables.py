@@ -10,6 +10,7 @@ import numpy as np
 from dynamics.kernels.compiling import (
     ERROR,
     FORCE,
+    FREE,
     FREQUENCY,
     HALF_BACKLASH,
     MEAN,
@@ -265,8 +266,8 @@ def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first:
     if room[3][0, 0] == 0.0:
         fill_roots(room[3])
     excite(par, par, NO, series, room)
-    drag = 4.0 * math.pi / cells * par[ZETA] / par[FREQUENCY]
     for kind in range(2):
+        drag = 4.0 * math.pi / cells * par[ZETA if kind == 0 else FREE] / par[FREQUENCY]
         for cell in range(cells):
             y[kind, 0, 0, cell] = y[kind, 1, 1, cell] = 1.0
         stiff = series[0][: series.shape[1] if kind == 0 else 0]
@@ -312,14 +313,15 @@ def differentiate(
     series, y, _, _, _ = room
     dseries, dy, drim, _, _ = more
     h = 2.0 * math.pi / series.shape[2] / par[FREQUENCY]
-    drag = 2.0 * par[ZETA] * h
     for p in range(len(ways)):
         first = first_touched(par, ways[p : p + 1])
         if first > 2:
             continue
         excite(par, ways[p], YES, dseries, room)
-        ddrag = 2.0 * ways[p, ZETA] * h - drag * ways[p, FREQUENCY] / par[FREQUENCY]
         for kind in range(2):
+            ratio = ZETA if kind == 0 else FREE
+            drag = 2.0 * par[ratio] * h
+            ddrag = 2.0 * ways[p, ratio] * h - drag * ways[p, FREQUENCY] / par[FREQUENCY]
             terms = series.shape[1] if kind == 0 else 0
             stiff, dstiff = series[0][:terms], dseries[0][:terms]
             for cell in range(series.shape[2] if first == 2 else 0):

@@ -125,7 +125,9 @@ class StepwiseFlow(Flow):
                 flag = flag or int(stretch(*self._fixed, y, going, on, each, pieces, row))
                 states.append(y[:2].copy())
         kept = np.array(states if keep else states[-1:])
-        return Stretches(logs[:, :2], kept, REASONS.get(flag, ""))
+        osc = self.oscillator
+        damped = 2.0 * osc.damping_ratio * osc.period * np.asarray(sizes, dtype=np.float64)
+        return Stretches(logs[:, :2], kept, damped, REASONS.get(flag, ""))
 
     @cached_property
     def _fixed(self) -> tuple[Any, Array, float, float]:

@@ -26,7 +26,7 @@ def step_by_step(osc: GearOscillator, state, duration: float):
 
         def rhs(t, y, spring=spring, region=region):
             k = spring * osc.stiffness(osc.frequency * t)
-            c = 2.0 * osc.damping_ratio
+            c = 2.0 * osc.damping_ratios[0 if spring else 1]
             acceleration = osc.force(t) - c * y[1] - k * (y[0] - region * d)
             return [y[1], acceleration, y[4], y[5], -k * y[2] - c * y[4], -k * y[3] - c * y[5]]
 
@@ -52,6 +52,9 @@ def step_by_step(osc: GearOscillator, state, duration: float):
             break
         at_upper = region == 1 or (region == 0 and len(done.t_events[0]) > 0)
         counts[0] += region == 1
+        pressed, free = osc.damping_ratios
+        jump = 2.0 * (free - pressed) if region else 2.0 * (pressed - free)
+        y[4:] -= jump * y[2:4]  # damping jumps, and with it the acceleration
         region = 0 if region else (1 if at_upper else -1)
         counts[1] += region == -1
         y[0] = d if at_upper else -d

@@ -25,7 +25,15 @@ def oscillator(**changes) -> GearOscillator:
 
 @pytest.mark.parametrize(
     "osc",
-    [oscillator(), oscillator(half_backlash=0.0), oscillator(one_sided=True), oscillator(damping_ratio=0.0)],
+    [
+        oscillator(),
+        oscillator(half_backlash=0.0),
+        oscillator(one_sided=True),
+        oscillator(damping_ratio=0.0),
+        oscillator(free_damping_ratio=0.1),
+        oscillator(one_sided=True, free_damping_ratio=0.01),
+        oscillator(mean_force=0.0, half_backlash=0.1, free_damping_ratio=0.2),
+    ],
 )
 def test_against_differences(osc):
     """Every parameter, first and second derivatives, four-point differences."""
