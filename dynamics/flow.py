@@ -70,7 +70,7 @@ class Tables(Flow):
         return MapResult(states, jacobian, decay, counts, REASONS.get(flag, ""), cost)
 
     def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
-        """State after some cells, its derivative by the state before, time in contact; `counts` grow.
+        """State after some cells, its derivative by the state before, time in contact if asked for; `counts` grow.
 
         All nan if the motion is lost.
         """

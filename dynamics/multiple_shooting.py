@@ -35,7 +35,7 @@ class Chain:
     counts : tuple of int
         Exits from X > D and entries into X < -D.
     contact : float
-        Time in contact; 0 where damping does not ask for it.
+        Time in contact, where damping asks for it.
     residual : float
         Largest gap between a stretch's end and the next node.
     iterations : int

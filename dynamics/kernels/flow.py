@@ -8,12 +8,14 @@ from dynamics.kernels.compiling import (
     CROWDED,
     DIVERGED,
     FINE,
+    FREE,
     FREQUENCY,
     HALF_BACKLASH,
     MAX_EVENTS,
     ONE,
     SIDES,
     ZERO,
+    ZETA,
     FloatArray,
     IntArray,
     Table,
@@ -127,7 +129,7 @@ def cross_cell(
     par: FloatArray, coef: FloatArray, edge: FloatArray, cell: int, region: int, y: float, w: float, want: int,
     jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
 ) -> tuple[int, float, float, int]:  # fmt: skip
-    """State at the end of a cell that may hold impacts; counts exits and entries, and the time in contact up to there.
+    """State at the end of a cell that may hold impacts; counts exits and entries.
 
     Between impacts the motion, and its sensitivities, are those of its state at the middle of the cell.
     """
@@ -167,10 +169,13 @@ def cross_cell(
             return region, y_end, w_end, FINE
         if want > 0:
             f0, f1, _, g0, g1, _ = basis(coef, row, s)
-            new = enter(region, hit, par)[0]
-            jump = drag_jump(par, region, new) * (2.0 * math.pi / par[FREQUENCY] / cells)
-            advance(f0, f1, g0 - jump * f0, g1 - jump * f1, jac)
-            jac[3, 0] += (cell + s + 0.5) * ((new == 0) - (region == 0))
+            if par[ZETA] != par[FREE]:  # the acceleration jumps
+                new = enter(region, hit, par)[0]
+                jump = drag_jump(par, region, new) * (2.0 * math.pi / par[FREQUENCY] / cells)
+                g0 -= jump * f0
+                g1 -= jump * f1
+                jac[3, 0] += (cell + s + 0.5) * ((new == 0) - (region == 0))
+            advance(f0, f1, g0, g1, jac)
         old = region
         region, y = enter(region, hit, par)
         fresh = hit
@@ -247,7 +252,7 @@ def iterate(
     Row i is the state after i + 1 further periods and the exits and entries during the last of them. `state`
     ends at the last period. `want` 1: the rows 0 and 1 of `jac`, (4, 2), are multiplied by the derivative of the map;
     2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2. In both cases
-    jac[3, 0] takes the time in contact, in cells.
+    jac[3, 0] takes the time in contact, in cells, where damping is another one out of it.
     """
     par, coef, edge = table
     cells = len(edge) // 2

@@ -126,7 +126,9 @@ def test_one_freedom_is_the_gear_oscillator(gear):
     shift = np.ravel(drive.error_motion(np.zeros(1)))
     ours, theirs = period_map(drive, shift + START, 5), period_map(gear, START, 5)
     assert ours.states - shift == pytest.approx(theirs.states, abs=1e-13)
-    near = 1e-13 if gear.free_damping_ratio is None else 1e-12  # what was larger on the way leaves its rounding
+    near = (
+        1e-13 if gear.free_damping_ratio is None else 1e-12
+    )  # what was larger on the way leaves its rounding
     assert ours.jacobian == pytest.approx(theirs.jacobian, abs=near * np.max(np.abs(theirs.jacobian)))
     assert ours.log_determinant == pytest.approx(theirs.log_determinant, rel=1e-14)
     assert np.array_equal(ours.counts, theirs.counts)
