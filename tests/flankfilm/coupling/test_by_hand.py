@@ -17,7 +17,7 @@ from ehl import Lubricant
 from flankfilm.coupling import given_series, jumps
 from flankfilm.coupling.film_points import stiffness_rows
 from flankfilm.coupling.films import PathFilms, contacts_of
-from flankfilm.coupling.loaded_teeth import LoadedTeeth
+from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth
 from flankfilm.coupling.loads import torque_curves
 from gears import Gear, GearPair
 
@@ -81,7 +81,9 @@ def test_the_teeth_beside_the_film_at_the_pitch_point_are_their_tangent(bodies: 
     """What a little more torque deflects them by; the secant is 5 % less, since Hertzian contacts stiffen."""
     oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
     less, cycle, more = fem.mesh_cycle(PAIR, (597.0, 600.0, 603.0), 8, bodies, beyond_path=False)
-    rho1, contacts = contacts_of(PAIR, cycle, 209.44, oil)
+    held = Flanks(beyond_path=False)
+    dry = LoadedTeeth(PAIR, 600.0, compliance=bodies, flanks=held).cycle(8)
+    rho1, contacts = contacts_of(PAIR, dry, 209.44, oil)
     nearest = int(np.argmin(np.abs(rho1 - PAIR.points.C)))
     film = ehl.solve(contacts[nearest], tolerance=0.05)
     rows = stiffness_rows(PAIR, cycle, PathFilms(rho1[[nearest]], (film,)))
