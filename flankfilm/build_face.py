@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 __all__ = ["even_along_face", "face", "faults_of_face", "varies_by"]
 
 EVEN = {
-    "film": "films are of loads that are even along it",
-    "losses": "films are of loads that are even along it",
     "root-stress": "root stresses are of loads that are even along it",
 }
 """Wants that know no load that varies along the face."""
@@ -70,12 +68,7 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         if want in EVEN:
             allowed = f"must not be wanted {where}: {EVEN[want]}"
             yield Fault("wants", f'"{want}"', allowed, f"Leave {want} out of wants, {drop}")
-    if scene.film.model != "none":
-        allowed = f'must be "none" {where}: {EVEN["film"]}'
-        yield Fault("film.model", f"{scene.film.model!r}", allowed, f'Take film.model = "none", {drop}')
-    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
-        allowed = f"must be a number {where}: {EVEN['film']}"
-        yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
+    yield from _of_films(scene, where, drop)
     if scene.stiffness.plane != "strain":
         remedy = f'Take stiffness.plane = "strain", {drop}'
         yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {where}', remedy)
@@ -84,6 +77,19 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         value = "true, of plastics if left out" if asked is None else "true"
         remedy = f"Give stiffness.moving_contact = false, {drop}"
         yield Fault("stiffness.moving_contact", value, f"must be false {where}: contacts stay", remedy)
+
+
+def _of_films(scene: Scene, where: str, drop: str) -> Iterator[Fault]:
+    """Faults of films that do not follow from place and line load alone, and of what has no films over the face."""
+    if scene.film.supply == "meniscus":
+        allowed = f"must not be a meniscus {where}, whose place each cell would decide"
+        yield Fault("film.supply", "'meniscus'", allowed, f'Take "flooded" or "oil-layer", {drop}')
+    if scene.film.stiffness is not None:
+        allowed = f"must be left out {where}: films of cells have their own slope by the load"
+        yield Fault("film.stiffness", f"{scene.film.stiffness!r}", allowed, f"Leave it out, {drop}")
+    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
+        allowed = f"must be a number {where}: the damping of films is that of even loads"
+        yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
 
 
 def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:

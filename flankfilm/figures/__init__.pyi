@@ -6,6 +6,7 @@ from .animation import view_cycle as view_cycle
 from .excitation import excitation as excitation
 from .excitation import spectrum as spectrum
 from .face import face_load_factor as face_load_factor
+from .face import film_map as film_map
 from .face import flank_map as flank_map
 from .face import line_load_models as line_load_models
 from .film import film_along_path as film_along_path

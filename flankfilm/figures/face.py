@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -31,6 +31,9 @@ MAPS = ("line_load", "hertz_pressure")
 
 FILMS = ("line_load", "minimum_thickness")
 """Figures of the cells' films that are painted."""
+
+TIMES_LEAST = 2.0
+"""Films over the least of them up to which colours tell them apart."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +76,8 @@ class FlankMap:
         shown = Reading(np.where(greatest > 0.0, greatest, np.nan), values.meaning, values.unit)
         return cls(places, face.values, shown)
 
-    def paint(self, axes: Axes) -> None:
-        """Paint the map with its scale of colours; white where nothing bears."""
+    def paint(self, axes: Axes, top: float | None = None) -> None:
+        """Paint the map with its scale of colours, up to a value that counts; white where nothing bears."""
         bears = np.flatnonzero(np.isfinite(self.values.values).any(axis=1))
         first, last = (int(bears[0]), int(bears[-1]) + 1) if bears.size else (0, len(self.travel))
         painted = axes.pcolormesh(
@@ -82,12 +85,13 @@ class FlankMap:
             self.face,
             self.values.values[first:last].T,
             vmin=0.0,
+            vmax=top,
             shading="nearest",
             rasterized=True,
         )
         figure = axes.get_figure()
         assert figure is not None
-        figure.colorbar(painted, ax=axes, label=self.values.label)
+        figure.colorbar(painted, ax=axes, label=self.values.label, extend="neither" if top is None else "max")
         axes.grid(visible=False)
         half = 0.5 * float(self.face[-1] - self.face[0]) * len(self.face) / (len(self.face) - 1)
         axes.set(ylabel="place on the\nface [mm]", ylim=(-half, half))
@@ -112,6 +116,31 @@ def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | N
     with sheet(style, len(painted), height=2.3 * len(painted), legend=0) as (drawn, panels):
         for axes, name in zip(panels, painted, strict=True):
             FlankMap.of(travel, face, read(results, name)).paint(axes)
+        over_path(results, *panels)
+    return drawn
+
+
+def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | None = None) -> Figure:
+    """Draw least film and Hertz pressure with films over path and face.
+
+    Films of cells that bear little are many times as thick: colours end at twice the least film of all.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run with a film whose pair has a lead or an alignment.
+    prefix : str
+        Of the variables of ``flankfilm.coupling.FaceFilms``.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
+    names = ("travel", "face_position", "minimum_thickness", "hertz_pressure")
+    places = [f"{prefix}_{name}" for name in names]
+    need(results, "run a scene with a film whose pair has a lead or an alignment", *places, "path_point_rho1")
+    travel, face, film, pressure = (read(results, name) for name in places)
+    with sheet(style, 2, height=4.6, legend=0) as (drawn, panels):
+        FlankMap.of(travel, face, film).paint(panels[0], TIMES_LEAST * float(np.nanmin(film.values)))
+        FlankMap.of(travel, face, pressure).paint(panels[1])
         over_path(results, *panels)
     return drawn
 
@@ -156,8 +185,9 @@ def face_loads(found: fem.FaceLoads) -> Figure:
 
 def face_films(found: coupling.FaceFilms) -> Figure:
     """Draw line load and least film over path and face."""
+    top = TIMES_LEAST * float(read_figure(found, "least_film").values)
     with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
-        _painted(panels, found, FILMS)
+        _painted(panels, found, FILMS, {"minimum_thickness": top})
     return drawn
 
 
@@ -202,10 +232,15 @@ def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Sty
     return drawn
 
 
-def _painted(panels: Sequence[Axes], found: fem.FaceLoads | coupling.FaceFilms, names: Sequence[str]) -> None:
-    """Paint figures of the cells of a record, with the points of its pair's path."""
+def _painted(
+    panels: Sequence[Axes],
+    found: fem.FaceLoads | coupling.FaceFilms,
+    names: Sequence[str],
+    tops: Mapping[str, float] | None = None,
+) -> None:
+    """Paint figures of the cells of a record, up to given values, with the points of its pair's path."""
     travel, face = read_figure(found, "travel"), read_figure(found, "face_position")
     for axes, name in zip(panels, names, strict=True):
-        FlankMap.of(travel, face, read_figure(found, name)).paint(axes)
+        FlankMap.of(travel, face, read_figure(found, name)).paint(axes, (tops or {}).get(name))
     points = found.pair.points
     mark_path({name: 1e3 * (getattr(points, name) - points.A) for name in "ABCDE"}, *panels)

@@ -24,6 +24,8 @@ def losses(found: MeshLosses) -> Iterator[xr.Dataset]:
     yield of_record("losses", found)
     yield of_record("losses_band", found.band)
     yield of_record("losses_path", found.path)
+    if found.over_face is not None:
+        yield of_record("losses_face", found.over_face)
 
 
 def hot_contact(film: ehl.ThermalFilm, bulk: tuple[float, float]) -> Iterator[xr.Dataset]:

@@ -277,6 +277,8 @@ def _lubricated(cycle: LubricatedCycle, modulus: float) -> Iterator[xr.Dataset]:
     """Mesh cycle with film, the film along the path, whole films and starved ones otherwise; `modulus` E' [Pa]."""
     yield of_record("lubricated", cycle)
     yield of_record("film", cycle.film)
+    if cycle.over_face is not None:
+        yield of_record("film_face", cycle.over_face)
     for name, film in cycle.film.profiles.items():
         prefix = f"film_profile_{name.replace(' ', '_')}"
         yield of_record(prefix, film, THROUGH)

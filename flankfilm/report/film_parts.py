@@ -41,7 +41,7 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     return Part(
         "film",
         "Oil film",
-        (verdict, *_supply(stage), *_mixed(stage)),
+        (verdict, *_over_face(cycle), *_supply(stage), *_mixed(stage)),
         pictures(results, *_pictured(cycle), **_captions(stage)),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
@@ -52,6 +52,8 @@ def _pictured(cycle: LubricatedCycle) -> Iterator[str]:
     """Names of the figures of a film."""
     stage = cycle.film
     yield "film_along_path"
+    if cycle.over_face is not None:
+        yield "film_map"
     if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
         yield "film_shares"
     if stage.profiles:
@@ -78,6 +80,21 @@ def _captions(stage: FilmAlongPath) -> dict[str, str]:
         "rough": said("rough_pressure") if stage.film_ratio is not None else "",
         "spikes": said("narrow_spikes") if narrow else said("resolved_spikes"),
     }
+
+
+def _over_face(cycle: LubricatedCycle) -> Iterator[str]:
+    """What films over the face are made of, and what they leave out."""
+    found = cycle.over_face
+    if found is not None:
+        yield said(
+            "film_over_face",
+            least=number(1e6 * found.least_film),
+            place=number(1e3 * found.least_film_place, 3),
+            films=counted(found.films, "film"),
+            table=percent(found.table_error),
+            zone=number(1e3 * found.end_zone, 2),
+            side=percent(found.side_flow, 2),
+        )
 
 
 def _definitions(stage: FilmAlongPath, face: float) -> Table:

@@ -18,10 +18,10 @@ from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.cache import Cache
 from flankfilm.coupling.face_models import _linear
 from flankfilm.output.run import results_dataset, results_tables
-from flankfilm.report import face_parts
+from flankfilm.report import face_parts, film_parts
 from flankfilm.scene import parse_scene
 from flankfilm.scene.plain_gears import plain_flanks
-from flankfilm.stages.catalogue import DRY_CYCLE, FACE_GEARS, PAIR
+from flankfilm.stages.catalogue import DRY_CYCLE, FACE_GEARS, FILM, PAIR
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS
 from flankfilm.stages.goals import goals
@@ -89,9 +89,7 @@ def test_what_is_of_even_loads_is_refused_at_once_before_anything_is_computed():
         refuse(parse_scene(text))
     found = [str(fault) for fault in caught.value.faults]
     assert [one.partition(":")[0] for one in found] == [
-        'wants = "film"',
         'wants = "root-stress"',
-        "film.model = 'ehl'",
     ]
     assert all("by [alignment]" in one and "or drop [alignment]" in one for one in found)
 
@@ -213,3 +211,41 @@ def test_gears_along_the_face_are_announced_once_and_kept(tmp_path: Path):
     line = "gears along the face, solved once and kept"
     assert line in told()
     assert line not in told()
+
+
+OILED = QUICK.replace('["stiffness"]', '["film", "report"]').replace(
+    "pinion_torque_Nm = 100", "pinion_torque_Nm = 100\npinion_speed_rpm = 2000"
+) + (
+    "[lubricant]\nviscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\ntemperature_C = 80\n"
+    '[film]\nmodel = "dowson"\n'
+)
+
+
+def test_films_over_the_face_from_scene_to_page():
+    engine = Engine(parse_scene(OILED.replace("teeth = 20", "teeth = 20, lead_slope_um = 0")), Cache(None))
+    pair, cycle = engine[PAIR], engine[FILM]
+    over = cycle.over_face
+    assert over.line_load.shape[-1] == 8
+    values = {"pair": pair, "dry cycle": engine[DRY_CYCLE], "film": cycle}
+    data = results_dataset(engine.scene, values)
+    assert float(data["film_face_least_film"]) == over.least_film
+    assert data["film_face_minimum_thickness"].dims[-1] == "film_face_cell"
+    assert OUTPUTS["least_film_um"].value(engine) == pytest.approx(1e6 * over.least_film, rel=0.02)
+    film, pressure = figures.film_map(data).axes[:2]
+    assert "minimum_thickness" not in film.get_ylabel()
+    assert film.collections[0].norm.vmax == pytest.approx(2e6 * over.least_film, rel=1e-6)
+    assert pressure.collections[0].norm.vmin == 0.0
+    part = film_parts.film(cycle, data, 0.01)
+    assert "most loaded cell" in part.paragraphs[1]
+    assert len(part.figures) == 2
+
+
+def test_films_that_do_not_follow_from_place_and_load_are_refused_under_their_keys():
+    for old, new, where in (
+        ('model = "dowson"', 'supply = "meniscus"\nmeniscus_half_widths = 1.3', "film.supply"),
+        ('model = "dowson"', 'model = "ehl"\nstiffness = "tangent"', "film.stiffness"),
+    ):
+        assert old in OILED
+        assert "where the load varies along the face" in faults(OILED.replace(old, new))[where]
+    refuse(parse_scene(OILED.replace('model = "dowson"', 'supply = "oil-layer"\noil_layer_um = 0.2')))
+    refuse(parse_scene(OILED.replace('["film", "report"]', '["losses"]')))
