@@ -148,3 +148,8 @@ def kept(function: F, **options: Any) -> F:
 def kernel(function: F) -> F:
     """Compile for callers in Python, kept on disk."""
     return kept(function, **_OPTIONS)
+
+
+def plain_kernel(function: F) -> F:
+    """Compile for callers in Python, kept on disk; like a helper it allocates nothing."""
+    return kept(function, _nrt=False, **_OPTIONS)

@@ -19,6 +19,7 @@ from dynamics.kernels.compiling import (
     FloatArray,
     IntArray,
     Table,
+    called,
     helper,
     kernel,
     shared,
@@ -284,6 +285,12 @@ def iterate(
         jac[1, 0] /= h
         jac[1, 1] /= h
     return FINE
+
+
+iterate_there = called(
+    iterate,
+    "i8(Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1])), f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
+)
 
 
 @kernel

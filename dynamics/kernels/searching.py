@@ -15,7 +15,7 @@ from dynamics.kernels.compiling import (
     Table,
     kernel,
 )
-from dynamics.kernels.flow import iterate, some_cells
+from dynamics.kernels.flow import iterate_there, some_cells
 from dynamics.kernels.regions import start
 from dynamics.kernels.roots import binomials, largest
 
@@ -77,7 +77,7 @@ def calm(
     longest = len(states) // 2
     used = 0
     while used + len(states) <= limit:
-        flag = iterate(table, state, ZERO, ZERO, jac, states, counts)
+        flag = iterate_there(table, state, ZERO, ZERO, jac, states, counts)
         if flag != FINE:
             return -flag
         used += len(states)
@@ -92,7 +92,9 @@ def calm(
                     break
             if off <= tolerance * size:
                 return used
-    flag = iterate(table, state, limit - used, ZERO, jac, states[:0], counts[:0]) if limit > used else FINE
+    flag = (
+        iterate_there(table, state, limit - used, ZERO, jac, states[:0], counts[:0]) if limit > used else FINE
+    )
     return limit if flag == FINE else -flag
 
 
@@ -118,7 +120,7 @@ def hunt(
             jac[0, 0] = jac[1, 1] = 1.0
             jac[0, 1] = jac[1, 0] = 0.0
             used += periods
-            if iterate(table, x, periods - 1, ONE, jac, image, counts) != FINE:
+            if iterate_there(table, x, periods - 1, ONE, jac, image, counts) != FINE:
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
@@ -159,6 +161,6 @@ def hunt(
             if not old:
                 found[known, 0], found[known, 1] = x[0], x[1]
                 known += 1
-            iterate(table, x, ZERO, ZERO, jac, image, counts)
+            iterate_there(table, x, ZERO, ZERO, jac, image, counts)
             used += 1
     return known, used

@@ -26,7 +26,7 @@ from dynamics.kernels.compiling import (
     Room,
     called,
     helper,
-    kernel,
+    plain_kernel,
     shared,
 )
 
@@ -35,8 +35,8 @@ ROOM = "Tuple((f8[:, :, ::1], f8[:, :, :, ::1], f8[:, :, :, ::1], f8[:, ::1], f8
 
 
 def tables_of(cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
-    """Zeros for `coef` and `edge`."""
-    return np.zeros((2 * cells, 4, degree + 1)), np.zeros((2 * cells, EDGE))
+    """Room for `coef` and `edge`."""
+    return np.empty((2 * cells, 4, degree + 1)), np.empty((2 * cells, EDGE))
 
 
 def slopes_of(ways: int, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
@@ -52,7 +52,7 @@ def room_of(cells: int, degree: int) -> Room:
     """
     n, kinds = degree + 1, 2
     return (
-        np.zeros((kinds, n, cells)),
+        np.empty((kinds, n, cells)),
         np.zeros((kinds, 3, n, cells)),
         np.empty((kinds, 3, 6, cells)),
         np.zeros((kinds, 2 * cells)),
@@ -122,7 +122,7 @@ def first_touched(par: FloatArray, ways: FloatArray) -> int:
     return touched
 
 
-@helper
+@shared(f"void(f8[::1], f8[::1], b1, f8[:, :, ::1], {ROOM})")
 def excite(par: FloatArray, way: FloatArray, derived: bool, series: FloatArray, room: Room) -> None:
     """Stiffness series[0] and force series[1], both times h^2, about the middles of all cells.
 
@@ -152,7 +152,7 @@ def excite(par: FloatArray, way: FloatArray, derived: bool, series: FloatArray, 
         add_harmonic(series[0 if stiff else 1], n, a * c - b * s, a * s + b * c, roots, waves)
 
 
-@helper
+@shared("void(f8[:, ::1], f8[:, ::1], f8, f8[:, :, ::1], i8, f8[:, ::1], f8, f8[:, :, ::1])")
 def solve(
     stiff: FloatArray, push: FloatArray, drag: float, y: FloatArray, first: int,
     more_stiff: FloatArray, more_drag: float, base: FloatArray,
@@ -183,7 +183,7 @@ def solve(
                 new[cell] *= share
 
 
-@helper
+@shared("void(f8[:, :, ::1], f8[:, :, ::1], i8)")
 def survey(y: FloatArray, rim: FloatArray, first: int) -> None:
     """Values and speeds at both ends, and bounds of |d2y/ds2|/8 and |d3y/ds3|/8 with a last digit for rounding.
 
@@ -256,9 +256,9 @@ def hand_over(y: FloatArray, coef: FloatArray, kind: int, first: int) -> None:
                 coef[cell + kind * cells, j, k] = y[j, k, cell]
 
 
-@kernel
+@plain_kernel
 def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first: int) -> None:
-    """Fill tables of zeros; with `first` above 0 again for a `par` that touches the solutions from there on alone."""
+    """Fill tables; with `first` above 0 again for a `par` that touches the solutions from there on alone."""
     series, y, rim, _, _ = room
     cells = series.shape[2]
     if first > 2:
@@ -278,6 +278,7 @@ def fill(par: FloatArray, coef: FloatArray, edge: FloatArray, room: Room, first:
     for cell in range(cells if first == 0 else 0):
         for k in range(series.shape[1]):
             coef[cell, 3, k] = series[0, k, cell]
+            coef[cell + cells, 3, k] = 0.0
 
 
 @helper
