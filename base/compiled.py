@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -13,11 +14,14 @@ from base.cost import ASIDE, unclocked
 
 _HEARERS: list[Callable[[str], None]] = []
 """Called with the name of what is compiled."""
+_SAID: set[str] = set()
+"""Packages whose log says that they compile."""
 
 
-@cache
-def hide_compilation() -> None:
+def hide_compilation(package: str = "") -> None:
     """Hide from the stopwatches what numba does under its compiler's lock, from now on; loads numba.
+
+    Where nobody listens, see `heard_compiling`, the log of a package that names itself here says when it compiles.
 
     Under that lock the collector of garbage rests: looking at all that the compiler holds, again and again, would
     take a fifth of its time.
@@ -33,6 +37,14 @@ def hide_compilation() -> None:
     >>> watch.seconds < 0.05
     True
     """
+    if package:
+        _SAID.add(package)
+    _listen()
+
+
+@cache
+def _listen() -> None:
+    """Hear of the compiler's lock and of what is compiled."""
     with unclocked():
         from numba.core import event
 
@@ -81,6 +93,19 @@ def compiling(what: str) -> None:
     """
     for hearer in tuple(_HEARERS):
         hearer(what)
+    package = what.partition(".")[0]
+    if not _HEARERS and package in _SAID:
+        _say(package)
+
+
+@cache
+def _say(package: str) -> None:
+    """Say once in a process that a package compiles."""
+    logging.getLogger(package).warning(
+        "%s: compiling, which takes seconds, once: later processes load what is kept "
+        "(`flankfilm warm-up` compiles all beforehand)",
+        package,
+    )
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from numba import njit
 
 from base import Array, hide_compilation
 
-hide_compilation()
+hide_compilation("ehl")
 
 _STEP = 3.0  # largest change of ln(eta) by heat in one sweep
 

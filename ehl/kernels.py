@@ -12,7 +12,7 @@ from numba import njit
 
 from base import Array, Integers, hide_compilation
 
-hide_compilation()
+hide_compilation("ehl")
 
 # Beyond this many half-cells the closed form of a cell's integral cancels and its series has converged.
 _FAR = 10.0

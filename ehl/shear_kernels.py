@@ -14,7 +14,7 @@ from numba import njit
 
 from base import Array, hide_compilation
 
-hide_compilation()
+hide_compilation("ehl")
 
 _MOST = 300.0  # largest Sig sought
 _SMALL = 1e-3  # Sig below which flow and slope are in proportion

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from llvmlite import binding
 from numba import njit
-from numba.core import cgutils, sigutils
+from numba.core import cgutils, config, sigutils
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.typing import signature as typed
 from numba.extending import intrinsic
@@ -39,7 +39,7 @@ _INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrap
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
 
 
-hide_compilation()
+hide_compilation("dynamics")
 
 
 @cache
@@ -108,6 +108,8 @@ def called(compiled: F, types: str) -> F:
     A helper is compiled again into every caller, and into the callers of these. What is long, and takes much longer to
     run than a call, is better called. It raises nothing.
     """
+    if config.DISABLE_JIT:
+        return compiled
     function: Callable[..., Any] = cast(Any, compiled).py_func
     arguments, result = sigutils.normalize_signature(types)
     symbol = f"{function.__module__}.{function.__qualname__}"

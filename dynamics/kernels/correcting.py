@@ -1,7 +1,7 @@
 """The corrector: Newton's method on the period map with its derivatives."""
 
 import math
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def rooms_of(ways: int, length: int, cells: int, degree: int) -> Rooms:
         room_of(cells, degree),
         (
             np.empty((5, degree + 1)),
-            cast(Any, binomials).py_func(degree),
+            getattr(binomials, "py_func", binomials)(degree),
             np.empty((2, m)),
             np.empty((0, 2, 2)),
         ),

@@ -501,3 +501,25 @@ def test_compiling_and_loading_kernels_is_not_counted(tmp_path, kept):
     counted, whole, loaded = run()
     assert loaded == kept
     assert counted < 0.2 * whole
+
+
+def test_compiling_is_said_once_where_nobody_listens(tmp_path):
+    """Whoever calls from Python learns what takes so long, and nothing where code is only loaded."""
+    body = "@kernel\ndef more(x):\n    return x + 1.0\n@kernel\ndef less(x):\n    return x - 1.0\n"
+    (tmp_path / "work.py").write_text(f"from dynamics.kernels.compiling import kernel\n{body}")
+    code = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from base import hide_compilation; from work import more, less;"
+        "hide_compilation('work'); more(3.0); less(3.0)"
+    )
+    env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+
+    def said() -> list[str]:
+        done = subprocess.run(
+            [sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True, env=env
+        )
+        return done.stderr.splitlines()
+
+    first = said()
+    assert len(first) == 1
+    assert first[0].startswith("work: compiling")
+    assert said() == []
