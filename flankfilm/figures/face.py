@@ -33,7 +33,7 @@ FILMS = ("line_load", "minimum_thickness")
 """Figures of the cells' films that are painted."""
 
 TIMES_LEAST = 2.0
-"""Films over the least of them up to which colours tell them apart."""
+"""How many times the least film colours tell apart."""
 
 
 @dataclass(frozen=True)
@@ -76,22 +76,27 @@ class FlankMap:
         shown = Reading(np.where(greatest > 0.0, greatest, np.nan), values.meaning, values.unit)
         return cls(places, face.values, shown)
 
-    def paint(self, axes: Axes, top: float | None = None) -> None:
-        """Paint the map with its scale of colours, up to a value that counts; white where nothing bears."""
+    def paint(self, axes: Axes, span: tuple[float, float] | None = None) -> None:
+        """Paint the map with its scale of colours, over a span that counts; white where nothing bears."""
         bears = np.flatnonzero(np.isfinite(self.values.values).any(axis=1))
         first, last = (int(bears[0]), int(bears[-1]) + 1) if bears.size else (0, len(self.travel))
         painted = axes.pcolormesh(
             self.travel[first:last],
             self.face,
             self.values.values[first:last].T,
-            vmin=0.0,
-            vmax=top,
+            vmin=0.0 if span is None else span[0],
+            vmax=None if span is None else span[1],
             shading="nearest",
             rasterized=True,
         )
         figure = axes.get_figure()
         assert figure is not None
-        figure.colorbar(painted, ax=axes, label=self.values.label, extend="neither" if top is None else "max")
+        figure.colorbar(
+            painted,
+            ax=axes,
+            label=self.values.label,
+            extend="neither" if span is None or np.nanmax(self.values.values) <= span[1] else "max",
+        )
         axes.grid(visible=False)
         half = 0.5 * float(self.face[-1] - self.face[0]) * len(self.face) / (len(self.face) - 1)
         axes.set(ylabel="place on the\nface [mm]", ylim=(-half, half))
@@ -123,7 +128,7 @@ def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | N
 def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | None = None) -> Figure:
     """Draw least film and Hertz pressure with films over path and face.
 
-    Films of cells that bear little are many times as thick: colours end at twice the least film of all.
+    Films of cells that bear little are many times as thick: colours are of films up to twice the least of all.
 
     Parameters
     ----------
@@ -139,7 +144,7 @@ def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | N
     need(results, "run a scene with a film whose pair has a lead or an alignment", *places, "path_point_rho1")
     travel, face, film, pressure = (read(results, name) for name in places)
     with sheet(style, 2, height=4.6, legend=0) as (drawn, panels):
-        FlankMap.of(travel, face, film).paint(panels[0], TIMES_LEAST * float(np.nanmin(film.values)))
+        FlankMap.of(travel, face, film).paint(panels[0], _thin(film))
         FlankMap.of(travel, face, pressure).paint(panels[1])
         over_path(results, *panels)
     return drawn
@@ -185,9 +190,9 @@ def face_loads(found: fem.FaceLoads) -> Figure:
 
 def face_films(found: coupling.FaceFilms) -> Figure:
     """Draw line load and least film over path and face."""
-    top = TIMES_LEAST * float(read_figure(found, "least_film").values)
+    span = _thin(read_figure(found, "minimum_thickness"))
     with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
-        _painted(panels, found, FILMS, {"minimum_thickness": top})
+        _painted(panels, found, FILMS, {"minimum_thickness": span})
     return drawn
 
 
@@ -232,15 +237,21 @@ def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Sty
     return drawn
 
 
+def _thin(film: Reading) -> tuple[float, float]:
+    """Span of the films that count: from the least to some times as much, if there are any so thick."""
+    least, most = float(np.nanmin(film.values)), float(np.nanmax(film.values))
+    return least, min(TIMES_LEAST * least, most)
+
+
 def _painted(
     panels: Sequence[Axes],
     found: fem.FaceLoads | coupling.FaceFilms,
     names: Sequence[str],
-    tops: Mapping[str, float] | None = None,
+    spans: Mapping[str, tuple[float, float]] | None = None,
 ) -> None:
-    """Paint figures of the cells of a record, up to given values, with the points of its pair's path."""
+    """Paint figures of the cells of a record, over given spans, with the points of its pair's path."""
     travel, face = read_figure(found, "travel"), read_figure(found, "face_position")
     for axes, name in zip(panels, names, strict=True):
-        FlankMap.of(travel, face, read_figure(found, name)).paint(axes, (tops or {}).get(name))
+        FlankMap.of(travel, face, read_figure(found, name)).paint(axes, (spans or {}).get(name))
     points = found.pair.points
     mark_path({name: 1e3 * (getattr(points, name) - points.A) for name in "ABCDE"}, *panels)
