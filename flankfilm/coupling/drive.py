@@ -5,23 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import dynamics
 import gears
-from base import Array, Cost, Faults, Limit, part, quantity, record
+from base import Array, Cost, Faults, Limit, described, part, quantity, record
+from flankfilm.coupling.drive_side import Side, drive_side
 from flankfilm.coupling.oscillator import PairOscillator, pair_oscillator
-from gears.beams import ReducedShaft, reduced
+from gears.beams import ReducedShaft
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
     from flankfilm.coupling.series import MeshSeries
 
 SIDES = ("pinion", "wheel")
+SHAPES = "not estimated: shafts are beams, whose error is not known"
 INERTIA = Limit(0.0, 1e9, "kg m2", "0 where nothing is coupled")
+COUPLING = Limit.above(0.0, 1e15, "N m/rad", "None for a rigid coupling")
 DAMPING = Limit(0.0, 1.0, "", "0.005 to 0.02 for shafts")
+RAYLEIGH = (
+    Limit(0.0, 1e9, "1/s", "10 to 100 damps the lowest modes"),
+    Limit(0.0, 10.0, "s", "1e-6 to 1e-5 damps the highest modes"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +38,7 @@ class DriveOutput:
     Attributes
     ----------
     name : str
-        Such as "pinion bearing 1" or "wheel shaft".
+        Such as "pinion bearing 1", "wheel shaft" or "wheel coupling".
     unit : str
         N or N m.
     displacement, speed : ndarray, shape (n,)
@@ -53,18 +60,24 @@ class DriveOutput:
 class PairDrive:
     """Oscillator of a pair with its shafts, bearings, motor and load."""
 
-    headline = ("natural_frequencies", "freedoms")
+    headline = ("lowest_frequency", "mesh_frequency")
 
     oscillator: dynamics.DriveOscillator = part("in the units of `rigid.scales`")
     rigid: PairOscillator = part("the pair on rigid shafts and bearings, whose scales these are")
     freedoms: tuple[str, ...] = quantity(
-        "", "names of the oscillator's displacements, along the line of action"
+        "", "names of the oscillator's displacements, along the line of action", "freedom"
     )
     natural_frequencies: Array = quantity(
         "Hz",
         "of the train in contact with the mean mesh stiffness, free rotation left out",
         "mode",
         error="error",
+    )
+    mode_shapes: Array = quantity(
+        "1", "displacements of the modes, the largest of each 1", "mode freedom", no_error=SHAPES
+    )
+    mesh_share: Array = quantity(
+        "1", "part of a mode's elastic energy that is in the mesh", "mode", no_error=SHAPES
     )
     outputs: tuple[DriveOutput, ...] = part("forces of bearings and torques of shafts")
     shafts: tuple[ReducedShaft | None, ReducedShaft | None] = part("what gear and torque feel of the shafts")
@@ -77,18 +90,20 @@ class PairDrive:
         """Relative error of the mean stiffness; None where it is unknown. Shafts are beams without one."""
         return self.rigid.error
 
+    @described("Hz", error="error")
+    def lowest_frequency(self) -> float:
+        """Lowest natural frequency of the train in contact."""
+        return float(self.natural_frequencies[0])
 
-class _Side(NamedTuple):
-    """Half of the train, in turns times base radius and the gear's deflection along the line of action."""
+    @described("Hz", error="error")
+    def mesh_frequency(self) -> float:
+        """Natural frequency of the mode that has most of its elastic energy in the mesh."""
+        return float(self.natural_frequencies[int(np.argmax(self.mesh_share))])
 
-    names: tuple[str, ...]
-    mass: Array
-    stiffness: Array
-    damping: Array
-    mesh: Array
-    torque: int
-    shaft: ReducedShaft | None
-    outputs: tuple[tuple[str, str, Array, Array], ...]
+    def resonance_speed(self, frequency: float) -> float:
+        """Pinion speed [rad/s] at which the mesh frequency is a given one [Hz]."""
+        assert self.rigid.pair is not None  # a drive has one
+        return 2.0 * math.pi * frequency / self.rigid.pair.pinion.teeth
 
 
 def pair_drive(
@@ -99,12 +114,16 @@ def pair_drive(
     *,
     shafts: tuple[gears.Shaft | None, gears.Shaft | None],
     end_inertias: tuple[float, float] = (0.0, 0.0),
+    couplings: tuple[float | None, float | None] = (None, None),
     damping_ratio: float = 0.05,
     shaft_damping_ratio: float | Sequence[float] = 0.01,
+    rayleigh: tuple[float, float] | None = None,
     error_amplitude: float | Sequence[float] | Array = 0.0,
     error_phase: float | Sequence[float] | Array = 0.0,
+    extra_inertia: tuple[float, float] = (0.0, 0.0),
     length_scale: float | None = None,
     one_sided: bool = False,
+    reference: str = "body",
 ) -> PairDrive:
     """Drive train of a pair: torsion of both shafts, and deflection of the gears along the line of action.
 
@@ -123,12 +142,16 @@ def pair_drive(
         Of pinion and wheel; None: rigid in rigid bearings.
     end_inertias : (float, float)
         Of motor and load, or what else is coupled at the shafts' torque positions [kg m2].
+    couplings : (float or None, float or None)
+        Torsional stiffness between either shaft and that inertia [N m/rad]; None: rigid.
     damping_ratio : float
         Of the mesh, as of `pair_oscillator`: c = 2 zeta sqrt(k_m m_e) with the equivalent mass of the gears alone.
     shaft_damping_ratio : float or sequence of float
-        Modal ratio of shafts and bearings without the mesh, one for all modes or one for each from the lowest on;
-        dampers of bearings come on top.
-    error_amplitude, error_phase, length_scale, one_sided
+        Modal ratio of shafts, bearings and couplings without the mesh, one for all modes or one for each from the
+        lowest on; dampers of bearings come on top.
+    rayleigh : (float, float), optional
+        Instead of it: damping alpha M + beta K of these with alpha [1/s] and beta [s]; what turns freely is not braked.
+    error_amplitude, error_phase, extra_inertia, length_scale, one_sided, reference
         As of `pair_oscillator`.
 
     Raises
@@ -150,6 +173,14 @@ def pair_drive(
     with Faults() as faults:
         for side, inertia in zip(SIDES, end_inertias, strict=True):
             faults.number(f"end_inertias.{side}", inertia, INERTIA)
+        for side, spring, inertia in zip(SIDES, couplings, end_inertias, strict=True):
+            if spring is not None:
+                faults.number(f"couplings.{side}", spring, COUPLING)
+                if not inertia > 0.0:
+                    allowed = "must be more than 0 kg m2 behind a coupling"
+                    faults.add(f"end_inertias.{side}", inertia, allowed, "give that of motor or load")
+        for i, (factor, limit) in enumerate(zip(rayleigh or (), RAYLEIGH, strict=False)):
+            faults.number(f"rayleigh[{i}]", factor, limit)
         ratios = [
             faults.number(f"shaft_damping_ratio[{i}]", ratio, DAMPING)
             for i, ratio in enumerate(
@@ -158,19 +189,25 @@ def pair_drive(
         ]
     rigid = pair_oscillator(
         pair, stiffness, torque, speed, damping_ratio=damping_ratio, error_amplitude=error_amplitude,
-        error_phase=error_phase, length_scale=length_scale, one_sided=one_sided,
+        error_phase=error_phase, extra_inertia=extra_inertia, length_scale=length_scale, one_sided=one_sided,
+        reference=reference,
     )  # fmt: skip
     scales, own = rigid.scales, rigid.oscillator
     assert scales is not None  # a pair has them
     radii, masses = pair.base_radii, gear_masses(pair)
     sides = [
-        _side(SIDES[i], shafts[i], radii[i], pair.moments_of_inertia[i], masses[i], end_inertias[i])
+        drive_side(
+            shafts[i], radii[i], rigid.inertias[i], masses[i], end_inertias[i], couplings[i], 1.0 - 2.0 * i
+        )
         for i in range(2)
     ]
     mass, firm, damping = (
         _diagonal(*(getattr(s, name) for s in sides)) for name in ("mass", "stiffness", "damping")
     )
-    if np.any(firm):
+    if rayleigh is not None:
+        held = _without_rotation(mass, _diagonal(sides[0].free[:, None], sides[1].free[:, None]))
+        damping = damping + dynamics.rayleigh_damping(held, firm, *rayleigh)
+    elif np.any(firm):
         damping = damping + dynamics.modal_damping(mass, firm, ratios)
     g = np.concatenate([sides[0].mesh, -sides[1].mesh])
     force = np.zeros(len(g))
@@ -183,23 +220,26 @@ def pair_drive(
         frequency=own.frequency, half_backlash=own.half_backlash, error_phase=own.error_phase, one_sided=one_sided,
     )  # fmt: skip
     names = tuple(f"{name} {what}" for name, side in zip(SIDES, sides, strict=True) for what in side.names)
+    frequencies, shapes, shares = drive_modes(oscillator)
     return PairDrive(
         oscillator,
         rigid,
         names,
-        natural_frequencies(oscillator) * omega / (2.0 * math.pi),
+        frequencies * omega / (2.0 * math.pi),
+        shapes,
+        shares,
         _outputs(sides, scales),
         (sides[0].shaft, sides[1].shaft),
         message=rigid.message,
     )
 
 
-def _outputs(sides: Sequence[_Side], scales: dynamics.Scaling) -> tuple[DriveOutput, ...]:
+def _outputs(sides: Sequence[Side], scales: dynamics.Scaling) -> tuple[DriveOutput, ...]:
     """What all parts carry, as factors on the oscillator's displacements and speeds."""
     found, first = [], 0
     n = sum(len(side.mesh) for side in sides)
     for which, side in zip(SIDES, sides, strict=True):
-        for name, unit, push, drag in side.outputs:
+        for name, unit, push, drag in side.carried:
             rows = np.zeros((2, n))
             rows[0, first : first + len(push)] = push * scales.length
             rows[1, first : first + len(drag)] = drag * scales.length * scales.omega_n
@@ -208,12 +248,32 @@ def _outputs(sides: Sequence[_Side], scales: dynamics.Scaling) -> tuple[DriveOut
     return tuple(found)
 
 
-def natural_frequencies(oscillator: dynamics.DriveOscillator) -> Array:
-    """Undamped natural frequencies in contact with the mean mesh stiffness, from the lowest, free rotation left out."""
-    at = oscillator.coordinates
-    whole = at.stiffness.copy()
-    whole[0, 0] += at.gain * oscillator.mesh_stiffness.mean
-    return np.sqrt(np.sort(np.linalg.eigvals(whole).real))
+def drive_modes(oscillator: dynamics.DriveOscillator) -> tuple[Array, Array, Array]:
+    """Undamped modes in contact with the mean mesh stiffness, from the lowest, the free rotation left out.
+
+    Returns
+    -------
+    frequencies : ndarray, shape (modes,)
+    shapes : ndarray, shape (modes, n)
+        The largest entry of each is 1.
+    shares : ndarray, shape (modes,)
+        Part of the elastic energy that is in the mesh.
+    """
+    mass, own, g = map(np.asarray, (oscillator.mass, oscillator.stiffness, oscillator.direction))
+    mean = oscillator.mesh_stiffness.mean
+    whole = own + mean * np.outer(g, g)
+    inverse = np.linalg.inv(np.linalg.cholesky(mass))
+    squares, vectors = np.linalg.eigh(inverse @ whole @ inverse.T)
+    shapes = (inverse.T @ vectors[:, 1:]).T  # one rotation of the whole train is free
+    shapes /= np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
+    energies = np.einsum("ij,jk,ik->i", shapes, whole, shapes)
+    return np.sqrt(squares[1:]), shapes, mean * (shapes @ g) ** 2 / energies
+
+
+def _without_rotation(mass: Array, rotations: Array) -> Array:
+    """Mass matrix of what is left of a motion when the free rotations, in columns, are taken out."""
+    pushed = mass @ rotations
+    return np.asarray(mass - pushed @ np.linalg.solve(rotations.T @ pushed, pushed.T))
 
 
 def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
@@ -223,40 +283,6 @@ def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
         for inertia, tooth in zip(pair.moments_of_inertia, pair.teeth_profiles, strict=True)
     )
     return first, second
-
-
-def _side(
-    side: str, shaft: gears.Shaft | None, radius: float, inertia: float, mass: float, end: float
-) -> _Side:
-    """Half of the train; what bearings and shafts carry is positive as the driving flanks press."""
-    if shaft is None:
-        whole = np.array([[(inertia + end) / radius**2]])
-        none = np.zeros((1, 1))
-        return _Side(("gear",), whole, none, none, np.ones(1), 0, None, ())
-    felt = reduced(shaft)
-    rigid = math.isinf(felt.torsion_stiffness)
-    turns = 1 if rigid else 2
-    n = turns + 1
-    m, k, c = (np.zeros((n, n)) for _ in range(3))
-    m[:turns, :turns] = felt.inertia[:turns, :turns] / radius**2
-    m[0, 0] += inertia / radius**2
-    m[turns - 1, turns - 1] += end / radius**2
-    m[-1, -1], k[-1, -1] = mass + felt.bending_mass, felt.bending_stiffness
-    c[-1, -1] = felt.bending_damping
-    outputs, way = [], 1.0 if side == SIDES[0] else -1.0
-    for i, (bearing, share) in enumerate(zip(shaft.bearings, felt.bearing_shares.tolist(), strict=True)):
-        push, drag = np.zeros(n), np.zeros(n)
-        push[-1], drag[-1] = -way * bearing.stiffness * share, -way * bearing.damping * share
-        outputs.append((f"bearing {i + 1}", "N", push, drag))
-    if not rigid:
-        twist = felt.torsion_stiffness / radius**2
-        k[:2, :2] = twist * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        carried = way * felt.torsion_stiffness / radius * np.array([-1.0, 1.0, 0.0])
-        outputs.append(("shaft", "N m", carried, np.zeros(n)))
-    names = ("gear", "deflection") if rigid else ("gear", "end", "deflection")
-    mesh = np.zeros(n)
-    mesh[0] = mesh[-1] = 1.0
-    return _Side(names, m, k, c, mesh, turns - 1, felt, tuple(outputs))
 
 
 def _diagonal(first: Array, second: Array) -> Array:

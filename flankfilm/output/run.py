@@ -16,7 +16,7 @@ from base.results import EXACT, figures, why_no_error
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
 from flankfilm.figures import drawn
-from flankfilm.output import heat
+from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.convergence import with_convergence
 from flankfilm.output.files import provenance, write_csv, write_netcdf
@@ -126,6 +126,8 @@ TABLES: Mapping[str, Table] = {
     "losses_along_path": Table("losses_path", "rho1", axis="point"),
     "losses_by_eyring_stress": Table("losses_band", "eyring_stress", STRESSES),
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
+    "drive_modes": Table("drive", "natural_frequencies", ("natural_frequencies", "mesh_share")),
+    "drive_sweep": Table("drive_sweep", "force_factor_up", axis="frequency"),
     "excitation": Table("excitation", "amplitude", axis="harmonic"),
     "spectrum": Table("spectrum", "force", axis="line"),
     "run_up": Table("run_up", "force_factor_up", axis="block"),
@@ -232,6 +234,7 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         yield of_record("excitation", excitation)
     if (sweep := values.get("sweep")) is not None:
         yield from _sweep(sweep)
+    yield from drives.train(values.get("drive"), values.get("drive sweep"))
     if (spectrum := values.get("spectrum")) is not None:
         yield of_record("spectrum", spectrum)
     if (ramps := values.get("run-up")) is not None:

@@ -11,6 +11,7 @@ from flankfilm.scene.dynamics import BY_FILM
 from flankfilm.stages import catalogue as of
 from flankfilm.stages import losses, motion
 from flankfilm.stages.damping import FILM_DAMPING
+from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.face import FACE_MODELS
@@ -53,6 +54,9 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
         yield FILM_DAMPING
     if scene.dynamics is not None and scene.dynamics.error_curve is not None and wants & {*needs.MOTIONS}:
         yield EXCITATION
+    if "sweep" in wants and scene.shafts is not None:
+        yield from (motion.SCALING, DRIVE, DRIVE_SWEEP)
+        wants = wants - {"sweep"}
     for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM, RUN_UP, DYNAMIC_MAP):
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)

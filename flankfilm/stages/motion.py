@@ -112,24 +112,35 @@ def SCALING(run: Engine) -> coupling.PairOscillator:
 def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscillator:
     """Oscillator of the scene with a series of its stiffness."""
     section = _dynamics(run)
-    ranged, given = section.sweep or section.diagram, section.si(*OSCILLATOR)
-    given["damping_ratio"] = damping_ratio(run)
-    if given["error_phase"] == (0.0,):
-        given["error_phase"] = 0.0  # of all harmonics
     if section.dimensionless:
+        ranged, given = section.sweep or section.diagram, _given(run)
         start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
         oscillator = dynamics.GearOscillator(
             stiffness=series.stiffness.normalised(), frequency=start, **given
         )
         return coupling.PairOscillator(oscillator, None, series)
+    speed, given = of_the_pair(run, series)
+    return coupling.pair_oscillator(run[PAIR], series, pinion_torque(run.scene), speed, **given)
+
+
+def of_the_pair(run: Engine, series: coupling.MeshSeries) -> tuple[float, dict[str, Any]]:
+    """Speed of the pinion [rad/s] and what the scene says of its pair's oscillator, as arguments."""
+    section, given = _dynamics(run), _given(run)
     rpm = followed_speed(run.scene, run[PAIR], series)
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
         given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
     given["extra_inertia"] = section.extra_inertia_kg_m2.each
     given["reference"] = section.stiffness_reference or "body"
-    return coupling.pair_oscillator(
-        run[PAIR], series, pinion_torque(run.scene), rpm * math.pi / 30.0, **given
-    )
+    return rpm * math.pi / 30.0, given
+
+
+def _given(run: Engine) -> dict[str, Any]:
+    """What the oscillator takes of the section as it is."""
+    given = _dynamics(run).si(*OSCILLATOR)
+    given["damping_ratio"] = damping_ratio(run)
+    if given["error_phase"] == (0.0,):
+        given["error_phase"] = 0.0  # of all harmonics
+    return given
 
 
 def _dynamics(run: Engine) -> DynamicsSection:

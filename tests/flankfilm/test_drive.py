@@ -41,16 +41,19 @@ def test_torques_and_bearings_carry_the_load(cycle):
     swept = drive_sweep(drive, speed=[200.0, 300.0])
     force = 600.0 / PAIR.base_radii[0]
     shares = [0.12 / 0.16, 0.04 / 0.16], [0.5, 0.5]
-    expected = [force * shares[0][0], force * shares[0][1], 600.0, force * 0.5, force * 0.5, 600.0 * 40 / 36]
-    assert swept.names == (
-        "pinion bearing 1", "pinion bearing 2", "pinion shaft", "wheel bearing 1", "wheel bearing 2", "wheel shaft",
-    )  # fmt: skip
-    assert swept.units == ("N", "N", "N m") * 2
+    forces = [force * share for side in shares for share in side]
+    assert swept.bearings == ("pinion bearing 1", "pinion bearing 2", "wheel bearing 1", "wheel bearing 2")
+    assert swept.shafts == ("pinion shaft", "wheel shaft")
     for way in ("up", "down"):
-        # what a sweep leaves of the transient, 1e-6
-        assert swept.mean[way] == pytest.approx(np.tile(expected, (2, 1)), rel=2e-6)
-        assert np.all(swept.greatest[way] >= swept.mean[way])
-        assert np.all(swept.swing[way] > 0.0)
+        for figure, mean in (("bearing_force", forces), ("shaft_torque", (600.0, 600.0 * 40 / 36))):
+            # what a sweep leaves of the transient, 1e-6
+            mean_of, swing, greatest = (
+                getattr(swept, f"{figure}{kind}")[way] for kind in ("_mean", "_swing", "")
+            )
+            assert mean_of == pytest.approx(np.tile(mean, (2, 1)), rel=2e-6)
+            assert np.all(greatest >= mean_of)
+            assert np.all(swing > 0.0)
+    assert swept.greatest_bearing_force == max(swept.bearing_force[way].max() for way in ("up", "down"))
     assert swept.converged
     assert swept.sampling_error < 1e-3
 

@@ -1,0 +1,47 @@
+"""The stages of the drive train: the pair on the scene's shafts, and its sweep over the speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from flankfilm import coupling
+from flankfilm.build import pinion_torque
+from flankfilm.build_shafts import drive_arguments
+from flankfilm.scene.section import required
+from flankfilm.stages.catalogue import PAIR
+from flankfilm.stages.damping import FILM_DAMPING
+from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.motion import FOURIER, of_the_pair
+
+
+@stage(
+    "drive",
+    "drive train",
+    "operating dynamics pair material heat shafts",
+    PAIR,
+    FOURIER,
+    EXCITATION,
+    FILM_DAMPING,
+)
+def DRIVE(run: Engine) -> coupling.PairDrive:
+    """The pair with its shafts, bearings, motor and load."""
+    speed, given = of_the_pair(run, run[FOURIER])
+    return coupling.pair_drive(
+        run[PAIR], run[FOURIER], pinion_torque(run.scene), speed, **drive_arguments(run.scene), **given
+    )
+
+
+@stage(
+    "drive sweep", "sweep of the drive train up and down", "dynamics", DRIVE, kept="dynamics flankfilm gears"
+)
+def DRIVE_SWEEP(run: Engine) -> coupling.DriveSweep:
+    """Forces of bearings and torques of shafts over the scene's range of speed, up and down."""
+    section = required(run.scene.dynamics, "[dynamics]", "the sweep")
+    asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
+    values = np.linspace(*asked.ends, asked.points)
+    if asked.frequency is not None:
+        return coupling.drive_sweep(run[DRIVE], frequency=values)
+    return coupling.drive_sweep(run[DRIVE], values * math.pi / 30.0)
