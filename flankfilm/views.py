@@ -45,6 +45,8 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.sidebands:MotionSpectrum": "motion_spectrum",
     "flankfilm.coupling.run_ups:SpeedRunUp": "speed_run_up",
     "flankfilm.coupling.dynamic_map:DynamicMap": "dynamic_map",
+    "flankfilm.coupling.drive:PairDrive": "pair_drive",
+    "flankfilm.coupling.drive_sweep:DriveSweep": "drive_sweep",
     "flankfilm.coupling.roots:RootStresses": "root_stresses",
     "flankfilm.coupling.oscillator:PairOscillator": "series_of",
     "flankfilm.coupling.series:MeshSeries": "series",
@@ -53,13 +55,18 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.studies.run:StudyResults": "study",
     "flankfilm.optimisation.optimum:Optimum": "optimum",
 }
-"""Record to the function that draws it, in `flankfilm.figures.of_records` or, for runs and rows, `of_runs`."""
+"""Record to the function that draws it."""
 
-OF_SPEEDS = ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map")
-"""Pictures of what drives the motion and of its orders, in `flankfilm.figures.of_speeds`."""
-
-OF_FACE = ("loaded_contact", "face_loads", "face_films", "face_models")
-"""Pictures of what the face bears, in `flankfilm.figures.face`."""
+MODULES: Mapping[str, tuple[str, ...]] = {
+    "of_speeds": ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map"),
+    "of_motions": (
+        *("portrait", "orbit", "branch", "branches", "sweep", "multi_sweep", "basins", "exponents", "locus"),
+        *("speed_sweep", "speed_diagram"),
+    ),
+    "of_drives": ("pair_drive", "drive_sweep"),
+    "face": ("loaded_contact", "face_loads", "face_films", "face_models"),
+}
+"""Module of `flankfilm.figures` to the functions in it; all others are in `of_records`, of runs in `of_runs`."""
 
 RUNS = ("flankfilm.results", "flankfilm.studies", "flankfilm.optimisation")
 
@@ -75,15 +82,9 @@ VIEWS: Mapping[str, str] = {
 
 def register() -> None:
     """Register views and pictures; the entry point ``base.views`` of the distribution."""
-    module = {
-        place: "of_runs"
-        if place.startswith(RUNS)
-        else "of_speeds"
-        if name in OF_SPEEDS
-        else "face"
-        if name in OF_FACE
-        else "of_records"
+    module = {name: module for module, names in MODULES.items() for name in names}
+    pictures = {
+        place: f"flankfilm.figures.{'of_runs' if place.startswith(RUNS) else module.get(name, 'of_records')}:{name}"
         for place, name in PICTURES.items()
     }
-    pictures = {place: f"flankfilm.figures.{module[place]}:{name}" for place, name in PICTURES.items()}
     show_with(VIEWS, pictures)

@@ -1,24 +1,20 @@
-"""Pictures of single records: what `result.plot()` returns; labels and units are those of the record's own figures."""
+"""Pictures of single records of geometry, stiffness and film for `result.plot()`, labels and units as of their figures."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
 from flankfilm.figures.reading import PER_FACE, Reading, read_figure, unit_text
 from flankfilm.figures.style import DASHES, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    import dynamics
     import gears
     from ehl import FilmResponse, MixedFilm, MixedThermalFilm
     from fem import RootStress
@@ -28,8 +24,6 @@ if TYPE_CHECKING:
         MeshSeries,
         PairOscillator,
         RootStresses,
-        SpeedDiagram,
-        SpeedSweep,
         Verification,
     )
 
@@ -59,8 +53,6 @@ WORDS = {
     "steady_least": "least film, steady",
 }
 """Names of curves that are not their field's."""
-
-STATE = ("displacement X [-]", "velocity dX/dτ [-]")
 
 
 def curves(result: object) -> Figure:
@@ -225,170 +217,6 @@ def root_stress(found: RootStress) -> Figure:
 def root_stresses(found: RootStresses) -> Figure:
     """Draw the stress by finite elements."""
     return root_stress(found.stress)
-
-
-def portrait(found: dynamics.Trajectory) -> Figure:
-    """Draw a motion over time and in the plane of its states."""
-    with sheet(None, 1, 2, height=3.2, legend=0) as (drawn, (over, plane)):
-        over.plot(found.tau, found.x)
-        over.set(xlabel="time τ [-]", ylabel=STATE[0])
-        plane.plot(found.x, found.v)
-        plane.plot(found.x[0], found.v[0], "o", color=colours(2)[1])
-        plane.set(xlabel=STATE[0], ylabel=STATE[1])
-    return drawn
-
-
-def orbit(found: dynamics.Orbit) -> Figure:
-    """Draw one turn of a periodic motion."""
-    from dynamics import trajectory
-
-    return portrait(trajectory(found.oscillator, found.state, periods=found.periods))
-
-
-def branch(found: dynamics.Branch) -> Figure:
-    """Draw the motions of a branch over its parameter, unstable ones dashed, with its special points."""
-    return _branches((found,), found.parameter)
-
-
-def branches(found: dynamics.Diagram) -> Figure:
-    """Draw all branches of a diagram."""
-    return _branches(found.branches, found.parameter)
-
-
-def _branches(
-    found: Sequence[dynamics.Branch], parameter: str, mark: Callable[[Axes], None] = lambda axes: None
-) -> Figure:
-    with sheet(None, height=3.6, legend=4) as (drawn, (axes,)):
-        kinds: dict[str, list[tuple[float, float]]] = {}
-        for one in found:
-            x, y = one.values, one.states[:, 0]
-            for stable, dash in ((True, "-"), (False, "--")):
-                # a point of the other kind ends each piece
-                kept = np.where(np.asarray(one.stable) == stable, y, np.nan)
-                axes.plot(x, kept, linestyle=dash, color=colours(1)[0])
-            for point in one.points:
-                kinds.setdefault(point.kind, []).append((point.parameter, float(point.state[0])))
-        for (kind, places), colour, marker in zip(
-            kinds.items(), colours(6)[1:], ("o", "s", "^", "D", "v"), strict=False
-        ):
-            axes.plot(*np.array(places).T, marker, color=colour, markersize=4, label=kind)
-        axes.plot([], [], linestyle="-", color=colours(1)[0], label="stable")
-        axes.plot([], [], linestyle="--", color=colours(1)[0], label="unstable")
-        mark(axes)
-        axes.set(xlabel=f"{parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
-    return drawn
-
-
-def sweep(found: dynamics.SweepResult) -> Figure:
-    """Draw the states that a sweep ended with at every value."""
-    return _points(found.parameter, [(found.direction, found.values, found.states[..., 0])])
-
-
-def _points(parameter: str, families: Sequence[tuple[str, Array, Array]]) -> Figure:
-    with sheet(None, height=3.4) as (drawn, (axes,)):
-        for (name, values, states), colour in zip(families, colours(len(families)), strict=True):
-            x = np.broadcast_to(values[:, None], states.shape).ravel()
-            axes.plot(x, states.ravel(), ".", markersize=3, color=colour, label=name)
-        axes.set(xlabel=f"{parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
-    return drawn
-
-
-def multi_sweep(found: dynamics.MultiSweep) -> Figure:
-    """Draw every attractor that the sweeps met, periodic ones by their period."""
-    kinds: dict[str, list[Array]] = {}
-    for motion in (one for met in found.motions for one in met):
-        name = f"period {motion.periods}" if motion.periods else "aperiodic"
-        states = motion.states[:, 0]
-        kinds.setdefault(name, []).append(np.column_stack([np.full(states.size, motion.value), states]))
-    with sheet(None, height=3.6, legend=4) as (drawn, (axes,)):
-        for (name, pieces), colour in zip(kinds.items(), 5 * colours(7), strict=False):
-            axes.plot(*np.concatenate(pieces).T, ".", markersize=3, color=colour, label=name)
-        axes.set(xlabel=f"{found.parameter.replace('_', ' ')} [-]", ylabel=f"{STATE[0]}, at τ = 0")
-    return drawn
-
-
-def basins(found: dynamics.BasinResult) -> Figure:
-    """Colour the starting states by the attractor that they come to; white where they come to none."""
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
-
-    count = len(found.attractors)
-    labels = np.where(found.labels < 0, np.nan, found.labels.astype(float))
-    with sheet(None, width=5.4, height=4.8, legend=0) as (drawn, (axes,)):
-        shades = 3 * colours(7)
-        axes.pcolormesh(
-            found.x,
-            found.v,
-            labels.T,
-            cmap=ListedColormap(shades[: max(count, 1)]),
-            vmin=-0.5,
-            vmax=max(count, 1) - 0.5,
-            shading="nearest",
-            rasterized=True,
-        )
-        handles = [
-            Patch(color=shade, label=f"{one.label}: {100 * one.share:.3g} %")
-            for one, shade in zip(found.attractors, shades, strict=False)
-        ]
-        axes.set(xlabel=STATE[0], ylabel=STATE[1])
-        drawn.legend(handles=handles, loc="outside upper left", ncols=3)
-    return drawn
-
-
-def exponents(found: Any) -> Figure:
-    """Draw both Lyapunov exponents over the parameter, with their standard errors."""
-    with sheet(None, height=3.2) as (drawn, (axes,)):
-        for column, (name, colour) in enumerate(zip(("larger", "smaller"), colours(2), strict=True)):
-            axes.errorbar(
-                found.values,
-                found.exponents[:, column],
-                found.standard_errors[:, column],
-                color=colour,
-                label=name,
-            )
-        axes.set(xlabel=f"{found.parameter.replace('_', ' ')} [-]", ylabel="Lyapunov exponent [-]")
-    return drawn
-
-
-def locus(found: Any) -> Figure:
-    """Draw a curve of special points in the plane of its two parameters, with its points of codimension two."""
-    with sheet(None, height=3.6) as (drawn, (axes,)):
-        axes.plot(*found.values.T, color=colours(1)[0], label=found.kind)
-        first, second = (name.replace("_", " ") for name in found.parameters)
-        axes.set(xlabel=f"{first} [-]", ylabel=f"{second} [-]")
-    return drawn
-
-
-def speed_sweep(found: SpeedSweep) -> Figure:
-    """Draw greatest force and time without contact over the speed, up and down."""
-    x = read_figure(found, "frequency" if found.speed is None else "speed")
-    with sheet(None, 2, height=4.4) as (drawn, panels):
-        for axes, name, scale, label in zip(
-            panels,
-            ("force_factor", "separated"),
-            (1.0, 100.0),
-            ("greatest over mean force [-]", "time without contact [%]"),
-            strict=True,
-        ):
-            for (way, values), colour, dash in zip(
-                getattr(found, name).items(), colours(2), DASHES, strict=False
-            ):
-                axes.plot(x.values, scale * values, color=colour, linestyle=dash, label=f"sweep {way}")
-            axes.set_ylabel(label)
-        panels[-1].set_xlabel(x.label)
-    return drawn
-
-
-def speed_diagram(found: SpeedDiagram) -> Figure:
-    """Draw all branches over the frequency, and where a stable motion ends with its error."""
-
-    def jumps(axes: Axes) -> None:
-        for number, (at, error) in enumerate(zip(found.jump_frequency, found.jump_error, strict=True)):
-            axes.axvline(at, color="#999999", linewidth=1.0, label=None if number else "jump, with its error")
-            if np.isfinite(error):
-                axes.axvspan(at * (1.0 - error), at * (1.0 + error), color="#dddddd")
-
-    return _branches(found.diagram.branches, found.diagram.parameter, jumps)
 
 
 def series_of(found: PairOscillator) -> Figure:

@@ -17,7 +17,7 @@ from base import InputError, has_picture, plot
 from base.views import GROUP
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.views import PICTURES, VIEWS, register
+from flankfilm.views import MODULES, PICTURES, VIEWS, register
 from gears import Gear, GearPair, closed_form, dimensions
 from tests.flankfilm.scenes import ishikawa
 
@@ -63,7 +63,10 @@ def test_every_name_of_a_picture_is_there():
         module, _, name = place.partition(":")
         assert isinstance(getattr(importlib.import_module(module), name), type), place
     register()
-    for function in (*VIEWS.values(), *(f"flankfilm.figures.of_records:{n}" for n in ("curves", "basins"))):
+    for function in (
+        *VIEWS.values(),
+        *(f"flankfilm.figures.{module}:{name}" for module, names in MODULES.items() for name in names),
+    ):
         module, _, name = function.partition(":")
         assert callable(getattr(importlib.import_module(module), name))
 

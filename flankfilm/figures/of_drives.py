@@ -1,0 +1,31 @@
+"""Pictures of single records of drive trains, for `result.plot()`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flankfilm.figures.drives import FORCE, PARTS, Row, carried, modes
+from flankfilm.figures.reading import read_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from flankfilm.coupling import DriveSweep, PairDrive
+
+
+def pair_drive(found: PairDrive) -> Figure:
+    """Draw the modes of a drive train."""
+    return modes(found.natural_frequencies, found.mode_shapes, found.mesh_share, found.freedoms)
+
+
+def drive_sweep(found: DriveSweep) -> Figure:
+    """Draw what mesh, bearings, shafts and couplings carry at most over the speed."""
+    rows = [Row(FORCE, ("mesh",), {way: one[:, None] for way, one in found.force_factor.items()})]
+    for part, (figure, label) in PARTS.items():
+        names = getattr(found, f"{part}s")
+        unit = "N" if part == "bearing" else "N m"
+        if names:
+            rows.append(Row(f"{label} [{unit}]", names, getattr(found, figure)))
+    return carried(read_figure(found, "speed"), rows, np.zeros(0))
