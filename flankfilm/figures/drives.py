@@ -116,7 +116,15 @@ def modes(
         shade = axes.imshow(shapes, cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
         for (row, column), value in np.ndenumerate(shapes):
             colour = "#ffffff" if abs(value) > 0.6 else "#000000"
-            axes.text(column, row, f"{value:.2f}", ha="center", va="center", color=colour, fontsize=7)
+            axes.text(
+                column,
+                row,
+                f"{round(value, 2) + 0.0:.2f}",
+                ha="center",
+                va="center",
+                color=colour,
+                fontsize=7,
+            )
         axes.set_xticks(range(len(names)), names, rotation=30, ha="right")
         rows = [
             f"{one:.0f} Hz, {100 * share:.0f} % in the mesh"

@@ -1,4 +1,4 @@
-"""Pictures of single records of geometry, stiffness and film for `result.plot()`, labels and units as of their figures."""
+"""Pictures of single records of geometry, stiffness and film for `result.plot()`; labels are those of figures."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.figures.reading import read_figure
 from flankfilm.report import (
+    drive_parts,
     excitation_parts,
     face_parts,
     film_parts,
@@ -36,6 +37,7 @@ HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "root stress": mesh_parts.root_headlines,
     "fourier": motion_parts.fourier_headlines,
     "sweep": motion_parts.sweep_headlines,
+    "drive sweep": drive_parts.headlines,
     "diagram": motion_parts.diagram_headlines,
     "dynamic-map": speed_parts.map_headlines,
 }
@@ -51,6 +53,8 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "film damping": motion_parts.film_damping,
     "scaling": motion_parts.scaling,
     "sweep": motion_parts.sweep,
+    "drive": drive_parts.drive,
+    "drive sweep": drive_parts.drive_sweep,
     "diagram": motion_parts.diagram,
     "spectrum": excitation_parts.spectrum,
     "run-up": speed_parts.run_up,

@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Figure
+from base import Array, Figure, InputError
 from base.results import figures
+from flankfilm.coupling.drive import PairDrive
+from flankfilm.coupling.drive_sweep import DriveSweep
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MEANS
 from flankfilm.coupling.sidebands import MotionSpectrum
+from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
+from flankfilm.stages.engine import Engine
 from flankfilm.stages.motion import DIAGRAM, SCALING, SPECTRUM, SWEEP
 from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
 from flankfilm.studies.output import Named, in_result, output_of, outputs_from
@@ -23,6 +27,8 @@ if TYPE_CHECKING:
     from flankfilm.coupling.motion import SpeedSweep
 
 _oscillator = outputs_from(lambda engine: engine[SCALING], PairOscillator, "fourier")
+_drive = outputs_from(lambda engine: engine[DRIVE], PairDrive, "sweep")
+_carried = outputs_from(lambda engine: engine[DRIVE_SWEEP], DriveSweep, "sweep")
 
 
 def _resonance(motion: PairOscillator) -> float | None:
@@ -45,11 +51,31 @@ def _greatest(values: Mapping[str, Array] | None) -> float | None:
 
 
 def _swept(name: str, figure: Figure, value: Callable[[SpeedSweep], Any]) -> Named:
-    return output_of(name, figure, "sweep", in_result(SWEEP, value))
+    """Output of the pair's sweep on rigid shafts."""
+
+    def of(engine: Engine) -> Any:
+        if engine.scene.shafts is not None:
+            allowed = "is of a pair on rigid shafts: the sweep of a drive train does not know it"
+            raise InputError.at(f"outputs.{name}", "", allowed, "Leave it out, or leave [shafts] out")
+        return value(engine[SWEEP])
+
+    return output_of(name, figure, "sweep", of)
 
 
-def _force_error(found: SpeedSweep) -> float | None:
-    """Sampling, and what more harmonics change at the values that were looked at; None for a given series."""
+def _moved(name: str, figure: Figure, value: Callable[[SpeedSweep | DriveSweep], Any]) -> Named:
+    """Output of the sweep, of a drive train's where the scene has shafts."""
+    return output_of(
+        name,
+        figure,
+        "sweep",
+        lambda engine: value(engine[SWEEP] if engine.scene.shafts is None else engine[DRIVE_SWEEP]),
+    )
+
+
+def _force_error(found: SpeedSweep | DriveSweep) -> float | None:
+    """Sampling, and what more harmonics change at the values that were looked at; None where that is not known."""
+    if isinstance(found, DriveSweep):
+        return None
     truncation = _greatest(found.force_change)
     return None if truncation is None else truncation + found.sampling_error
 
@@ -111,17 +137,17 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "fourier",
         in_result(SCALING, _half_mean_error),
     ),
-    _swept(
+    _moved(
         "greatest_force_factor",
         Figure("1", "greatest force over the mean force, of all motions of the sweep"),
         lambda found: _greatest(found.force_factor),
     ),
-    _swept(
+    _moved(
         "greatest_force_factor_error",
         Figure("1", "its estimated relative error by samples and the series' order; nan for a given series"),
         _force_error,
     ),
-    _swept(
+    _moved(
         "separated",
         Figure("1", "largest part of the time without contact, of all motions of the sweep", shown="%"),
         lambda found: _greatest(found.separated),
@@ -135,6 +161,24 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "contact_loss_error",
         Figure("1", "estimated relative error of that speed; nan where unknown"),
         attrgetter("least_grazing_error"),
+    ),
+    _drive("lowest_frequency", name="lowest_drive_frequency"),
+    _drive("mesh_frequency", name="drive_mesh_frequency"),
+    output_of(
+        "drive_frequency_error",
+        Figure("1", "estimated relative error of these frequencies, by the mean stiffness"),
+        "sweep",
+        in_result(DRIVE, attrgetter("error")),
+    ),
+    _carried("greatest_bearing_force"),
+    _carried("greatest_shaft_torque"),
+    output_of(
+        "drive_sweep_error",
+        Figure(
+            "1", "estimated relative error of forces and torques of a drive train, by samples of a period"
+        ),
+        "sweep",
+        in_result(DRIVE_SWEEP, attrgetter("sampling_error")),
     ),
     _oscillator("error_range"),
     output_of(

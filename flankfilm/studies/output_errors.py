@@ -39,6 +39,8 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "film_with_heat_error": ("least_film_with_heat_um", "film_ratio_with_heat"),
     "natural_frequency_error": ("natural_frequency_Hz", "resonance_speed_rpm"),
     "greatest_force_factor_error": ("greatest_force_factor",),
+    "drive_frequency_error": ("lowest_drive_frequency_Hz", "drive_mesh_frequency_Hz"),
+    "drive_sweep_error": ("greatest_bearing_force_N", "greatest_shaft_torque_Nm"),
     "contact_loss_error": ("contact_loss_speed_rpm",),
     "jump_error_rising": ("jump_speed_rising_rpm", "jump_frequency_rising"),
     "jump_error_falling": ("jump_speed_falling_rpm", "jump_frequency_falling"),
