@@ -98,6 +98,13 @@ class ShaftSection(Section):
         """Whether the shaft neither bends nor twists."""
         return not self.segments
 
+    @property
+    def modes(self) -> int:
+        """Modes of the shaft with what is coupled to it, without the mesh and without its free rotation."""
+        bends = 0 if self.rigid else 1
+        twists = 0 if self.rigid or self.gear_position_mm == self.torque_position_mm else 1
+        return bends + twists + (self.coupling_stiffness_Nm_per_rad is not None)
+
     def shaft(self) -> gears.Shaft | None:
         """Shaft in SI; None for a rigid one."""
         if self.rigid or self.gear_position_mm is None:
@@ -205,6 +212,15 @@ class ShaftsSection(Section):
         if self.pinion is None and self.wheel is None:
             raise refused(
                 "must have [shafts.pinion] or [shafts.wheel]", "Give a shaft, or leave [shafts] out"
+            )
+        modes = sum(one.modes for one in self.each if one is not None)
+        if len(self.damping_ratio) not in (1, modes):
+            allowed = f"must be one number, or {modes}: one for each mode of shafts, bearings and couplings"
+            raise refused(
+                allowed,
+                "The lowest mode first",
+                where="damping_ratio",
+                value=f"{len(self.damping_ratio)} numbers",
             )
         if self.rayleigh is not None and "damping_ratio" in self.model_fields_set:
             raise refused("must have damping_ratio or rayleigh, not both", "Leave one of them out")
