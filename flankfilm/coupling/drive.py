@@ -287,5 +287,8 @@ def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
 
 def _diagonal(first: Array, second: Array) -> Array:
     """Both matrices, one after the other on the diagonal."""
-    n, m = len(first), len(second)
-    return np.block([[first, np.zeros((n, m))], [np.zeros((m, n)), second]])
+    right, below = (
+        np.zeros((len(first), second.shape[1])),
+        np.zeros((len(second), first.shape[1])),
+    )
+    return np.block([[first, right], [below, second]])

@@ -4,6 +4,9 @@ import pytest
 
 from base import InputError
 from flankfilm.scene import parse_scene, template
+from flankfilm.scene.key import key_of
+from flankfilm.scene.shafts import BearingSection, SegmentSection
+from flankfilm.scene.toml import toml
 
 BEARINGS = "[{ position_mm = 20, stiffness_N_per_m = 4e8 }, { position_mm = 180, stiffness_N_per_m = 4e8 }]"
 SHAFT = (
@@ -128,3 +131,27 @@ def test_what_the_rest_of_the_scene_says_twice_or_cannot_have_is_refused(wants, 
 def test_rigid_shafts_leave_alignment_and_hubs_to_the_other_sections():
     hub = (("bore_mm = 33.5 }", "bore_mm = 33.5, hub = { radial_stiffness_N_per_m = 5e8 } }"),)
     assert scene("[shafts.pinion]\ninertia_kg_m2 = 0.02", changes=hub).shafts.pinion.rigid
+
+
+@pytest.mark.parametrize(
+    ("section", "table", "number"),
+    [
+        (SegmentSection, "segments", "length_mm"),
+        (SegmentSection, "segments", "diameter_mm"),
+        (SegmentSection, "segments", "bore_mm"),
+        (BearingSection, "bearings", "position_mm"),
+        (BearingSection, "bearings", "stiffness_N_per_m"),
+        (BearingSection, "bearings", "damping_N_s_per_m"),
+    ],
+)
+def test_numbers_of_tables_in_lists_are_refused_beyond_their_bounds(section, table, number):
+    limit = key_of(section.model_fields[number]).bounds
+    tables = {
+        "segments": {"length_mm": 200, "diameter_mm": 40},
+        "bearings": {"position_mm": 20, "stiffness_N_per_m": 4e8},
+    }
+    for end, side in ((limit.low, -1.0), (limit.high, 1.0)):
+        tables[table] = {**tables[table], number: end + side * max(1.0, abs(end))}
+        text = "\n".join(f"{name} = [{toml(one)}]" for name, one in tables.items())
+        found = faults(f"[shafts.pinion]\n{text}\ngear_position_mm = 100")
+        assert f"{limit.high:g}" in found[f"shafts.pinion.{table}.0.{number}"]
