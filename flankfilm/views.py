@@ -37,6 +37,7 @@ PICTURES: Mapping[str, str] = {
     "flankfilm.coupling.losses_record:MeshLosses": "mesh_losses",
     "flankfilm.coupling.loads:TorqueCurves": "curves",
     "flankfilm.coupling.face_models:FaceLoadModels": "face_models",
+    "flankfilm.coupling.face_tolerance:FaceTolerance": "curves",
     "flankfilm.coupling.film_damping:FilmDamping": "curves",
     "flankfilm.coupling.passage:PassageFilm": "curves",
     "flankfilm.coupling.motion:SpeedSweep": "speed_sweep",

@@ -13,6 +13,8 @@ from .excitation import unloaded_error as unloaded_error
 from .face_films import FaceFilms as FaceFilms
 from .face_models import FaceLoadModels as FaceLoadModels
 from .face_models import face_load_models as face_load_models
+from .face_tolerance import FaceTolerance as FaceTolerance
+from .face_tolerance import face_load_tolerance as face_load_tolerance
 from .film_damping import FilmDamping as FilmDamping
 from .film_damping import film_damping as film_damping
 from .films import FilmModel as FilmModel

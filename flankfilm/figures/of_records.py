@@ -35,6 +35,7 @@ CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
     "Film": ("x", (("pressure",), ("thickness",))),
     "TransientFilm": ("time", (("load",), ("central", "least"), ("greatest_pressure",))),
     "PassageFilm": ("rho1", (("load",), ("least", "steady_least"), ("central", "steady_central"))),
+    "FaceTolerance": ("in_plane", (("face_load_factor",),)),
     "FilmDamping": ("position", (("damping_curve",),)),
     "PathOfContact": ("rho1", (("rho1", "rho2", "radius"),)),
 }

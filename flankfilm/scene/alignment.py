@@ -6,12 +6,16 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
+from base import Limit
 from fem.face_setting import CELLS, FREE_ENDS, USUAL
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 from gears.face import ALIGNMENT_LIMITS
 
 __all__ = ["LEAD_KEYS", "AlignmentSection"]
+
+TOLERANCE = Limit(0.0, ALIGNMENT_LIMITS["in_plane"].high, "m")
+"""What the tolerance of the alignment may be."""
 
 LEAD_KEYS = ("crowning_um", "lead_slope_um", "end_relief_um")
 """Keys of a gear that make its flanks differ along the face."""
@@ -33,6 +37,13 @@ class AlignmentSection(Section):
         "if left out",
         None,
         such_as=0,
+    )
+    in_plane_tolerance_um: float = key(
+        "by what in_plane_um may be more or less, of the output robust_face_load_factor of studies and optimisations",
+        0.0,
+        of=None,
+        limit=TOLERANCE,
+        such_as=10,
     )
     cells: int = key("equal cells of the face that bear apart, an even number", USUAL, of=None, limit=CELLS)
     face_model: Literal["free-ends", "walls", "slices"] = key(

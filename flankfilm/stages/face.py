@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from flankfilm import coupling
-from flankfilm.stages.catalogue import DRY_CYCLE, TEETH, loaded_teeth
+from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, TEETH, loaded_teeth
 from flankfilm.stages.engine import Engine, stage
 
 
@@ -11,3 +11,11 @@ from flankfilm.stages.engine import Engine, stage
 def FACE_MODELS(run: Engine) -> coupling.FaceLoadModels:
     """Walls, slices and ISO 6336-1 beside the mesh cycle, of a scene whose load varies along the face."""
     return coupling.face_load_models(loaded_teeth(run), run[DRY_CYCLE])
+
+
+@stage("face over tolerance", "load over the face over a tolerance of the alignment", TEETH, COMPLIANCE)
+def FACE_TOLERANCE(run: Engine) -> coupling.FaceTolerance:
+    """Face-load factors with the axes as the scene has them, and by its tolerance more and less out of parallel."""
+    section = run.scene.alignment
+    tolerance = 0.0 if section is None else section.value("in_plane_tolerance_um")
+    return coupling.face_load_tolerance(loaded_teeth(run), tolerance)

@@ -11,9 +11,10 @@ from base import Figure
 from base.results import figures
 from flankfilm.build_face import varies_by
 from flankfilm.coupling.face_models import LABELS, FaceLoadModels
+from flankfilm.coupling.face_tolerance import FaceTolerance
 from flankfilm.stages.catalogue import DRY_CYCLE
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.face import FACE_MODELS
+from flankfilm.stages.face import FACE_MODELS, FACE_TOLERANCE
 from flankfilm.studies.output import Named, Take, output_of
 
 EVEN = "{}; nan where the load is even along the face"
@@ -44,6 +45,15 @@ def _factor_of(model: str) -> Take:
     return lambda found: dict(zip(found.model, found.pitch_point_factor, strict=True))[model]
 
 
+def _over_tolerance(name: str, about: Figure, figure: str) -> Named:
+    """Figure of the face over the tolerance of the alignment."""
+
+    def of(engine: Engine) -> Any:
+        return getattr(engine[FACE_TOLERANCE], figure) if varies_by(engine.scene) else None
+
+    return output_of(name, about, "stiffness", of, EVEN)
+
+
 _AT_C = figures(FaceLoadModels)["pitch_point_factor"].meaning
 
 FACE_OUTPUTS: tuple[Named, ...] = (
@@ -57,6 +67,16 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     ),
     _of_face("contact_pattern", "contact_pattern"),
     _of_face("face_load_factor_error", "error"),
+    _over_tolerance(
+        "robust_face_load_factor",
+        figures(FaceTolerance)["robust_face_load_factor"],
+        "robust_face_load_factor",
+    ),
+    _over_tolerance(
+        "robust_face_load_factor_error",
+        Figure("1", "estimated relative error of the greatest face-load factor over the tolerance"),
+        "error",
+    ),
     _by_model(
         "face_load_factor_at_C",
         Figure("1", f"{_AT_C}, nan where even"),
