@@ -85,7 +85,7 @@ def cycle_of(
         pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=given.beyond_path,
-        error=bodies.error,
+        error=bodies.error + (0.0 if contact.face is None else float(contact.face.stiffness_error[number])),
         moving_contact=given.moving_contact,
         strips_at_corners=given.strips_at_corners,
         lever_loss=lost[0],

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FaceShare", "face_load_factors", "share_over_face", "yielding_over_face"]
 
+LEFT = 0.6
+"""Part of what twice as many cells changed that is left: all of it in the first order, a third in the second."""
+
 ENDS_ERROR = 0.1
 """Part of what free ends do that their coarse section leaves uncertain."""
 
@@ -73,13 +76,16 @@ class FaceShare:
     left : (torques, pitches, positions, pairs, cells) array
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
     factor_error : (torques,) array
-        Estimated error of the greatest face-load factor: what twice as many cells would change there, and a part of
-        what free ends do.
+        Estimated error of the greatest face-load factor: what more cells would change there, and a part of what free
+        ends do.
+    stiffness_error : (torques,) array
+        Estimated relative error of mean stiffness and deflection by the cells.
     """
 
     forces: Array
     left: Array
     factor_error: Array
+    stiffness_error: Array
 
     @property
     def open(self) -> Array:
@@ -198,27 +204,33 @@ def share_over_face(
     forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
     pairs = forces.sum(axis=-1)
     share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
-    return share, FaceShare(forces, left, _factor_error(over, given.face, forces, kappa))
+    return share, FaceShare(forces, left, *_errors(over, given.face, found, pairs))
 
 
-def _factor_error(over: _Face, face: FaceSetting, forces: Array, kappa: Array) -> Array:
-    """Error of the greatest face-load factor of every torque, by half as many cells where it is greatest."""
-    factors = face_load_factors(forces / kappa[..., None])
+def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tuple[Array, Array]:
+    """Errors of every torque by half as many cells: of the greatest face-load factor, and relative of stiffness."""
     few = 2 * (face.cells // 4)
-    models = (FREE_ENDS, WALLS) if face.model == FREE_ENDS else (face.model,)
-    found = np.zeros(len(forces))
+    other, _ = over.shared(replace(face, cells=few), near)
+    rest = LEFT / (face.cells / few - 1)
+    factors, coarse = (
+        face_load_factors(one.forces.reshape(*near.shape, -1) / over.kappa[..., None])
+        for one in (found, other)
+    )
+    stiffness = np.zeros(len(near))
+    for name in ("stiffness", "transmission_error"):
+        fine, half = (getattr(one, name).mean(axis=(1, 2)) for one in (found, other))
+        stiffness = np.maximum(stiffness, rest * np.abs(half / fine - 1.0))
+    factor = np.zeros(len(near))
     for torque, some in enumerate(factors):
-        pitch, position = np.unravel_index(int(np.argmax(some)), some.shape)
-        at = over.at(torque, int(pitch), int(position))
-        pairs = forces[torque, pitch, position].sum(axis=-1)[None, None, None]
-        others = []
-        for model in models:
-            share, _ = at.shared(replace(face, cells=few, model=model), pairs)
+        pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(some)), some.shape))
+        half = float(coarse[torque, pitch, position])
+        factor[torque] = rest * abs(float(some[pitch, position]) - half)
+        if face.model == FREE_ENDS:
+            at, pairs = over.at(torque, pitch, position), near[torque, pitch, position][None, None, None]
+            share, _ = at.shared(replace(face, cells=few, model=WALLS), pairs)
             cells = share.forces.reshape(1, -1, few) / at.kappa[..., None]
-            others.append(float(face_load_factors(cells)[0]))
-        halved = abs(float(np.max(some)) - others[0]) / (face.cells / few - 1)
-        found[torque] = halved + ENDS_ERROR * abs(others[0] - others[-1])
-    return found
+            factor[torque] += ENDS_ERROR * abs(half - float(face_load_factors(cells)[0]))
+    return factor, stiffness
 
 
 def face_load_factors(forces: Array) -> Array:

@@ -55,7 +55,7 @@ def test_hardly_any_load_on_60_um(bodies):
     with pytest.warns(RangeWarning, match=ON_FEW):
         found = _cycle(bodies, load=100.0, across=60e-6)
     assert found.face_load_factor.min() > 30.0
-    assert found.face.error >= 0.5
+    assert found.face.error >= 0.25
 
 
 def test_slope_that_opens_all_but_one_cell(bodies):
