@@ -102,7 +102,7 @@ def shared(types: str) -> Callable[[F], F]:
     return lambda function: called(kept(function, _nrt=False, **_INNER), types)
 
 
-def called(compiled: F, types: str) -> F:
+def called(compiled: F, types: Any) -> F:
     """Have kernels call what is compiled once where it lies, kept on disk by itself, for these types alone.
 
     A helper is compiled again into every caller, and into the callers of these. What is long, and takes much longer to

@@ -18,6 +18,7 @@ from dynamics.kernels.compiling import (
     helper,
     kernel,
     maker,
+    shared,
 )
 from dynamics.kernels.drives.expanding import evaluate, evaluate_many, excite, expand, expand_many
 from dynamics.kernels.regions import clear, enter, leave, start
@@ -28,6 +29,10 @@ Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatA
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """A motion and its push (m, degree + 1), six rows of as many, a state (2 m,), what `binomials` gives; motions of many
 columns (degree + 1, m, 2 m), and as many states (2 m, 2 m)."""
+
+
+DRIVE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, ::1]))"
+ROOM = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1], f8[:, ::1]))"
 
 
 @maker
@@ -158,7 +163,7 @@ def multiply(turned: FloatArray, jac: FloatArray, spare: FloatArray) -> None:
             jac[i, j] = spare[i, j]
 
 
-@helper
+@shared(f"UniTuple(i8, 2)({DRIVE}, i8, i8, i8, f8[::1], i8, f8[:, ::1], {ROOM}, i8[::1])")
 def some_cells(
     table: Drive, first: int, number: int, region: int, z: FloatArray, want: int, jac: FloatArray, room: Room,
     count: IntArray,

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import ONE, ZERO, FloatArray, IntArray
+from dynamics.kernels.compiling import ONE, ZERO, FloatArray, IntArray, called
 from dynamics.kernels.roots import copy, first_exit
 from dynamics.kernels.stepwise.compiling import (
+    CARRY,
     CROWDED,
     DIVERGED,
     FINE,
@@ -224,6 +225,9 @@ def carry(
     return FINE
 
 
+carry_there = called(carry, CARRY)
+
+
 @kernel
 def iterate(
     model: Model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
@@ -232,11 +236,11 @@ def iterate(
     """Carry y over `skip` periods and then over len(states), keeping state and falls of each; 0 or why it failed."""
     unseen = np.zeros(2, dtype=np.int64)
     for p in range(skip):
-        flag = carry(model, surfaces, tol, size, 0.0, TURN, y, going, on, unseen, events, p)
+        flag = carry_there(model, surfaces, tol, size, 0.0, TURN, y, going, on, unseen, events, p)
         if flag != FINE:
             return flag
     for p in range(len(states)):
-        flag = carry(model, surfaces, tol, size, 0.0, TURN, y, going, on, falls[p], events, skip + p)
+        flag = carry_there(model, surfaces, tol, size, 0.0, TURN, y, going, on, falls[p], events, skip + p)
         if flag != FINE:
             return flag
         states[p, 0], states[p, 1] = y[0], y[1]
@@ -257,7 +261,7 @@ def stretch(
         for piece in range(pieces):
             y[2] = 0.0
             start, stop = TURN * piece / pieces, TURN * (piece + 1) / pieces
-            flag = carry(model, surfaces, tol, size, start, stop, y, going, on, unseen, events, p)
+            flag = carry_there(model, surfaces, tol, size, start, stop, y, going, on, unseen, events, p)
             if flag != FINE:
                 return flag
             first = math.hypot(y[3], y[4])
