@@ -1,4 +1,4 @@
-"""Cases of films with heat: by nodes beside the isothermal film, and along a path."""
+"""Cases of films with heat, by nodes beside the isothermal film and along a path; and of films over the face."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Levels, answer, case, level, over, percent, value
-from flankfilm.bench.examples import contacts_along_path, pitch_point
+from flankfilm.bench.examples import contacts_along_path, example_pair, pitch_point
 
 if TYPE_CHECKING:
     from ehl import LineContact, ThermalFilm
+    from flankfilm.coupling.film_table import FilmTable
 
 _NODES = "{} nodes".format
 _THICKNESS = "central and least film"
 
 
 def thermal_films(quick: bool) -> tuple[Case, ...]:
-    """All cases of films with heat."""
-    return (thermal_nodes(quick),) if quick else (thermal_nodes(quick), thermal_path())
+    """All cases of films with heat, and of films over the face."""
+    return (thermal_nodes(quick),) if quick else (thermal_nodes(quick), thermal_path(), face_table())
 
 
 def _sliding(contact: LineContact, ratio: float) -> LineContact:
@@ -97,3 +98,40 @@ def thermal_path() -> Levels:
 
     series = over((0.02, 0.01, 0.005), percent, along, all_of, name="tolerances")
     return Levels((series,), level(percent(2e-3), along, all_of, 2e-3))
+
+
+@case("Films over the face", "line loads", "film_face_table")
+def face_table() -> Levels:
+    """Films of the cells of a face by the line loads at which they are solved.
+
+    Pair 36/40, 2000 rpm: nine places of the path and line loads over 2.8 decades, and between them bicubic splines. The
+    values are least and central films of 200 cells at random places and loads.
+    """
+    from flankfilm.coupling import FilmModel
+    from flankfilm.coupling.film_table import table_on
+
+    pair, chance = example_pair(), np.random.default_rng(11)
+    rho1, oil = np.linspace(pair.points.A, pair.points.E, 9), pitch_point().lubricant
+    lightest, heaviest = 1.2e3, 7.2e5
+    cells = (
+        chance.uniform(rho1[0], rho1[-1], 200),
+        np.exp(chance.uniform(np.log(lightest), np.log(heaviest), 200)),
+    )
+
+    def solved(loads: int) -> FilmTable:
+        return table_on(pair, rho1, np.geomspace(lightest, heaviest, loads), 209.44, oil, FilmModel(), 2e-3)
+
+    def of(table: FilmTable) -> Answer:
+        least, central = (
+            table.thickness(name, *cells) for name in ("minimum_thickness", "central_thickness")
+        )
+        errors = np.hypot([table.error, table.central_error], table.film_error or 0.0).tolist()
+        return answer(
+            table.load.size,
+            {"least films": value(least, errors[0]), "central films": value(central, errors[1])},
+        )
+
+    counts = (11, 21, 41)
+    return Levels(
+        (over(counts, "{} loads".format, solved, of, name="loads"),), level("81 loads", solved, of, 81)
+    )

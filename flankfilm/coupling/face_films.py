@@ -56,7 +56,11 @@ class FaceFilms:
         error="error",
     )
     central_thickness: Array = quantity(
-        "m", "central film of each cell; nan likewise", "position pair cell", shown="um", error="error"
+        "m",
+        "central film of each cell; nan likewise",
+        "position pair cell",
+        shown="um",
+        error="central_error",
     )
     hertz_pressure: Array = quantity(
         "Pa",
@@ -92,6 +96,11 @@ class FaceFilms:
     def error(self) -> float | None:
         """Relative error of a cell's film under its line load; None by formula."""
         return None if self.film_error is None else float(np.hypot(self.film_error, self.table_error))
+
+    @property
+    def central_error(self) -> float | None:
+        """Relative error of a cell's central film; None by formula."""
+        return None if self.film_error is None else float(np.hypot(self.film_error, self.table.central_error))
 
     @property
     def no_error(self) -> str:

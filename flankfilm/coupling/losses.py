@@ -118,6 +118,8 @@ def mesh_losses(
 
     Notes
     -----
+    Where the load varies along the face (leads, ``Flanks(alignment=, cells=)``) cells add up, and `over_face` has them.
+
     The films change the load share by friction alone. What asperities carry makes heat that no film feels. Equations
     and limits: docs/theory/losses.md.
 
@@ -216,7 +218,7 @@ class _Run:
             share_mismatch=agreed.shares,
             temperature_mismatch=agreed.warmer,
             error=error,
-            message=f"errs by {error:.1e}: {MORE}" if error > self.oil.tolerance else "",
+            message=_message(error, carried) if error > self.oil.tolerance else "",
             cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
             over_face=over,
         )
@@ -340,6 +342,13 @@ class _Run:
         oil = replace(self.lubricant, eyring_stress=stress)
         contacts = [replace(one, lubricant=oil) for one in some.contacts]
         return Carried.of(heated_films(some.rho1, contacts, self.oil, bulk, some)).over(Carried.of(some))
+
+
+def _message(error: float, carried: float) -> str:
+    """What a user should know of an error above the tolerance."""
+    if carried > 0.5 * error:
+        return f"errs by {error:.1e}, most of it what is interpolated between films of the face's cells"
+    return f"errs by {error:.1e}: {MORE}"
 
 
 def _off(one: Means, other: Means) -> float:

@@ -87,7 +87,8 @@ def lubricated_cycle(
     Returns
     -------
     LubricatedCycle
-        At the midpoints of equal intervals of one base pitch.
+        At the midpoints of equal intervals of one base pitch; with `over_face` where the load varies along the face, by
+        leads or by ``flanks=Flanks(alignment=..., cells=...)``.
 
     Raises
     ------

@@ -32,7 +32,7 @@ MAPS = ("line_load", "hertz_pressure")
 FILMS = ("line_load", "minimum_thickness")
 """Figures of the cells' films that are painted."""
 
-TIMES_LEAST = 2.0
+TIMES_LEAST = 1.5
 """How many times the least film colours tell apart."""
 
 
@@ -128,7 +128,7 @@ def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | N
 def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | None = None) -> Figure:
     """Draw least film and Hertz pressure with films over path and face.
 
-    Films of cells that bear little are many times as thick: colours are of films up to twice the least of all.
+    Films of cells that bear little are many times as thick: colours end half as thick again as the least.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def test_the_table_is_what_films_are_between_its_places_and_loads(solved):
             film.minimum_thickness, rel=over.error
         )
         assert table.thickness("central_thickness", *at) == pytest.approx(
-            film.central_thickness, rel=over.error
+            film.central_thickness, rel=over.central_error
         )
         separation, _ = table(at[0], at[1] * PAIR.face_width)
         assert separation == pytest.approx(film.separation, rel=over.error)
