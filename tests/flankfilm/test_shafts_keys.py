@@ -122,6 +122,12 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
             "alignment.in_plane_um",
             "gives the alignment twice, beside shafts.pinion.segments",
         ),
+        (
+            '"sweep"',
+            (("[dynamics]", "[alignment]\ncells = 16\n[dynamics]"),),
+            "[alignment]",
+            "knows no slopes of shafts",
+        ),
     ],
 )
 def test_what_the_rest_of_the_scene_says_twice_or_cannot_have_is_refused(wants, changes, where, says):
