@@ -103,8 +103,8 @@ def multipliers_of(jacobian: Array, determinant: float) -> npt.NDArray[np.comple
 
 def is_stable(multipliers: npt.NDArray[np.complex128] | Array) -> bool:
     """Whether all multipliers lie within the unit circle, or are a pair on it up to rounding."""
-    largest = float(np.max(np.abs(multipliers)))
-    return largest < 1.0 or (np.iscomplexobj(multipliers) and largest < 1.0 + 4.0 * EPS)
+    limit = 1.0 + 4.0 * EPS if np.iscomplexobj(multipliers) else 1.0
+    return all(abs(multiplier) < limit for multiplier in multipliers.tolist())
 
 
 def motion_label(periods: int, counts: tuple[int, int], stable: bool = True) -> str:
