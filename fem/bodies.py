@@ -238,11 +238,13 @@ class Compliance:
     @described("m/N", "gear", kept=True)
     def step_windup(self) -> tuple[float, float]:
         """Part of that turn by steps of pinion's and wheel's thickness, where rim and hub meet a narrower web."""
-        width = self.pair.face_width
         first, second = (
             step_wind_up(profile, width, gear.law.shear_modulus) / width
-            for profile, gear in zip(
-                held_profiles(self.pair, self.supports), (self.pinion, self.wheel), strict=True
+            for profile, gear, width in zip(
+                held_profiles(self.pair, self.supports),
+                (self.pinion, self.wheel),
+                self.pair.face_widths,
+                strict=True,
             )
         )
         return first, second

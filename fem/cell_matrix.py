@@ -10,12 +10,13 @@ from base import Array
 from fem.cell_coupling import CellCoupling
 from fem.face_compliance import pair_ends, pair_waves
 from fem.face_setting import FREE_ENDS, SLICES, FaceSetting
+from fem.face_shafts import shafts_under_face
+from fem.overhang import cosines, overhang
 from fem.solved_gear import Gears
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
     from fem.contact_candidates import ContactCandidates
-    from gears import GearPair
 
 __all__ = ["cell_coupling", "cell_matrix"]
 
@@ -39,7 +40,8 @@ def cell_coupling(
         return cut()
     laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
     arrays = (where.rho, where.touchable, kappa, matrix)
-    size_of = (bodies.pair.module, bodies.pair.face_width, bodies.reach)
+    pair = bodies.pair
+    size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
     key = (bodies.meshed, laws, size_of, face.coupled, *(one.tobytes() for one in arrays))
     return Gears().over_face("cells", key, cut)
 
@@ -58,26 +60,22 @@ def cell_matrix(face: FaceSetting, bodies: Compliance, rho: Array, kappa: Array,
     matrix : (positions, pairs, pairs) array
         The plane's compliance of forces kappa F [m/N].
     """
-    cells, (positions, pairs) = face.cells, kappa.shape
-    modes, levers = _modes(cells), kappa[..., :, None] * kappa[..., None, :]
+    cells, (positions, pairs), pair = face.cells, kappa.shape, bodies.pair
+    modes, levers = cosines(cells), kappa[..., :, None] * kappa[..., None, :]
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     if face.model != SLICES:
         by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip) / levers[..., None]
     found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
+    if face.model != SLICES:
+        for gear, width in enumerate(pair.face_widths):
+            if width != pair.face_width:
+                found += overhang(bodies, gear, rho[gear], face) / levers[:, :, None, :, None]
     if face.model == FREE_ENDS:
-        edges = face.edges(bodies.pair)
-        found += pair_ends(bodies, rho, (edges, edges), _widths(bodies.pair)) / levers[:, :, None, :, None]
+        edges = face.edges(pair)
+        first, second = (edges - offset for offset in pair.face_offsets)
+        found += pair_ends(bodies, rho, (first, second), pair.face_widths) / levers[:, :, None, :, None]
+    shafts = shafts_under_face(face, pair)
+    if shafts is not None:
+        found += shafts.between.sum(axis=0)[:, None] / levers[:, :, None, :, None]
     size = pairs * cells
     return np.asarray(found.reshape(positions, size, size))
-
-
-def _widths(pair: GearPair) -> tuple[float, float]:
-    return pair.face_width, pair.face_width
-
-
-def _modes(cells: int) -> Array:
-    """Orthonormal cosines over the cells (modes, cells)."""
-    m, c = np.arange(cells)[:, None], np.arange(cells) + 0.5
-    found = np.cos(np.pi * m * c / cells) * np.sqrt(2.0 / cells)
-    found[0] = np.sqrt(1.0 / cells)
-    return np.asarray(found)

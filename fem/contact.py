@@ -22,7 +22,7 @@ from fem.several_torques import one_or_several
 from fem.sharing import Solution, solve
 
 if TYPE_CHECKING:
-    from gears import Alignment, GearPair
+    from gears import Alignment, GearPair, Shaft
 
 __all__ = ["MeshCycle", "mesh_cycle"]
 
@@ -51,6 +51,7 @@ def mesh_cycle(
     alignment: Alignment | None = None,
     cells: int | None = None,
     face_model: str = FREE_ENDS,
+    shafts: tuple[Shaft | None, Shaft | None] | None = None,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -102,6 +103,16 @@ def mesh_cycle(
     base_pitch_difference : float
         Base pitch of the pinion less that of the wheel, such as by unequal temperatures [m]; both have the pair's but
         for that (``gears.warm_pair``).
+    alignment : gears.Alignment, optional
+        How the axes are out of parallel without load. Where it is given, or a lead, cells or shafts, loads are shared
+        over the face (``cycle.face``).
+    cells : int, optional
+        Equal cells of the face, even, 4 to 512; 64 unless given.
+    face_model : {"free-ends", "walls", "slices"}
+        What couples the cells: bodies with free ends or between frictionless walls, or nothing but the approach.
+    shafts : (gears.Shaft or None, gears.Shaft or None), optional
+        Shafts of pinion and wheel, left ends at the same side: they bend and twist under the loads on the cells, and
+        open the flanks by as much (``gears.shaft_face``). D is measured between the mid-faces, and counts none of it.
 
     Returns
     -------
@@ -138,7 +149,7 @@ def mesh_cycle(
         friction,
         moving_contact=moving_contact,
         base_pitch_difference=base_pitch_difference,
-        face=face_setting(pair, alignment, cells, face_model),
+        face=face_setting(pair, alignment, cells, face_model, shafts),
     )
     _check(given, torque, compliance, reference, plane)
     watch = Stopwatch()

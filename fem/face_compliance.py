@@ -16,7 +16,7 @@ from fem.wide_contact import beyond_logarithm
 if TYPE_CHECKING:
     from fem.bodies import Compliance
 
-__all__ = ["ends_of", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
+__all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
 DIGITS = 12
 """Of lengths over the module, by which what is solved of a face is known."""
@@ -87,6 +87,26 @@ def gear_waves(
         load, point = (behind, ahead) if gear == 0 else (ahead, behind)
         cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
         found[..., behind, ahead, :] = found[..., ahead, behind, :] = cross
+    return found
+
+
+def even_loads(bodies: Compliance, gear: int, rho: Array) -> Array:
+    """What even line loads yield on one gear (..., n, n) [m per N/m], without the local indentation.
+
+    Parameters
+    ----------
+    bodies, gear, rho
+        As of ``gear_waves``.
+    """
+    flexible, n = (bodies.pinion, bodies.wheel)[gear], rho.shape[-1]
+    found: Array = np.zeros((*rho.shape, n))
+    diagonal = np.arange(n)
+    found[..., diagonal, diagonal] = flexible.own(rho)
+    for apart in range(1, min(n, bodies.reach + 1)):
+        behind, ahead = diagonal[:-apart], diagonal[apart:]
+        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+        cross = flexible.cross(apart, rho[..., load], rho[..., point])
+        found[..., behind, ahead] = found[..., ahead, behind] = cross
     return found
 
 

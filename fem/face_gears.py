@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from base import Cost, Stopwatch, record
-from fem.cell_matrix import _widths
 from fem.face_compliance import ends_of, waves_of
 from fem.face_setting import FREE_ENDS, SLICES
 from fem.gear_face import FlankEnds, FlankWaves
@@ -62,6 +61,6 @@ def face_gears(bodies: Compliance, model: str = FREE_ENDS, kept: Kept | None = N
     waves = waves_of(pinion, gears), waves_of(wheel, gears)
     ends = None
     if model == FREE_ENDS:
-        first, second = (width / bodies.pair.module for width in _widths(bodies.pair))
+        first, second = (width / bodies.pair.module for width in bodies.pair.face_widths)
         ends = ends_of(pinion, first, gears), ends_of(wheel, second, gears)
     return FaceGears(waves, ends, Cost(watch.seconds))

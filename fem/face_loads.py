@@ -67,6 +67,13 @@ class FaceLoads:
         shown="um",
     )
     error: float = quantity("1", "estimated relative error of the greatest face-load factor")
+    shaft_misalignment: Array = quantity(
+        "m",
+        "how far the shafts' bending and twist under the load open the flanks over the face, end to end, by the mean "
+        "slope: f_sh; zero of rigid shafts",
+        "gear position",
+        shown="um",
+    )
 
     @described("1", error="error")
     def greatest_face_load_factor(self) -> float:
@@ -107,6 +114,8 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
     pair, cells = given.pair, given.face.cells
     forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
+    shafts, loads = over.shafts, forces.sum(axis=-2)
+    bent = np.zeros((2, len(loads))) if shafts is None else shafts.misalignment(loads)
     where, (rho1, rho2) = contact.where, contact.where.rho
     radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
@@ -121,4 +130,5 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
         np.tile(travel, (given.pitches, 1)),
         np.maximum(over.left[number], 0.0).reshape(forces.shape),
         float(over.factor_error[number] / np.max(factors)),
+        bent,
     )

@@ -10,7 +10,7 @@ from base import Array, Faults, Limit, record
 from gears.face import ALIGNED, STRAIGHT, Alignment, Lead
 
 if TYPE_CHECKING:
-    from gears import GearPair
+    from gears import GearPair, Shaft
 
 __all__ = ["FaceSetting", "face_setting"]
 
@@ -38,18 +38,21 @@ class FaceSetting:
         What couples the cells: bodies with free ends, or between frictionless walls; nothing but the approach.
     strip : float
         Half-width of strips of pressure over a cell's length, where cells are narrow (``fem.wide_contact``); else 0.
+    shafts : (Shaft or None, Shaft or None)
+        Of pinion and wheel, which bend and twist; None is rigid.
     """
 
     cells: int
     alignment: Alignment = ALIGNED
     leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
     model: str = FREE_ENDS
+    shafts: tuple[Shaft | None, Shaft | None] = (None, None)
     strip: float = 0.0
 
     @property
     def coupled(self) -> tuple[Any, ...]:
         """What decides how cells are coupled, whatever stands between the flanks."""
-        return self.cells, self.model, self.strip
+        return self.cells, self.model, self.strip, self.shafts
 
     def edges(self, pair: GearPair) -> Array:
         """Edges of the cells (cells + 1,) [m], 0 at mid-face."""
@@ -59,19 +62,23 @@ class FaceSetting:
         """Middles of the cells (cells,) [m], 0 at mid-face."""
         return np.asarray(((np.arange(self.cells) + 0.5) / self.cells - 0.5) * face_width)
 
-    def check(self, found: Faults, face_width: float) -> None:
+    def check(self, found: Faults, pair: GearPair) -> None:
         """Note everything that is wrong."""
         found.number("cells", self.cells, CELLS)
         found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
         if self.cells % 2:
             found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
         found.extend(self.alignment.faults("alignment"))
-        for name, lead in zip(("pinion", "wheel"), self.leads, strict=True):
-            if lead.end_relief and lead.end_relief_length > 0.5 * face_width:
-                allowed = f"must be at most {0.5 * face_width:g} m, half the face"
+        for name, lead, width in zip(("pinion", "wheel"), self.leads, pair.face_widths, strict=True):
+            if lead.end_relief and lead.end_relief_length > 0.5 * width:
+                allowed = f"must be at most {0.5 * width:g} m, half the face"
                 found.add(
                     f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
                 )
+
+        for k, shaft in enumerate(self.shafts):
+            if shaft is not None:
+                _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
 
     def least_gap(self, pair: GearPair) -> float:
         """Least of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
@@ -80,15 +87,39 @@ class FaceSetting:
     def gaps(self, pair: GearPair, radius: Array) -> Array:
         """Gaps along the face (..., cells) [m], less those at mid-face of straight aligned gears."""
         z = self.middles(pair.face_width)
-        removed = sum(lead.removed(z, pair.face_width) for lead in self.leads)
+        removed = sum(
+            lead.removed(z - offset, width)
+            for lead, width, offset in zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)
+        )
         return np.asarray(self.alignment.gap(z, pair.face_width, radius[..., None]) + removed)
 
 
 def face_setting(
-    pair: GearPair, alignment: Alignment | None, cells: int | None, model: str
+    pair: GearPair,
+    alignment: Alignment | None,
+    cells: int | None,
+    model: str,
+    shafts: tuple[Shaft | None, Shaft | None] | None = None,
 ) -> FaceSetting | None:
     """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
-    leads = pair.pinion.lead, pair.wheel.lead
-    if alignment is None and cells is None and leads == (STRAIGHT, STRAIGHT):
+    leads, both = (pair.pinion.lead, pair.wheel.lead), shafts or (None, None)
+    alike = leads == (STRAIGHT, STRAIGHT) and pair.face_widths == (pair.face_width, pair.face_width)
+    if alike and alignment is None and cells is None and both == (None, None):
         return None
-    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model)
+    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model, both)
+
+
+def _check_shaft(found: Faults, where: str, shaft: Shaft, face_width: float, offset: float) -> None:
+    """Note a face in contact that is not all on its shaft."""
+    half = 0.5 * face_width
+    within = Limit(
+        half + offset,
+        shaft.length - half + offset,
+        "m",
+        "the whole face must be on the shaft: make its end longer",
+    )
+    if within.low <= within.high:
+        found.number(f"{where}.gear_position", shaft.gear_position, within)
+    else:
+        allowed = f"must be at least the face width, {face_width:g} m"
+        found.add(f"{where}.segments", f"{shaft.length:g} m long", allowed, "give the steps of the shaft")

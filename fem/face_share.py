@@ -20,6 +20,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.cell_matrix import cell_coupling
 from fem.face_setting import FREE_ENDS, WALLS
+from fem.face_shafts import ShaftsUnderFace, shafts_under_face
 from fem.flamant import hertz_half_width
 from fem.local_law import Film, FilmLaw, PairLaws, film_yielding
 from fem.wide_contact import shared_by_width
@@ -80,12 +81,15 @@ class FaceShare:
         ends do.
     stiffness_error : (torques,) array
         Estimated relative error of mean stiffness and deflection by the cells.
+    shafts : ShaftsUnderFace or None
+        None where they are rigid.
     """
 
     forces: Array
     left: Array
     factor_error: Array
     stiffness_error: Array
+    shafts: ShaftsUnderFace | None
 
     @property
     def open(self) -> Array:
@@ -204,7 +208,12 @@ def share_over_face(
     forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
     pairs = forces.sum(axis=-1)
     share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
-    return share, FaceShare(forces, left, *_errors(over, given.face, found, pairs))
+    errors = _errors(over, given.face, found, pairs)
+    shafts = shafts_under_face(given.face, given.pair)
+    if shafts is not None:
+        loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
+        share = shafts.measured_between(share, loads, by_slope)
+    return share, FaceShare(forces, left, *errors, shafts)
 
 
 def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tuple[Array, Array]:

@@ -33,8 +33,8 @@ class GearShape:
     Attributes
     ----------
     gear : gears.Gear
-        All lengths in modules, the bore where the gear is held, the web's thickness in face widths; without relief
-        and lead, which no mesh shows.
+        All lengths in modules, the bore where the gear is held, the web's thickness in face widths; without relief,
+        lead and face width, which no mesh shows.
     rack : gears.BasicRack
     poisson : float
         nu*, in which plane strain and plane stress are one.
@@ -110,9 +110,9 @@ def shapes(
 
     modules = partial(over, pair.module)
 
-    def scaled(blank: Blank) -> Blank:
+    def scaled(blank: Blank, width: float) -> Blank:
         hub = None if blank.hub_radius is None else modules(blank.hub_radius)
-        return Blank(modules(blank.rim_thickness), over(pair.face_width, blank.web_thickness), hub)
+        return Blank(modules(blank.rim_thickness), over(width, blank.web_thickness), hub)
 
     first, second = (
         GearShape(
@@ -123,11 +123,15 @@ def shapes(
                 tip_chamfer=modules(gear.tip_chamfer),
                 tip_relief=None,
                 lead=STRAIGHT,
-                blank=scaled(gear.blank) if gear.blank is not None and profile.steps else None,
+                face_width=None,
+                face_offset=0.0,
+                blank=scaled(gear.blank, width) if gear.blank is not None and profile.steps else None,
             ),
             pair.rack,
             PlaneElasticity.of(material, plane).plane_poisson,
         )
-        for gear, profile, material in zip((pair.pinion, pair.wheel), profiles, pair.materials, strict=True)
+        for gear, width, profile, material in zip(
+            (pair.pinion, pair.wheel), pair.face_widths, profiles, pair.materials, strict=True
+        )
     )
     return first, second

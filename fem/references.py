@@ -64,7 +64,7 @@ def turns(
     """
     found = []
     for gear, profile in enumerate(held_profiles(pair, supports)):
-        base, material, width = profile.base_radius, pair.materials[gear], pair.face_width
+        base, material, width = profile.base_radius, pair.materials[gear], pair.face_widths[gear]
         body = profile.zones, base, PlaneElasticity.of(material, "strain").shear_modulus
         if reference == "teeth":
             turn = 0.0

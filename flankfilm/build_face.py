@@ -101,6 +101,6 @@ def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         pair, given.get("alignment"), given.get("cells"), given.get("face_model", FREE_ENDS)
     )
     if setting is not None:
-        setting.check(found, pair.face_width)
+        setting.check(found, pair)
     for fault in found.found:
         yield in_keys(fault, scene.pair, "pair")

@@ -23,6 +23,8 @@ LIMITS = {
     "tip_alteration": Limit(-1.0, 1.0, "modules", "change the tip less"),
     "generating_shift": Limit(-0.8, 1.5, "modules", "give the shift at which the tool cuts the gear"),
     "thickness_allowance": Limit(0.0, 1.0, "m", "give the arc by which the tooth is thinned, in metres"),
+    "face_width": Limit(1e-6, 100.0, "m", "give the gear's own face width in metres, or None for the pair's"),
+    "face_offset": Limit(-100.0, 100.0, "m", "give the place of its middle along the axis in metres"),
     "tip_chamfer": Limit(0.0, 1.0, "m", "give the radial height of the chamfer in metres"),
 }
 """What the numbers of a gear may be."""
@@ -80,7 +82,11 @@ class Gear:
         nominal by 2 (x - x_E) m tan alpha at the reference circle, with a deeper root. The tip circle and the centre
         distance of no backlash stay those of `profile_shift`. None cuts at `profile_shift`.
     lead : Lead
-        Crowning, slope and end relief along the face.
+        Crowning, slope and end relief along the gear's own face.
+    face_width : float or None
+        Of this gear, where it is wider than the face in contact, which is the pair's [m]; None is as wide.
+    face_offset : float
+        Place of the middle of this gear's face along the axis, from that of the face in contact [m].
 
     Examples
     --------
@@ -98,6 +104,8 @@ class Gear:
     blank: Blank | None = None
     generating_shift: float | None = None  # x_E, modules
     lead: Lead = STRAIGHT
+    face_width: float | None = None  # m
+    face_offset: float = 0.0  # m
 
     @property
     def cut_shift(self) -> float:

@@ -200,6 +200,8 @@ def _larger(gear: Gear, factor: float) -> Gear:
         bore_radius=None if gear.bore_radius is None else gear.bore_radius * factor,
         thickness_allowance=gear.thickness_allowance * factor,
         tip_chamfer=gear.tip_chamfer * factor,
+        face_width=None if gear.face_width is None else gear.face_width * factor,
+        face_offset=gear.face_offset * factor,
         tip_relief=relief,
         blank=blank,
     )

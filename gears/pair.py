@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from base import Faults, Limit, plot, view
 from gears.errors import GeometryError, GeometryWarning
 from gears.face import STRAIGHT
+from gears.faces_in_contact import check_faces
 from gears.gear import Gear
 from gears.guards import Findings, check_gear, check_mesh, unrounded_distance
 from gears.material import Material
@@ -45,7 +46,7 @@ class GearPair(PairGeometry):
     module : float
         m [m].
     face_width : float
-        b [m].
+        b of the face in contact [m]; gears that are wider have a ``face_width`` of their own.
     rack : BasicRack
         Basic rack tooth profile; ISO 53 profile A unless given.
     material : Material or (Material, Material)
@@ -89,7 +90,12 @@ class GearPair(PairGeometry):
             width = None if "face_width" in wrong else self.face_width
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
                 if not any(where.startswith(name) for where in wrong):
-                    check_gear(found, name, gear, self.module, self.rack, width)
+                    own = width if gear.face_width is None else gear.face_width
+                    check_gear(found, name, gear, self.module, self.rack, own)
+            if width is not None and not any(
+                where.endswith(("face_width", "face_offset")) for where in wrong
+            ):
+                check_faces(found, self)
         if not found.found:
             if (distance := unrounded_distance(found, self)) is not None:
                 object.__setattr__(self, "centre_distance", distance)

@@ -50,11 +50,26 @@ class PairGeometry:
         """Materials of pinion and wheel."""
         return self.material if isinstance(self.material, tuple) else (self.material, self.material)
 
+    @described("m", "gear", shown="mm")
+    def face_widths(self) -> tuple[float, float]:
+        """Face width of each gear, the pair's where it has none of its own."""
+        first, second = (
+            self.face_width if gear.face_width is None else float(gear.face_width)
+            for gear in (self.pinion, self.wheel)
+        )
+        return first, second
+
+    @property
+    def face_offsets(self) -> tuple[float, float]:
+        """Middle of each gear's face, from that of the face in contact [m]."""
+        return float(self.pinion.face_offset), float(self.wheel.face_offset)
+
     @cached_property
     def teeth_profiles(self) -> tuple[ToothProfile, ToothProfile]:
         """Generated teeth of pinion and wheel."""
         first, second = (
-            generate(gear, self.module, self.rack, self.face_width) for gear in (self.pinion, self.wheel)
+            generate(gear, self.module, self.rack, width)
+            for gear, width in zip((self.pinion, self.wheel), self.face_widths, strict=True)
         )
         assert first is not None
         assert second is not None
@@ -75,8 +90,8 @@ class PairGeometry:
     def web_thicknesses(self) -> tuple[float, float]:
         """Thickness of the web along the axis, of a disc the face width."""
         first, second = (
-            self.face_width * (tooth.zones[1].thickness if tooth.steps else 1.0)
-            for tooth in self.teeth_profiles
+            width * (tooth.zones[1].thickness if tooth.steps else 1.0)
+            for width, tooth in zip(self.face_widths, self.teeth_profiles, strict=True)
         )
         return first, second
 
@@ -205,18 +220,22 @@ class PairGeometry:
     def moments_of_inertia(self) -> tuple[float, float]:
         """Polar moments of inertia from the bore to the reference circle, zone by zone [kg m^2].
 
-        J = pi rho b Sum t (r_o^4 - r_i^4) / 2, t the thickness of a zone over b, 1 in a disc
+        J = pi rho b Sum t (r_o^4 - r_i^4) / 2, b the gear's own face width, t the thickness of a zone over it, 1 in a
+        disc
         """
-        scale = 0.5 * math.pi * self.face_width
         first, second = (
-            scale
+            0.5
+            * math.pi
+            * width
             * material.density
             * (
                 tooth.reference_radius**4
                 - tooth.bore_radius**4
                 - sum((1.0 - zone.thickness) * (zone.outer**4 - zone.inner**4) for zone in tooth.zones)
             )
-            for material, tooth in zip(self.materials, self.teeth_profiles, strict=True)
+            for width, material, tooth in zip(
+                self.face_widths, self.materials, self.teeth_profiles, strict=True
+            )
         )
         return first, second
 

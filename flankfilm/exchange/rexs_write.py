@@ -128,7 +128,7 @@ class _Writer:
         shift = float(gear.profile_shift)
         size = {
             rexs.HELIX_ANGLE: 0.0,
-            rexs.FACE_WIDTH: 1e3 * pair.face_width,
+            rexs.FACE_WIDTH: 1e3 * pair.face_widths[index],
             rexs.TIP_DIAMETER: 2e3 * profile.tip_radius,
             rexs.ROOT_DIAMETER: 2e3 * profile.root_radius,
             rexs.BORE_DIAMETER: 2e3 * profile.bore_radius,
