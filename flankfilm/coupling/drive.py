@@ -124,6 +124,7 @@ def pair_drive(
     length_scale: float | None = None,
     one_sided: bool = False,
     reference: str = "body",
+    free_damping_ratio: float | None = None,
 ) -> PairDrive:
     """Drive train of a pair: torsion of both shafts, and deflection of the gears along the line of action.
 
@@ -151,7 +152,7 @@ def pair_drive(
         lowest on; dampers of bearings come on top.
     rayleigh : (float, float), optional
         Instead of it: damping alpha M + beta K of these with alpha [1/s] and beta [s]; what turns freely is not braked.
-    error_amplitude, error_phase, extra_inertia, length_scale, one_sided, reference
+    error_amplitude, error_phase, extra_inertia, length_scale, one_sided, reference, free_damping_ratio
         As of `pair_oscillator`.
 
     Raises
@@ -190,7 +191,7 @@ def pair_drive(
     rigid = pair_oscillator(
         pair, stiffness, torque, speed, damping_ratio=damping_ratio, error_amplitude=error_amplitude,
         error_phase=error_phase, extra_inertia=extra_inertia, length_scale=length_scale, one_sided=one_sided,
-        reference=reference,
+        reference=reference, free_damping_ratio=free_damping_ratio,
     )  # fmt: skip
     scales, own = rigid.scales, rigid.oscillator
     assert scales is not None  # a pair has them
@@ -218,6 +219,7 @@ def pair_drive(
         mass=mass / m, damping=damping / (m * omega), stiffness=firm / k, direction=g, mesh_stiffness=own.stiffness,
         mesh_damping=2.0 * own.damping_ratio, mean_force=force, error_amplitude=own.error_amplitude,
         frequency=own.frequency, half_backlash=own.half_backlash, error_phase=own.error_phase, one_sided=one_sided,
+        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1],
     )  # fmt: skip
     names = tuple(f"{name} {what}" for name, side in zip(SIDES, sides, strict=True) for what in side.names)
     frequencies, shapes, shares = drive_modes(oscillator)

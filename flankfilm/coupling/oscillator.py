@@ -136,6 +136,7 @@ class PairOscillator:
             *self._error_rows(),
             ("half backlash D", f"{1e6 * self.backlash / 2:.4g} µm", f"{osc.half_backlash:.6g}"),
             ("damping ratio zeta", damping, f"{osc.damping_ratio:.6g}"),
+            *self._free_rows(),
             ("mesh frequency omega", rpm, f"{osc.frequency:.6g}"),
         ]
         if scales is None:
@@ -149,6 +150,14 @@ class PairOscillator:
             ("resonance speed n_E1", f"{scales.rpm(1.0):.5g} rpm of the pinion", "1"),
             ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
         )
+
+    def _free_rows(self) -> list[tuple[str, str, str]]:
+        """Damping in the backlash, where it is another one."""
+        free = self.oscillator.free_damping_ratio
+        if free is None:
+            return []
+        damping = "" if self.scales is None else f"{self.scales.damping(free):.4g} N s/m"
+        return [("damping ratio in the backlash zeta_0", damping, f"{free:.6g}")]
 
     def _error_rows(self) -> list[tuple[str, str, str]]:
         """Amplitudes of the error, the first of many, and its range where there are several."""
@@ -172,6 +181,7 @@ def pair_oscillator(
     speed: float,
     *,
     damping_ratio: float = 0.05,
+    free_damping_ratio: float | None = None,
     error_amplitude: float | Sequence[float] | Array = 0.0,
     error_phase: float | Sequence[float] | Array = 0.0,
     extra_inertia: tuple[float, float] = (0.0, 0.0),
@@ -200,6 +210,8 @@ def pair_oscillator(
         load, and the stiffness is that of the back flanks.
     damping_ratio : float
         Dimensionless.
+    free_damping_ratio : float, optional
+        In the backlash, where no teeth press. Left out: as in contact.
     error_amplitude, error_phase : float or sequence of float
         Of the unloaded transmission error [m], [rad], of its first harmonic or of each; the deflection is in the
         stiffness already. `error_series` takes them from a curve.
@@ -248,7 +260,7 @@ def pair_oscillator(
         error_phase=_as_given(phases + (0.0 if torque > 0.0 else math.pi)),
     )
     return PairOscillator(
-        replace(oscillator, one_sided=one_sided),
+        replace(oscillator, one_sided=one_sided, free_damping_ratio=free_damping_ratio),
         scales,
         series,
         pair,

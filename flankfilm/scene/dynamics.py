@@ -26,6 +26,7 @@ PHYSICAL = ("error_amplitude_um", "error_curve", "length_scale_um")
 
 OSCILLATOR = (
     "damping_ratio",
+    "free_damping_ratio",
     "error_phase_deg",
     "one_sided",
     *DIMENSIONLESS,
@@ -123,6 +124,7 @@ class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
     ground: ClassVar[Limits] = {
+        "free_damping_ratio": _DAMPING,
         "length_scale": Limit.above(0.0, 1.0, "m"),
         "mean_force": _NUMBER,
         "half_backlash": _NUMBER,
@@ -144,6 +146,11 @@ class DynamicsSection(Section):
         'damping of the mesh over the critical one, or "film": what its oil films damp, and nothing else',
         0.05,
         shown=True,
+    )
+    free_damping_ratio: float | None = key(
+        "damping ratio in the backlash, where no teeth press and no film damps; as in contact if left out",
+        None,
+        such_as=0.005,
     )
     error_amplitude_um: Annotated[tuple[float, ...], harmonics(AMPLITUDE_UM)] | None = key(
         "unloaded transmission error, its first harmonic or a list of harmonics; the deflection is in the stiffness; 0 "
@@ -203,8 +210,9 @@ class DynamicsSection(Section):
 
     @property
     def known_damping(self) -> float:
-        """Damping ratio before anything is computed: 0 for that of films, too small to decide steps of time."""
-        return 0.0 if isinstance(self.damping_ratio, str) else self.damping_ratio
+        """Greatest damping ratio before anything is computed: 0 for films', too small to decide steps of time."""
+        pressed = 0.0 if isinstance(self.damping_ratio, str) else self.damping_ratio
+        return max(pressed, self.free_damping_ratio or 0.0)
 
     @property
     def dimensionless(self) -> bool:

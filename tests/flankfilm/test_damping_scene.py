@@ -8,9 +8,10 @@ import re
 import pytest
 
 import ehl
+import gears
 from base import InputError
 from flankfilm.cache import Cache
-from flankfilm.coupling import film_damping
+from flankfilm.coupling import film_damping, pair_drive
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import MESH, PAIR
@@ -77,6 +78,38 @@ def test_results_and_report_say_so_and_what_else_damps(tmp_path):
     text = re.sub(r"\s+", " ", page)
     assert "Damping by the films" in text
     assert "What else damps is not known and not counted" in text
+
+
+def test_what_damps_in_the_backlash_is_named_beside_the_films(engine):
+    """Read through to the oscillator and its drive train, and said in the table of the report."""
+    beside = SCENE.replace('damping_ratio = "film"', 'damping_ratio = "film"\nfree_damping_ratio = 0.004')
+    motion = Engine(parse_scene(beside), Cache(None))[SCALING]
+    pressed = engine[SCALING].oscillator.damping_ratio
+    assert motion.oscillator.damping_ratios == (pressed, 0.004)
+    said = {name: (physical, value) for name, physical, value in motion.rows()}
+    assert motion.scales is not None
+    assert said["damping ratio in the backlash zeta_0"][1] == "0.004"
+    assert float(said["damping ratio in the backlash zeta_0"][0].split()[0]) == pytest.approx(
+        0.008 * motion.scales.equivalent_mass * motion.scales.omega_n, rel=1e-3
+    )
+    assert not any("zeta_0" in row[0] for row in engine[SCALING].rows())
+
+
+def test_drive_trains_have_it_too(engine):
+    shaft = gears.Shaft(
+        (gears.ShaftSegment(0.2, 0.04),), (gears.Bearing(0.02, 4e8), gears.Bearing(0.18, 4e8)), 0.1, 0.0
+    )
+    drive = pair_drive(
+        engine[PAIR], engine[MESH], 20.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05),
+        damping_ratio=0.05, free_damping_ratio=0.01,
+    )  # fmt: skip
+    assert drive.oscillator.dampings == (0.1, 0.02)
+    assert drive.rigid.oscillator.damping_ratios == (0.05, 0.01)
+
+
+def test_a_damping_in_the_backlash_beyond_its_range_is_refused_with_its_key():
+    with pytest.raises(InputError, match=r"dynamics.free_damping_ratio = -0.1"):
+        parse_scene(SCENE.replace('damping_ratio = "film"', "free_damping_ratio = -0.1"))
 
 
 @pytest.mark.slow
