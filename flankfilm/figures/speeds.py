@@ -8,7 +8,7 @@ import numpy as np
 
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import Reading, need, read
-from flankfilm.figures.style import Style, colours, from_zero, sheet
+from flankfilm.figures.style import Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,12 +88,11 @@ def waterfall(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             for way, dash in (("up", "-"), ("down", "--")):
                 at = _place(results, way)
                 line = float(force.values) * results[f"run_up_order_force_{way}"].values[:, k]
-                panels[2].plot(
-                    at.values, line, dash, color=colour, linewidth=1.0, label=f"order {wanted:g}, {way}"
-                )
+                label = f"order {wanted:g}" if way == "up" else None
+                panels[2].plot(at.values, line, dash, color=colour, linewidth=1.0, label=label)
         panels[2].set(xlabel=at.label, ylabel=force.named("amplitude of the force"))
         from_zero(panels[2])
-        drawn.legend(*panels[2].get_legend_handles_labels(), loc="outside upper left", ncols=4)
+        legend_over(panels[2], len(TRACKED))
     return drawn
 
 
@@ -131,7 +130,7 @@ def dynamic_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             below.plot(speed.values, factor[k], color=colour, label=f"{load:g} N m")
             below.plot(speed.values, iso[k], color=colour, linestyle=":", linewidth=1.0)
         below.set(xlabel=speed.label, ylabel="dynamic factor K_v [-]\n(dotted: ISO 6336-1, B)")
-        drawn.legend(*below.get_legend_handles_labels(), loc="outside upper left", ncols=5)
+        legend_over(below, 5)
     return drawn
 
 

@@ -47,6 +47,23 @@ def test_run_up_and_map_of_a_scene():
     assert OUTPUTS["greatest_run_up_factor"].value(engine) > 1.0
 
 
+@pytest.mark.slow
+def test_films_soften_the_mesh_of_run_up_and_map():
+    """The series is that of teeth and films in series, so that resonance moves by the root of the mean stiffness."""
+    film = SCENE + '[film]\nmodel = "dowson"\n'
+    dry, wet = (run_scene(parse_scene(text), None) for text in (SCENE + '[film]\nmodel = "none"\n', film))
+    assert dry.failures == wet.failures == ()
+    means = [run.values["fourier"].mean for run in (dry, wet)]
+    assert means[1] < means[0]
+    for at, torque in enumerate((300.0, 600.0)):
+        assert wet.dataset.dynamic_map_torque.values[at] == torque
+        assert wet.dataset.dynamic_map_resonance.values[at] < dry.dataset.dynamic_map_resonance.values[at]
+    moved = float(wet.dataset.dynamic_map_resonance[1] / dry.dataset.dynamic_map_resonance[1])
+    assert moved == pytest.approx((means[1] / means[0]) ** 0.5, rel=1e-9)
+    speeds = [run.dataset.run_up_frequency_up.values for run in (dry, wet)]
+    assert speeds[1] / speeds[0] == pytest.approx((means[0] / means[1]) ** 0.5, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "where"),
     [
