@@ -113,7 +113,10 @@ class _Face:
     levers: Array | None
 
     def shared(self, face: FaceSetting, near: Array) -> tuple[LoadShare, Array]:
-        """Share over cells of a face from forces of pairs (torques, ..., pairs); and the gap that each is left with."""
+        """Share over cells of a face, from forces of pairs on some parts of it (torques, ..., pairs, parts).
+
+        And the gap that each cell is left with.
+        """
         from gears.load_sharing import share_load
 
         cells, radius, unit = face.cells, self._radius, self.given.pair.face_width / face.cells
@@ -122,7 +125,7 @@ class _Face:
         apart = np.where(self.where.touchable[..., None], apart, np.inf).reshape(*apart.shape[:-2], -1)
         film = None if self.oil is None else CellLaws(self.oil, cells)
         arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
-        start, laws = np.repeat(near / cells, cells, axis=-1), CellLaws(self.laws, cells)
+        start, laws = _on_cells(near, cells), CellLaws(self.laws, cells)
 
         def coupling(strip: float) -> CellCoupling:
             return cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
@@ -134,7 +137,7 @@ class _Face:
             most = found.forces.reshape(*found.forces.shape[:-1], -1, cells).max(axis=-1)
             return self._half_widths(most / unit)
 
-        mean = self._half_widths(near / self.given.pair.face_width)
+        mean = self._half_widths(near.sum(axis=-1) / self.given.pair.face_width)
         found, strips = shared_by_width(share, widest, unit, mean)
         bent = np.zeros_like(found.forces) + apart
         for strip in np.unique(strips):
@@ -203,12 +206,12 @@ def share_over_face(
     assert given.face is not None
     over = _Face(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
     plane = share_load(whole, matrix, laws, gaps, oil, levers)
-    found, left = over.shared(given.face, plane.forces)
+    found, left = over.shared(given.face, plane.forces[..., None])
     cells = given.face.cells
     forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
     pairs = forces.sum(axis=-1)
     share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
-    errors = _errors(over, given.face, found, pairs)
+    errors = _errors(over, given.face, found, forces)
     shafts = shafts_under_face(given.face, given.pair)
     if shafts is not None:
         loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
@@ -222,7 +225,7 @@ def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tu
     other, _ = over.shared(replace(face, cells=few), near)
     rest = LEFT / (face.cells / few - 1)
     factors, coarse = (
-        face_load_factors(one.forces.reshape(*near.shape, -1) / over.kappa[..., None])
+        face_load_factors(one.forces.reshape(*near.shape[:-1], -1) / over.kappa[..., None])
         for one in (found, other)
     )
     stiffness = np.zeros(len(near))
@@ -240,6 +243,16 @@ def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tu
             cells = share.forces.reshape(1, -1, few) / at.kappa[..., None]
             factor[torque] += ENDS_ERROR * abs(half - float(face_load_factors(cells)[0]))
     return factor, stiffness
+
+
+def _on_cells(near: Array, cells: int) -> Array:
+    """Forces on cells (..., pairs cells) from those on parts of the face: added up, or even where they do not fit."""
+    *leading, parts = near.shape
+    if parts % cells:
+        spread = np.repeat(near.sum(axis=-1, keepdims=True) / cells, cells, axis=-1)
+    else:
+        spread = near.reshape(*leading, cells, -1).sum(axis=-1)
+    return np.asarray(spread.reshape(*leading[:-1], -1))
 
 
 def face_load_factors(forces: Array) -> Array:
