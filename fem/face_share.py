@@ -38,6 +38,9 @@ __all__ = ["FaceShare", "face_load_factors", "share_over_face", "yielding_over_f
 LEFT = 0.6
 """Part of what twice as many cells changed that is left: all of it in the first order, a third in the second."""
 
+FAR = 4.0
+"""Times what neighbouring cells say of halving them that the change from half as many is believed."""
+
 ENDS_ERROR = 0.1
 """Part of what free ends do that their coarse section leaves uncertain."""
 
@@ -235,13 +238,17 @@ def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tu
     factor = np.zeros(len(near))
     for torque, some in enumerate(factors):
         pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(some)), some.shape))
-        half = float(coarse[torque, pitch, position])
-        factor[torque] = rest * abs(float(some[pitch, position]) - half)
+        half = float(np.max(coarse[torque]))
+        cells = near[torque, pitch, position] / over.kappa[position][:, None]
+        settled = rest * abs(float(np.max(some)) - half)
+        between = _between(cells[int(np.argmax(cells.sum(axis=-1)))])
+        factor[torque] = np.clip(settled, between, FAR * between)
         if face.model == FREE_ENDS:
             at, pairs = over.at(torque, pitch, position), near[torque, pitch, position][None, None, None]
             share, _ = at.shared(replace(face, cells=few, model=WALLS), pairs)
-            cells = share.forces.reshape(1, -1, few) / at.kappa[..., None]
-            factor[torque] += ENDS_ERROR * abs(half - float(face_load_factors(cells)[0]))
+            walls = share.forces.reshape(1, -1, few) / at.kappa[..., None]
+            there = float(coarse[torque, pitch, position])
+            factor[torque] += ENDS_ERROR * abs(there - float(face_load_factors(walls)[0]))
     return factor, stiffness
 
 
@@ -253,6 +260,16 @@ def _on_cells(near: Array, cells: int) -> Array:
     else:
         spread = near.reshape(*leading, cells, -1).sum(axis=-1)
     return np.asarray(spread.reshape(*leading[:-1], -1))
+
+
+def _between(cells: Array) -> float:
+    """What halving changes of the greatest cell over their mean, by a parabola through three or at an end a line."""
+    k = int(np.argmax(cells))
+    if k in (0, len(cells) - 1):
+        change = (cells[k] - cells[1 if k == 0 else k - 1]) / 4
+    else:
+        change = (2 * cells[k] - cells[k - 1] - cells[k + 1]) / 16
+    return float(change / cells.mean())
 
 
 def face_load_factors(forces: Array) -> Array:
