@@ -30,6 +30,7 @@ class FaceOptions(TypedDict, total=False):
     alignment: gears.Alignment | None
     cells: int | None
     face_model: str
+    shafts: tuple[gears.Shaft | None, gears.Shaft | None] | None
 
 
 def face(scene: Scene) -> FaceOptions:
@@ -38,7 +39,15 @@ def face(scene: Scene) -> FaceOptions:
     if section is None:
         return {}
     alignment = gears.Alignment(**section.si())
-    return {"alignment": alignment, "cells": section.cells, "face_model": section.face_model}
+    found: FaceOptions = {
+        "alignment": alignment,
+        "cells": section.cells,
+        "face_model": section.face_model,
+    }
+    if scene.shafts is not None and scene.shafts.bends:
+        first, second = (None if one is None else one.shaft() for one in scene.shafts.each)
+        found["shafts"] = first, second
+    return found
 
 
 def even_along_face(pair: gears.GearPair) -> gears.GearPair:
@@ -98,7 +107,11 @@ def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
 
     given, found = face(scene), Faults()
     setting = face_setting(
-        pair, given.get("alignment"), given.get("cells"), given.get("face_model", FREE_ENDS)
+        pair,
+        given.get("alignment"),
+        given.get("cells"),
+        given.get("face_model", FREE_ENDS),
+        given.get("shafts"),
     )
     if setting is not None:
         setting.check(found, pair)

@@ -55,6 +55,8 @@ class Flanks:
         Cells of the face; the load is even along it without them, an alignment and leads.
     face_model : str
         What couples the cells, as of `fem.mesh_cycle`.
+    shafts : (gears.Shaft or None, gears.Shaft or None), optional
+        Shafts under the face, which bend and twist under the loads on the cells; straight and rigid without them.
     """
 
     beyond_path: bool = True
@@ -66,6 +68,7 @@ class Flanks:
     alignment: gears.Alignment | None = None
     cells: int | None = None
     face_model: str = FREE_ENDS
+    shafts: tuple[gears.Shaft | None, gears.Shaft | None] | None = None
 
 
 PLAIN_FLANKS = Flanks()

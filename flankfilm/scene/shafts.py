@@ -200,6 +200,11 @@ class ShaftsSection(Section):
         """Of pinion and wheel."""
         return self.pinion, self.wheel
 
+    @property
+    def bends(self) -> bool:
+        """Whether one of the shafts has steps, which bend and twist."""
+        return any(one is not None and not one.rigid for one in self.each)
+
     @model_validator(mode="before")
     @classmethod
     def _one_ratio_as_a_list(cls, given: object) -> object:

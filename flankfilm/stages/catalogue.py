@@ -26,7 +26,10 @@ from flankfilm.scene.ground import under_keys
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact alignment operating heat tolerance"
+TEETH = (
+    "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact "
+    "alignment shafts operating heat tolerance"
+)
 """Keys of all that is loaded."""
 
 

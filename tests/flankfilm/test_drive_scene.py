@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import dynamics
+import fem
 from base import InputError
 from flankfilm import figures
 from flankfilm.cache import Cache
@@ -16,6 +17,8 @@ from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
+from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE
+from flankfilm.stages.catalogue import PAIR as PAIR_STAGE
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Gear, GearPair
@@ -160,3 +163,29 @@ def test_pictures_of_trains_do_not_call_their_first_freedom_x(cycle):
         ]
         assert not any("X" in label for label in labels), labels
     assert drive.plot().axes
+
+
+def test_the_face_bears_on_the_shafts_of_the_scene():
+    """What the scene's mesh cycle finds is what finite elements find with these shafts; straight shafts bear evenly."""
+    text = TRAIN.replace('model = "ishikawa"\npairs = "independent"', 'model = "fem"').replace(
+        '"sweep"', '"stiffness"'
+    )
+    on_shafts = parse_scene(f'tolerance = 0.05\n{text}[alignment]\ncells = 4\nface_model = "slices"\n')
+    engine = Engine(on_shafts, Cache(None))
+    found = engine[DRY_CYCLE]
+    straight = fem.mesh_cycle(
+        engine[PAIR_STAGE], 600.0, found.position.size, engine[COMPLIANCE], cells=4, face_model="slices"
+    )
+    shafts = on_shafts.shafts.pinion.shaft(), None
+    bent = fem.mesh_cycle(
+        engine[PAIR_STAGE],
+        600.0,
+        found.position.size,
+        engine[COMPLIANCE],
+        cells=4,
+        face_model="slices",
+        shafts=shafts,
+    )
+    assert found.contact.face_load_factor == pytest.approx(bent.face_load_factor, rel=1e-9)
+    assert straight.face_load_factor.max() == pytest.approx(1.0, abs=1e-6)
+    assert bent.face_load_factor.max() > 1.05

@@ -123,9 +123,9 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
             "gives the alignment twice, beside shafts.pinion.segments",
         ),
         (
-            '"sweep"',
+            '"film"',
             (("[dynamics]", "[alignment]\ncells = 16\n[dynamics]"),),
-            "[alignment]",
+            "wants",
             "knows no slopes of shafts",
         ),
     ],
