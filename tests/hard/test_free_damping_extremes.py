@@ -32,8 +32,13 @@ HARD = {
     "forty times more between": oscillator(free_damping_ratio=2.0),
     "overdamped between": oscillator(free_damping_ratio=5.0, half_backlash=0.01),
     "hardly any backlash": oscillator(half_backlash=1e-6, mean_force=0.0),
-    "chatter on one side": oscillator(one_sided=True, mean_force=0.02, error_amplitude=0.1, frequency=0.5),
+    "chatter on one side": oscillator(
+        one_sided=True, frequency=0.15, damping_ratio=0.02, free_damping_ratio=0.01
+    ),
     "chatter on both": oscillator(mean_force=0.0, error_amplitude=0.8, half_backlash=0.05, frequency=0.4),
+    "long chatter on both": oscillator(
+        mean_force=0.0, half_backlash=0.05, frequency=0.15, damping_ratio=0.02, free_damping_ratio=0.01
+    ),
 }
 
 
