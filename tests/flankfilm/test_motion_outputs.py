@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import dynamics
+from base import InputError
 from flankfilm.cache import Cache
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
@@ -46,7 +47,22 @@ sweep = {{ speed_rpm = [2000, 4000], points = 5 }}
 
 def values(text: str, wants: set[str]) -> dict[str, float]:
     engine = Engine(parse_scene(text), Cache(None))
-    return {name: one.value(engine) for name, one in OUTPUTS.items() if set(one.wants) <= wants}
+    known = {name: one for name, one in OUTPUTS.items() if set(one.wants) <= wants and name not in OF_TRAINS}
+    return {name: one.value(engine) for name, one in known.items()}
+
+
+OF_TRAINS = {
+    *("lowest_drive_frequency_Hz", "drive_mesh_frequency_Hz", "drive_frequency_error"),
+    *("greatest_bearing_force_N", "greatest_shaft_torque_Nm", "drive_sweep_error"),
+}
+"""Outputs that need [shafts]: tests/flankfilm/test_drive_scene.py."""
+
+
+def test_what_drive_trains_carry_is_refused_without_shafts():
+    engine = Engine(parse_scene(OWN), Cache(None))
+    for name in OF_TRAINS:
+        with pytest.raises(InputError, match=r"shafts|pair"):
+            OUTPUTS[name].value(engine)
 
 
 @pytest.fixture(scope="module")
