@@ -131,7 +131,12 @@ OTHER = {
     "tip_chamfer": 1.1e-4,
     "blank": Blank(4e-3, 5e-3),
 }
-LIKE = {"tip_relief": TipRelief(2e-5, 1e-3), "lead": Lead(crowning=1e-5)}
+LIKE = {
+    "tip_relief": TipRelief(2e-5, 1e-3),
+    "lead": Lead(crowning=1e-5),
+    "face_width": 0.5,
+    "face_offset": 0.0,
+}
 """What no flexibility depends on."""
 
 
