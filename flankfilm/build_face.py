@@ -51,10 +51,9 @@ def face(scene: Scene) -> FaceOptions:
 
 
 def even_along_face(pair: gears.GearPair) -> gears.GearPair:
-    """The pair without leads."""
-    return replace(
-        pair, pinion=replace(pair.pinion, lead=gears.Lead()), wheel=replace(pair.wheel, lead=gears.Lead())
-    )
+    """The pair without leads and without overhangs."""
+    plain = {"lead": gears.Lead(), "face_width": None, "face_offset": 0.0}
+    return replace(pair, pinion=replace(pair.pinion, **plain), wheel=replace(pair.wheel, **plain))
 
 
 def varies_by(scene: Scene) -> list[str]:
@@ -62,7 +61,11 @@ def varies_by(scene: Scene) -> list[str]:
     found = [] if scene.alignment is None else ["[alignment]"]
     for name in ("pinion", "wheel"):
         gear = None if scene.pair is None else getattr(scene.pair, name)
-        found += [f"pair.{name}.{key}" for key in LEAD_KEYS if gear is not None and getattr(gear, key)]
+        if gear is None or scene.pair is None:
+            continue
+        if gear.face_width_mm not in (None, scene.pair.face_width_mm):
+            found.append(f"pair.{name}.face_width_mm")
+        found += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
     return found
 
 

@@ -92,10 +92,8 @@ class GearPair(PairGeometry):
                 if not any(where.startswith(name) for where in wrong):
                     own = width if gear.face_width is None else gear.face_width
                     check_gear(found, name, gear, self.module, self.rack, own)
-            unsound = ("pinion", "wheel"), ("face_width", "face_offset")
-            if width is not None and not any(
-                where in unsound[0] or where.endswith(unsound[1]) for where in wrong
-            ):
+            faces = ("pinion", "wheel", "face_width", "face_offset")
+            if width is not None and not any(where.endswith(faces) for where in wrong):
                 check_faces(found, self)
         if not found.found:
             if (distance := unrounded_distance(found, self)) is not None:

@@ -124,6 +124,16 @@ class GearSection(Section):
         of=None,
         limit=Limit(0.0, 0.05, "m"),
     )
+    face_width_mm: float | None = key(
+        "face width of this gear, where it is wider than the face in contact; pair.face_width_mm if left out",
+        None,
+        such_as=45,
+    )
+    face_offset_mm: float = key(
+        "place of the middle of this gear's face along the axis, from that of the face in contact",
+        0.0,
+        such_as=2,
+    )
     crowning_um: float = key(
         "crowning: material removed at both ends of the face, by a parabola over all of it",
         0.0,

@@ -53,7 +53,7 @@ def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     asked += ["[alignment]"] if raw.get("alignment") is not None else []
     for gear in ("pinion", "wheel"):
         keys = _table(_table(raw, "pair"), gear)
-        known = ("tip_rounding_um", *LEAD_KEYS, "deviations", "wear", "hub")
+        known = ("tip_rounding_um", "face_width_mm", *LEAD_KEYS, "deviations", "wear", "hub")
         asked += [f"pair.{gear}.{key}" for key in known if keys.get(key)]
     return asked
 

@@ -34,6 +34,7 @@ LEADS = SCENE.replace(
     "pinion = { teeth = 36 }",
     "pinion = { teeth = 36, crowning_um = 10, end_relief_um = 8, end_relief_length_mm = 5 }",
 ).replace("wheel = { teeth = 40 }", "wheel = { teeth = 40, lead_slope_um = -6 }")
+WIDE = SCENE.replace("teeth = 36 }", "teeth = 36, face_width_mm = 45, face_offset_mm = 2 }")
 ALIGNED = SCENE + "[alignment]\nin_plane_um = 20\ncells = 32\n"
 
 
@@ -57,6 +58,17 @@ def test_keys_become_leads_and_alignment():
     ] == Alignment(pytest.approx(20e-6), pytest.approx(50e-6))
 
 
+def test_a_gear_has_a_width_of_its_own_and_overhangs_vary_the_load():
+    scene = parse_scene(WIDE)
+    assert gear_pair(scene).face_widths == pytest.approx((45e-3, 40e-3))
+    assert gear_pair(scene).face_offsets == pytest.approx((2e-3, 0.0))
+    assert varies_by(scene) == ["pair.pinion.face_width_mm"]
+    assert varies_by(parse_scene(WIDE.replace("= 45, face_offset_mm = 2", "= 40"))) == []
+    assert even_along_face(gear_pair(scene)) == gear_pair(parse_scene(SCENE))
+    refused = faults(WIDE + 'model = "ishikawa"\n')
+    assert "pair.pinion.face_width_mm" in refused["stiffness.model"]
+
+
 def test_what_varies_the_load_is_named_and_plain_flanks_have_none_of_it():
     assert varies_by(parse_scene(SCENE)) == []
     assert varies_by(parse_scene(LEADS)) == [
@@ -75,6 +87,8 @@ def test_faults_of_keys_come_together_in_their_units():
     found = faults(ALIGNED.replace("= 20", "= 6000").replace("= 32", "= 2"))
     assert "at least -5000 and at most 5000 um" in found["alignment.in_plane_um"]
     assert "at least 4 and at most 512" in found["alignment.cells"]
+    assert "at least 44 mm" in faults(WIDE.replace("= 45", "= 43"))["pair.pinion.face_width_mm"]
+    assert "at most 1e+05 mm" in faults(WIDE.replace("= 2 }", "= 1e6 }"))["pair.pinion.face_offset_mm"]
     assert (
         "20 mm, half the face" in faults(LEADS.replace("= 5 }", "= 21 }"))["pair.pinion.end_relief_length_mm"]
     )
