@@ -219,7 +219,8 @@ class Results(Kind):
     """
 
     drawn = ("field_point", "field_centre", "field_reach", "field_von_mises", "field_triangles", "pair_module",
-             "pair_base_pitch", "pair_base_radii", "path_point_rho1", "dry_transmission_error")  # fmt: skip
+             "pair_base_pitch", "pair_base_radii", "path_point_rho1", "path_point_place",
+             "dry_transmission_error")  # fmt: skip
 
     def __init__(self, folder: Path, source: Path) -> None:
         super().__init__(folder, source)
