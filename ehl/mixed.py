@@ -203,11 +203,14 @@ class _Search:
         """Share at which the asperities carry what is asked, by Newton's method in its odds between bounds.
 
         The asperities' pressure falls as their share rises, since the film that carries less is thicker, and what
-        the share asks for rises. None where they carry nothing.
+        the share asks for rises. None where they carry nothing. Bounds are of films on one grid: on a finer one the
+        films, and with them the balance, have moved.
         """
-        odds, low, high = self.odds, -math.inf, math.inf
+        odds, low, high, nodes = self.odds, -math.inf, math.inf, 0
         for _ in range(_TRIES):
             found = self.film_at(odds)
+            if found.fine.grid.nodes.size != nodes:
+                low, high, nodes = -math.inf, math.inf, found.fine.grid.nodes.size
             excess, slope, by = self.excess(found, odds)
             if abs(excess) < _BALANCED:
                 return _Balance(found, odds, by)

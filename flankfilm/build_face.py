@@ -52,8 +52,11 @@ def face(scene: Scene) -> FaceOptions:
 
 def even_along_face(pair: gears.GearPair) -> gears.GearPair:
     """The pair without leads and without overhangs."""
-    plain = {"lead": gears.Lead(), "face_width": None, "face_offset": 0.0}
-    return replace(pair, pinion=replace(pair.pinion, **plain), wheel=replace(pair.wheel, **plain))
+    return replace(pair, pinion=_even(pair.pinion), wheel=_even(pair.wheel))
+
+
+def _even(gear: gears.Gear) -> gears.Gear:
+    return replace(gear, lead=gears.Lead(), face_width=None, face_offset=0.0)
 
 
 def varies_by(scene: Scene) -> list[str]:

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from base import InputError, RangeWarning
-from ehl import LineContact, Meniscus, OilLayer, Roughness, solve, solve_mixed
+from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
 from ehl.asperities import height_integral
 from ehl.levels import figures
 from ehl.mixed import central_asperity_pressure
@@ -242,6 +242,19 @@ def test_a_neighbour_leaves_few_films_to_solve(supply):
     pressure, _ = STIFF.pressure(near.central_thickness, PITCH.reduced_modulus)
     asked = central_asperity_pressure(PITCH, STIFF, near.asperity_share)
     assert pressure == pytest.approx(asked, rel=1e-6)
+
+
+def test_bounds_of_the_share_are_of_one_grid():
+    """A finer grid moved the balance out of bounds that films on the coarse one had set."""
+    oil = Lubricant(viscosity=0.031029031503132052, pressure_viscosity=2.8243152265808212e-08, density=870.0)
+    contact = LineContact(1777526.446816397, 0.9380669908840178, 0.019569748921321798, 2.2e11, oil)
+    other = replace(contact, load=914079.2657449252, entrainment=0.850212009351362)
+    rough = Roughness(3.267265760805142e-08, 37470636305.42699, 3.2672657608051416e-05)
+    near_inlet, far = (Meniscus(-1.0184871581147488 * one.half_width) for one in (contact, other))
+    start = quiet(solve_mixed, other, rough, supply=far)
+    near, alone = (quiet(solve_mixed, contact, rough, supply=near_inlet, start=s) for s in (start, None))
+    assert near.converged
+    assert near.asperity_share == pytest.approx(alone.asperity_share, rel=0.05)
 
 
 def test_a_neighbour_on_whose_asperities_much_rests_may_have_none_beside_it():
