@@ -129,7 +129,7 @@ class FaceFilms:
 
     @described("1", no_error=ITSELF)
     def side_flow(self) -> float:
-        """Greatest slope of the pressure along the face over that across, b |dp_H/dz| / p_H, of cells that bear."""
+        """Greatest slope of the pressure along the face over that across, ``b |dp_H/dz| / p_H``, of cells that bear."""
         step = float(self.face_position[1] - self.face_position[0])
         pressure = np.nan_to_num(self.hertz_pressure)
         bears = (self.line_load > _BEARS * self.line_load.max()) & (pressure > 0.0)
