@@ -29,6 +29,7 @@ _NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none,
 _ALL = -math.log(1e-6)  # and of one that leaves a millionth to the film
 _BALANCED = 1e-7  # relative difference of the pressures that asperities carry and are asked for
 _REACH = 3.0  # largest step of the odds
+_CLOSE = 1e-2  # between bounds as close as this the balance is straight in the odds
 _TRIES = 60
 _VACUUM = 1e-300
 
@@ -203,14 +204,12 @@ class _Search:
         """Share at which the asperities carry what is asked, by Newton's method in its odds between bounds.
 
         The asperities' pressure falls as their share rises, since the film that carries less is thicker, and what
-        the share asks for rises. None where they carry nothing. Bounds are of films on one grid: on a finer one the
-        films, and with them the balance, have moved.
+        the share asks for rises. None where they carry nothing. Close bounds that Newton's step leaves were films on
+        a coarser grid, or solved less exactly: the balance has moved, and they are forgotten.
         """
-        odds, low, high, nodes = self.odds, -math.inf, math.inf, 0
+        odds, low, high = self.odds, -math.inf, math.inf
         for _ in range(_TRIES):
             found = self.film_at(odds)
-            if found.fine.grid.nodes.size != nodes:
-                low, high, nodes = -math.inf, math.inf, found.fine.grid.nodes.size
             excess, slope, by = self.excess(found, odds)
             if abs(excess) < _BALANCED:
                 return _Balance(found, odds, by)
@@ -222,6 +221,8 @@ class _Search:
                     "the asperities carry all but a millionth of the load: take the contact as dry"
                 )
             step = max(-_REACH, min(_REACH, -excess / slope))
+            if high - low < min(abs(step), _CLOSE):
+                low, high = -math.inf, math.inf
             target = max(_NOTHING, min(_ALL, odds + step))
             odds = target if low < target < high else 0.5 * (low + high)
         raise _NoFilmError("no share of the load on which film and asperities agree was found")
