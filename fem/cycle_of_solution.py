@@ -54,6 +54,7 @@ def cycle_of(
     stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
+    by_cells = 0.0 if contact.face is None else float(contact.face.stiffness_error[number])
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
@@ -85,7 +86,7 @@ def cycle_of(
         pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=given.beyond_path,
-        error=bodies.error + (0.0 if contact.face is None else float(contact.face.stiffness_error[number])),
+        error=bodies.error + by_cells,
         moving_contact=given.moving_contact,
         strips_at_corners=given.strips_at_corners,
         lever_loss=lost[0],
@@ -105,7 +106,9 @@ def cycle_of(
         else LoadedContacts(given, bodies, where, turned, approach, force),
         problem=None
         if refusal
-        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
+        else ContactProblem(
+            replace(given, both=both), bodies, force, film, tolerance, tables=tables, cells_error=by_cells
+        ),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
     )

@@ -53,6 +53,8 @@ class ContactProblem:
         Laws of the tip edges that are known already.
     varied : tuple of (Film, float)
         Other films, and how much of what they change is error.
+    cells_error : float
+        Relative, of stiffness and deflection by the cells of the face; 0 without.
     """
 
     given: Setting
@@ -65,6 +67,7 @@ class ContactProblem:
     turn: Array | None = None
     tables: EdgeTables | None = None
     varied: tuple[tuple[Film, float], ...] = ()
+    cells_error: float = 0.0
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -83,7 +86,7 @@ class ContactProblem:
         coarse = None if before is None else self._alike(before, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
-        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied)
+        return MeshArcs(fine, coarse, self.bodies.gain, self.cells_error, varied)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""

@@ -99,3 +99,11 @@ def test_faults_are_named_together(bodies):
     assert all(name in text for name in ("cells", "alignment.in_plane", "moving_contact"))
     with pytest.raises(InputError, match="end_relief_length"):
         replace(PAIR, pinion=Gear(teeth=20, lead=Lead(end_relief=1e-5)))
+
+
+def test_figures_of_arcs_count_the_cells(bodies):
+    """What twice the cells change is told; meshes and arcs alone would tell a hundredth of it."""
+    tilted = Alignment(in_plane=20e-6)
+    few, many = (_cycle(bodies, PAIR, cells=cells, alignment=tilted) for cells in (16, 32))
+    change = abs(many.mean_secant_stiffness / few.mean_secant_stiffness - 1.0)
+    assert 0.5 * change < few.errors["mean_secant_stiffness"] < 5.0 * change
