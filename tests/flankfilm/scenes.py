@@ -21,6 +21,20 @@ pairs = "independent"
 """
 """Nothing that numba compiles, which would take most of the time."""
 
+PAIR_WITH_BACKLASH = """
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+backlash_um = 50
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+density_kg_per_m3 = 7850
+"""
+"""Full blanks that may leave contact: what scenes of motion start from."""
+
 CLOSED_FORMS_WITH_FILM = (
     ISHIKAWA.replace("[WANTS]", '["geometry", "stiffness", "film", "fourier"]').replace(
         "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 2000"

@@ -18,19 +18,12 @@ from flankfilm.stages.catalogue import MESH, PAIR
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.motion import SCALING
+from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 
-SCENE = """
+SCENE = f"""
 wants = ["spectrum", "report"]
 tolerance = 0.02
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
-backlash_um = 50
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
+{PAIR_WITH_BACKLASH}
 [operating]
 pinion_torque_Nm = 20
 pinion_speed_rpm = 2000

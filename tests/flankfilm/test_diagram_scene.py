@@ -12,24 +12,13 @@ import xarray as xr
 
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
+from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "motion" / "branches.toml"
-PAIR = """
+PAIR = f"""
 title = "Pair, branches"
 wants = ["diagram", "report"]
-
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
-backlash_um = 50
-
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-density_kg_per_m3 = 7850
-
+{PAIR_WITH_BACKLASH}
 [operating]
 pinion_torque_Nm = 600
 
@@ -40,7 +29,7 @@ pairs = "independent"
 [dynamics]
 fourier_order = 2
 error_amplitude_um = 10
-diagram = { speed_rpm = [7000, 12000], max_period = 1, searches = 2 }
+diagram = {{ speed_rpm = [7000, 12000], max_period = 1, searches = 2 }}
 """
 
 

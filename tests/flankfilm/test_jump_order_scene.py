@@ -13,23 +13,12 @@ from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.motion import BRANCHES, DIAGRAM, FOURIER, SCALING
+from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 
-SCENE = """
+SCENE = f"""
 wants = ["film", "diagram"]
 tolerance = 0.03
-
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
-backlash_um = 50
-
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-density_kg_per_m3 = 7850
-
+{PAIR_WITH_BACKLASH}
 [operating]
 pinion_torque_Nm = 600
 pinion_speed_rpm = 2000
@@ -49,7 +38,7 @@ pairs = "independent"
 [dynamics]
 fourier_order = "auto"
 error_amplitude_um = 5
-diagram = { frequency = [0.84, 0.92], max_period = 1, searches = 1 }
+diagram = {{ frequency = [0.84, 0.92], max_period = 1, searches = 1 }}
 """
 
 
