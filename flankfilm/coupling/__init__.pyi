@@ -19,6 +19,7 @@ from .film_damping import FilmDamping as FilmDamping
 from .film_damping import film_damping as film_damping
 from .films import FilmModel as FilmModel
 from .films import PlacedMeniscus as PlacedMeniscus
+from .flanks import Flanks as Flanks
 from .hot_contacts import HeatScreen as HeatScreen
 from .hot_contacts import heat_screen as heat_screen
 from .hot_contacts import hottest_film as hottest_film
@@ -27,7 +28,6 @@ from .jump_order import jumps_to_tolerance as jumps_to_tolerance
 from .jumps import Jump as Jump
 from .jumps import SpeedDiagram as SpeedDiagram
 from .jumps import jump_speeds as jump_speeds
-from .loaded_teeth import Flanks as Flanks
 from .loaded_teeth import LoadedTeeth as LoadedTeeth
 from .loads import TorqueCurves as TorqueCurves
 from .loads import revolution as revolution

@@ -7,7 +7,8 @@ import numpy as np
 import ehl
 from base import Faults, Limit
 from flankfilm.coupling.films import Held, PlacedMeniscus
-from flankfilm.coupling.loaded_teeth import COMPLIANT, LoadedTeeth
+from flankfilm.coupling.flanks import COMPLIANT
+from flankfilm.coupling.loaded_teeth import LoadedTeeth
 
 BALANCE = Limit.above(0.0, 1e6, "W/K", "heat transfer coefficient times area; 1 to 100 W/K are usual")
 TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")

@@ -11,8 +11,10 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Stopwatch, part, quantity, record
-from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth, contact_places
+from flankfilm.coupling.flanks import Flanks
+from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.mesh_cycles import resolved
+from flankfilm.coupling.sharing_pairs import contact_places
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 from gears.closed_form.record import UNKNOWN
 from gears.mesh_figures import Estimate, MeshArcs

@@ -18,7 +18,7 @@ from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
-from flankfilm.coupling.loaded_teeth import contacts_move
+from flankfilm.coupling.flanks import contacts_move
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange

@@ -17,7 +17,8 @@ from ehl import Lubricant
 from flankfilm.coupling import given_series, jumps
 from flankfilm.coupling.film_points import stiffness_rows
 from flankfilm.coupling.films import PathFilms, contacts_of
-from flankfilm.coupling.loaded_teeth import Flanks, LoadedTeeth
+from flankfilm.coupling.flanks import Flanks
+from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.loads import torque_curves
 from gears import Gear, GearPair
 
