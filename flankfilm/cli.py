@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import errno
-import io
 import logging
 import os
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -16,23 +14,12 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter, Token
 
-from base import InputError, SolverError, printable
-from flankfilm.children import Ended, answering_signals
+from base import InputError, printable
+from flankfilm.guarded import BY_SIGNAL, PART_FAILED, SOLVER_FAULT, guarded, open_streams, say
 from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
-
-USER_FAULT = 2
-SOLVER_FAULT = 3
-PART_FAILED = 4
-"""Some rows of a study, or parts of a scene, failed; the others are there."""
-
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""What the system says of a disk or quota that is full, and of a file that may not grow."""
-INTERRUPTED = 130
-BY_SIGNAL = 128
-"""What a signal's number is added to in the exit status of a command that it ended."""
 
 app = App(
     name="flankfilm",
@@ -314,44 +301,6 @@ for _name, _where, _help in (
     app.command(f"flankfilm.{_where}", name=_name, help=_help)
 
 
-def guarded(command: Callable[[], int]) -> int:
-    """Run a command; turn what it raises for the user's sake into messages and exit statuses."""
-    try:
-        with answering_signals():
-            return command()
-    except InputError as error:
-        count = len(error.faults)
-        _tell(
-            f"flankfilm: {count} fault{'s' if count > 1 else ''}",
-            *(f"  {printable(f)}" for f in error.faults),
-        )
-        return USER_FAULT
-    except SolverError as error:
-        _tell(f"flankfilm: {printable(error)}")
-        return SOLVER_FAULT
-    except BrokenPipeError:
-        sys.stderr.close()
-        return 0
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        remedy = "; free some space, or name another folder with --out" if error.errno in FULL else ""
-        _tell(printable(f"flankfilm: {where}{error.strerror or error}{remedy}"))
-        return USER_FAULT
-    except (KeyboardInterrupt, Ended) as stop:
-        how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
-        _tell(f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache")
-        return BY_SIGNAL + stop.signal if isinstance(stop, Ended) else INTERRUPTED
-
-
-def _tell(*lines: str) -> None:
-    """Say why a command ends; where nothing takes it, such as a log on a full disk, its exit status says so alone."""
-    try:
-        for line in lines:
-            print(line, file=sys.stderr, flush=True)
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-
-
 SETTINGS_OF_NUMBA = ".numba_config.yaml"
 """File of the current folder that numba obeys, whoever has put it there, each time that it compiles."""
 
@@ -363,35 +312,10 @@ def _commands() -> int:
     return int(app(exit_on_error=True, print_error=True) or 0)
 
 
-def _open_streams() -> None:
-    """Give streams that were closed a place that takes everything, lest the first file that is opened becomes one.
-
-    Where a stream has not every character, such as with ASCII alone, the missing ones are written by their numbers.
-    """
-    for number, name in enumerate(("stdin", "stdout", "stderr")):
-        try:
-            os.fstat(number)
-        except OSError:
-            os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
-            stream = os.fdopen(number, "r" if number == 0 else "w", closefd=False, encoding="utf-8")
-            setattr(sys, name, stream)
-    for one in (sys.stdout, sys.stderr):
-        if isinstance(one, io.TextIOWrapper):
-            one.reconfigure(errors="backslashreplace")
-
-
-def _say(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
-    """Show our own warnings as sentences; those of libraries are not for users."""
-    from flankfilm.cache import PACKAGES
-
-    if category.__module__.partition(".")[0] in PACKAGES:
-        print(f"flankfilm: {printable(message)}", file=sys.stderr)
-
-
 def main() -> None:
     """Entry point of the ``flankfilm`` script."""
-    _open_streams()
-    warnings.showwarning = _say
+    open_streams()
+    warnings.showwarning = say
     status = guarded(_commands)
     if status > BY_SIGNAL:
         logging.disable()  # what libraries say of work that was broken off

@@ -128,6 +128,10 @@ class Means:
         """Power lost in all ways [W]."""
         return self.sliding_loss + self.rolling_loss + self.edge_loss
 
+    def off(self, other: Means) -> float:
+        """Relative difference of the power lost from that of others; zero where these lose none."""
+        return abs(self.mesh_loss / other.mesh_loss - 1.0) if other.mesh_loss else 0.0
+
 
 def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, given: Known) -> Means:
     """Average over the positions of a cycle.

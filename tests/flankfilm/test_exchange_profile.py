@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flankfilm.cli import app, guarded
+from flankfilm.cli import app
 from flankfilm.exchange.profile_files import write_drawing, write_points
+from flankfilm.guarded import guarded
 from gears import Gear, GearPair
 from gears.contour import contour
 

@@ -14,6 +14,7 @@ import flankfilm as ff
 from base import PartWarning, SolverError
 from flankfilm import cli, coupling
 from flankfilm.cache import Cache
+from flankfilm.guarded import guarded
 from flankfilm.report.contents import headlines, summary
 from flankfilm.report.run_parts import misses
 from flankfilm.running import run_scene
@@ -85,7 +86,7 @@ def test_the_command_says_so_and_ends_with_4(without_film, tmp_path, capsys):
     path = tmp_path / "scene.toml"
     path.write_text(SCENE, encoding="utf-8")
     options = cli.SceneOptions(out=tmp_path / "out", cache=False)
-    assert cli.guarded(lambda: cli.run(path, options=options)) == 4
+    assert guarded(lambda: cli.run(path, options=options)) == 4
     said = capsys.readouterr()
     assert f"not computed: oil film in series with the teeth: {WHY}" in said.err
     assert "because of it: mesh stiffness of the motion, Fourier stiffness" in said.err
