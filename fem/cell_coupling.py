@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from base import Array, Booleans, Integers
@@ -38,7 +40,7 @@ class CellCoupling(Coupling):
         """(positions, n, n)."""
         return len(self.blocks), self.unknowns, self.unknowns
 
-    @property
+    @cached_property
     def finite(self) -> bool:
         """Whether all numbers are finite."""
         return all(bool(np.all(np.isfinite(block))) for block in self.blocks)
@@ -68,16 +70,17 @@ class CellCoupling(Coupling):
             cells, block = self.cells[at[-1]], self.blocks[at[-1]]
             bears = np.flatnonzero(active[at][cells])
             chosen = cells[bears]
-            jacobian = block[bears[:, None], bears]
+            # rows and then columns are copied much faster than both at once
+            jacobian = block.take(bears, axis=0).take(bears, axis=1)
             jacobian.flat[:: len(bears) + 1] += slope[at][chosen]
-            sides = np.stack([np.ones(len(bears)), residual[at][chosen]], axis=-1)
-            unit[at][chosen], response[at][chosen] = _solve(jacobian, sides).T
+            sides = np.stack([np.ones(len(bears)), residual[at][chosen]])
+            unit[at][chosen], response[at][chosen] = _solve(jacobian, sides)
         return unit, response, 1.0
 
 
 def _solve(matrix: Array, sides: Array) -> Array:
-    """Solve by Cholesky's method; where cells are narrower than the contact the matrix may be indefinite."""
+    """Solve for rows of sides by Cholesky's method; where cells are narrow the matrix may be indefinite."""
     from scipy.linalg.lapack import dposv
 
-    _, found, failed = dposv(matrix.T, sides, lower=True)
-    return np.asarray(np.linalg.solve(matrix, sides) if failed else found)
+    _, found, failed = dposv(matrix.T, sides.T, lower=True)
+    return np.asarray(np.linalg.solve(matrix, sides.T).T if failed else found.T)

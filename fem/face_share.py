@@ -54,11 +54,16 @@ class CellLaws:
 
     def approach(self, force: Array) -> Array:
         """Deflection [m]."""
-        return self._apart(self.whole.approach(self._together(force)))
+        return self.value_and_slope(force)[0]
 
     def slope(self, force: Array) -> Array:
         """Its derivative [m/N]."""
-        return self.cells * self._apart(self.whole.slope(self._together(force)))
+        return self.value_and_slope(force)[1]
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together."""
+        value, slope = self.whole.value_and_slope(self._together(force))
+        return self._apart(value), self.cells * self._apart(slope)
 
     def _together(self, force: Array) -> Array:
         """Forces of whole faces at the cells' line loads (cells, ..., positions, pairs)."""
@@ -209,12 +214,14 @@ def share_over_face(
     assert given.face is not None
     over = _Face(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
     plane = share_load(whole, matrix, laws, gaps, oil, levers)
-    found, left = over.shared(given.face, plane.forces[..., None])
     cells = given.face.cells
+    few = replace(given.face, cells=2 * (cells // 4))
+    coarse, _ = over.shared(few, plane.forces[..., None])
+    found, left = over.shared(given.face, coarse.forces.reshape(*plane.forces.shape, few.cells))
     forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
     pairs = forces.sum(axis=-1)
     share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
-    errors = _errors(over, given.face, found, forces)
+    errors = _errors(over, given.face, found, few, coarse)
     shafts = shafts_under_face(given.face, given.pair)
     if shafts is not None:
         loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
@@ -222,44 +229,45 @@ def share_over_face(
     return share, FaceShare(forces, left, *errors, shafts)
 
 
-def _errors(over: _Face, face: FaceSetting, found: LoadShare, near: Array) -> tuple[Array, Array]:
+def _errors(
+    over: _Face, face: FaceSetting, found: LoadShare, few: FaceSetting, other: LoadShare
+) -> tuple[Array, Array]:
     """Errors of every torque by half as many cells: of the greatest face-load factor, and relative of stiffness."""
-    few = 2 * (face.cells // 4)
-    other, _ = over.shared(replace(face, cells=few), near)
-    rest = LEFT / (face.cells / few - 1)
-    factors, coarse = (
-        face_load_factors(one.forces.reshape(*near.shape[:-1], -1) / over.kappa[..., None])
-        for one in (found, other)
+    rest, kappa = LEFT / (face.cells / few.cells - 1), over.kappa[..., None]
+    loads, fewer = (
+        one.forces.reshape(*one.forces.shape[:-1], -1, on.cells) / kappa
+        for one, on in ((found, face), (other, few))
     )
-    stiffness = np.zeros(len(near))
+    factors, coarse = face_load_factors(loads), face_load_factors(fewer)
+    stiffness = np.zeros(len(loads))
     for name in ("stiffness", "transmission_error"):
         fine, half = (getattr(one, name).mean(axis=(1, 2)) for one in (found, other))
         stiffness = np.maximum(stiffness, rest * np.abs(half / fine - 1.0))
-    factor = np.zeros(len(near))
+    factor = np.zeros(len(loads))
     for torque, some in enumerate(factors):
         pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(some)), some.shape))
         half = float(np.max(coarse[torque]))
-        cells = near[torque, pitch, position] / over.kappa[position][:, None]
+        cells = loads[torque, pitch, position]
         settled = rest * abs(float(np.max(some)) - half)
         between = _between(cells[int(np.argmax(cells.sum(axis=-1)))])
         factor[torque] = np.clip(settled, between, FAR * between)
         if face.model == FREE_ENDS:
-            at, pairs = over.at(torque, pitch, position), near[torque, pitch, position][None, None, None]
-            share, _ = at.shared(replace(face, cells=few, model=WALLS), pairs)
-            walls = share.forces.reshape(1, -1, few) / at.kappa[..., None]
+            at = over.at(torque, pitch, position)
+            near = (fewer * kappa)[torque, pitch, position][None, None, None]
+            share, _ = at.shared(replace(few, model=WALLS), near)
+            walls = share.forces.reshape(1, -1, few.cells) / at.kappa[..., None]
             there = float(coarse[torque, pitch, position])
             factor[torque] += ENDS_ERROR * abs(there - float(face_load_factors(walls)[0]))
     return factor, stiffness
 
 
 def _on_cells(near: Array, cells: int) -> Array:
-    """Forces on cells (..., pairs cells) from those on parts of the face: added up, or even where they do not fit."""
-    *leading, parts = near.shape
-    if parts % cells:
-        spread = np.repeat(near.sum(axis=-1, keepdims=True) / cells, cells, axis=-1)
-    else:
-        spread = near.reshape(*leading, cells, -1).sum(axis=-1)
-    return np.asarray(spread.reshape(*leading[:-1], -1))
+    """Forces on cells (..., pairs cells) from those on fewer parts of the face: line loads between their middles."""
+    parts = near.shape[-1]
+    middles, asked = ((np.arange(count) + 0.5) / count for count in (parts, cells))
+    hats = np.array([np.interp(asked, middles, hat) for hat in np.eye(parts)])
+    line_load = near @ hats
+    return np.asarray((line_load * (parts / cells)).reshape(*near.shape[:-2], -1))
 
 
 def _between(cells: Array) -> float:

@@ -37,8 +37,13 @@ class HertzApproach:
 
     def slope(self, force: Array) -> Array:
         """Differentiate the indentation by the force [m/N]."""
+        return self.value_and_slope(force)[1]
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together."""
+        secant = self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE))
         inside = np.where(force > LEAST_FORCE, self.per_log, 0.0)
-        return np.asarray(self.constant - self.per_log * np.log(np.maximum(force, LEAST_FORCE)) - inside)
+        return np.asarray(force * secant), np.asarray(secant - inside)
 
 
 @record
@@ -179,21 +184,22 @@ class PairLaws:
 
     def approach(self, force: Array) -> Array:
         """Local deflection (positions, pairs) [m]."""
-        local = self.hertz.approach(force)
-        if self.table is not None:
-            local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[0]
-        for one in self.cut_offs:
-            local[..., one.at] += one.value_and_slope(force[..., one.at])[0]
-        return local
+        return self.value_and_slope(force)[0]
 
     def slope(self, force: Array) -> Array:
         """Its derivative [m/N]."""
-        local = self.hertz.slope(force)
+        return self.value_and_slope(force)[1]
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together."""
+        value, slope = self.hertz.value_and_slope(force)
         if self.table is not None:
-            local[..., self.edge] = self.table.value_and_slope(force[..., self.edge])[1]
+            value[..., self.edge], slope[..., self.edge] = self.table.value_and_slope(force[..., self.edge])
         for one in self.cut_offs:
-            local[..., one.at] += one.value_and_slope(force[..., one.at])[1]
-        return local
+            more, steeper = one.value_and_slope(force[..., one.at])
+            value[..., one.at] += more
+            slope[..., one.at] += steeper
+        return value, slope
 
 
 class Film(Protocol):
@@ -242,15 +248,16 @@ class FilmLaw:
 
     def approach(self, force: Array) -> Array:
         """Separation (..., positions, pairs) [m]."""
-        return self._asked(force, 0)
+        return self.value_and_slope(force)[0]
 
     def slope(self, force: Array) -> Array:
         """Its derivative [m/N]."""
-        return self._asked(force, 1)
+        return self.value_and_slope(force)[1]
 
-    def _asked(self, force: Array, which: int) -> Array:
-        """Ask the film with all leading dimensions as positions."""
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together; the film is asked with all leading dimensions as positions."""
         places = np.broadcast_to(self.rho1, force.shape)
-        flat = (-1, force.shape[-1])
-        answer = np.reshape(self.film(places.reshape(flat), force.reshape(flat))[which], force.shape)
-        return np.where(np.isfinite(places), answer, 0.0)
+        flat, wet = (-1, force.shape[-1]), np.isfinite(places)
+        found = self.film(places.reshape(flat), force.reshape(flat))
+        value, slope = (np.where(wet, np.reshape(one, force.shape), 0.0) for one in found)
+        return value, slope

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,14 @@ class DeflectionLaw(Protocol):
 
     def slope(self, force: Array) -> Array:
         """Its derivative to the force, (..., pairs) [m/N]; infinite at zero force is allowed."""
+
+
+@runtime_checkable
+class JointLaw(DeflectionLaw, Protocol):
+    """A law whose deflection and slope cost less together."""
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Deflection [m] and its derivative [m/N], (..., pairs)."""
 
 
 @record
@@ -174,13 +182,20 @@ def _linearise(
     bent: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, clear: Array, loads: Array
 ) -> tuple[Array, Array]:
     """Slopes of the laws, and deflections with clearance of all pairs (..., n) that are bent so far by all forces."""
-    slope = hertz.slope(loads)
-    residual = bent + hertz.approach(loads) + clear
+    yields, slope = _asked(hertz, loads)
+    residual = bent + yields + clear
     if film is not None:
-        slope = slope - film.slope(loads)
-        residual = residual - film.approach(loads)
+        props, falls = _asked(film, loads)
+        slope, residual = slope - falls, residual - props
     # an idle pair may have an infinite slope; its row is replaced in the Newton step
     return np.where(loads > 0.0, slope, 1.0), residual
+
+
+def _asked(law: DeflectionLaw, loads: Array) -> tuple[Array, Array]:
+    """Deflection and slope of a law."""
+    if isinstance(law, JointLaw):
+        return law.value_and_slope(loads)
+    return law.approach(loads), law.slope(loads)
 
 
 def _newton_step(

@@ -53,6 +53,18 @@ class Film:
         return -0.13 * self.h0 / self.F0 * (1.0 + force / self.F0) ** -1.13
 
 
+class Together(Hertz):
+    """The same law, which gives deflection and slope together, and has been asked for neither alone."""
+
+    def value_and_slope(self, force):
+        return Hertz.approach(self, force), Hertz.slope(self, force)
+
+    def approach(self, force):
+        raise AssertionError
+
+    slope = approach
+
+
 def random_bulk(seed, n, scale=1e-9):
     rng = np.random.default_rng(seed)
     a = rng.normal(size=(n, n))
@@ -258,3 +270,9 @@ def test_a_pair_about_to_touch_is_taken_in_with_next_to_nothing(overlap):
     assert found.forces @ levers == pytest.approx(264.0, rel=1e-12)
     assert 0.0 <= found.forces[0] < 100 * overlap / (bulk[0, 0] - bulk[0, 1])
     assert found.transmission_error == pytest.approx(whole, rel=1e-4)
+
+
+def test_a_law_that_gives_deflection_and_slope_together_is_asked_once():
+    gaps, bulk = np.array([0.0, 1e-6, 2e-6]), random_bulk(4, 3)
+    apart, together = (share_load(1e4, bulk, law, gaps) for law in (Hertz(), Together()))
+    np.testing.assert_array_equal(together.forces, apart.forces)
