@@ -44,8 +44,8 @@ def face(scene: Scene) -> FaceOptions:
         "cells": section.cells,
         "face_model": section.face_model,
     }
-    if scene.shafts is not None and scene.shafts.bends:
-        first, second = (None if one is None else one.shaft() for one in scene.shafts.each)
+    if (under := scene.shafts_under_face) is not None:
+        first, second = (None if one is None else one.shaft() for one in under.each)
         found["shafts"] = first, second
     return found
 

@@ -24,7 +24,7 @@ from scipy.interpolate import RectBivariateSpline
 import ehl
 import gears
 from base import Array, InputError, RangeWarning
-from flankfilm.coupling.films import FilmModel, PathFilms, Solved, films_of
+from flankfilm.coupling.films import FilmModel, PathFilms, Solved, film_inside, films_of
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
@@ -47,6 +47,9 @@ LEFT_OUT = {"separation": 0.25, "minimum_thickness": 0.25, "central_thickness": 
 Central films have a knee where the spike passes, which grids halve by halves.
 """
 
+OF_SLOPES = 0.5
+"""The same of slopes by the load, which stiffness follows and which converge by an eighth."""
+
 FIGURES = ("separation", "minimum_thickness", "central_thickness")
 
 
@@ -66,6 +69,8 @@ class FilmTable:
         Of the films [m].
     film_error : float or None
         Largest relative error of the films' thicknesses; None by formula.
+    separation_shift : ndarray or None, shape (places, loads)
+        Relative errors of the separations, with the sign of the last refinement; None by formula.
     """
 
     rho1: Array
@@ -75,6 +80,7 @@ class FilmTable:
     minimum_thickness: Array
     central_thickness: Array
     film_error: float | None
+    separation_shift: Array | None = None
 
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
         """Separation [m] and its slope [m/N] at places and under forces that load a whole face evenly.
@@ -111,6 +117,17 @@ class FilmTable:
         """No positions: the law is smooth along the path."""
         return np.zeros(0)
 
+    def varied(self) -> tuple[tuple[FilmTable, float], ...]:
+        """Tables that are off, and how much of what each changes of a figure is error.
+
+        One has the separations off by their films' errors, node by node as the last refinement moved them, and slopes
+        with them; two have every second place and every second load. Films by formula have no error of their own.
+        """
+        grids = tuple((self._every_second(along), OF_SLOPES) for along in (0, 1))
+        if self.separation_shift is None:
+            return grids
+        return (replace(self, separation=self.separation * (1.0 + self.separation_shift)), 1.0), *grids
+
     @cached_property
     def error(self) -> float:
         """Relative error of least films and separation by the grid of places and loads."""
@@ -133,6 +150,8 @@ class FilmTable:
         """Table by every second place (0), or load (1)."""
         kept = (slice(None, None, 2), slice(None)) if along == 0 else (slice(None), slice(None, None, 2))
         grid = {name: getattr(self, name)[kept] for name in FIGURES}
+        if self.separation_shift is not None:
+            grid["separation_shift"] = self.separation_shift[kept]
         return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
 
     @cached_property
@@ -221,7 +240,9 @@ def table_on(
     def each(figure: str) -> Array:
         return np.array([[getattr(film, figure) for film in row[::-1]] for row in rows])
 
-    solved = model.name == "ehl"
+    shifts = None
+    if model.name == "ehl":
+        shifts = np.array([[_shift(film) for film in row[::-1]] for row in rows])
     return FilmTable(
         rho1,
         load,
@@ -229,8 +250,15 @@ def table_on(
         each("separation"),
         each("minimum_thickness"),
         each("central_thickness"),
-        float(each("error").max()) if solved else None,
+        None if shifts is None else float(each("error").max()),
+        shifts,
     )
+
+
+def _shift(film: Solved) -> float:
+    """Relative error of a solved film's separation, with its sign."""
+    inside = film_inside(film)
+    return float(inside.errors.separation_shift)
 
 
 def _check(model: FilmModel) -> None:

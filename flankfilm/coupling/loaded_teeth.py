@@ -105,7 +105,7 @@ class LoadedTeeth:
         positions: int,
         film: FilmLaw | FilmTable | None = None,
         tolerance: float = 1e-3,
-        varied: tuple[tuple[FilmLaw, float], ...] = (),
+        varied: tuple[tuple[FilmLaw | FilmTable, float], ...] = (),
     ) -> MeshCycle:
         """Mesh cycle at the midpoints of some equal intervals of one base pitch.
 
@@ -117,7 +117,7 @@ class LoadedTeeth:
             Films in series with the pairs; dry without.
         tolerance : float
             Relative, of means, extremes and harmonics.
-        varied : tuple of (FilmLaw, float)
+        varied : tuple of (FilmLaw or FilmTable, float)
             Other films, and how much of what they change of a figure is its error.
 
         Raises
@@ -127,8 +127,9 @@ class LoadedTeeth:
         """
         if (self.model, self.pairs) != ("fem", "coupled"):
             assert film is None or isinstance(film, FilmLaw)  # closed forms know no cells of the face
+            laws = tuple((law, share) for law, share in varied if isinstance(law, FilmLaw))
             given = self.pair, self.torque, self.model, self.pairs, self.compliance
-            return SharingPairs(*given, film, tolerance, varied).cycle(positions)
+            return SharingPairs(*given, film, tolerance, laws).cycle(positions)
         found = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
         )

@@ -47,7 +47,7 @@ def lubricate_face(
     table = film_table(teeth.pair, dry, speed, lubricant, model, resolution.films)
     seconds = watch.seconds
     tolerance = min(resolution.sampling, resolution.transmission_error)
-    cycle = teeth.cycle(dry.position.size, table, tolerance)
+    cycle = teeth.cycle(dry.position.size, table, tolerance, table.varied())
     contact = cycle.contact
     if contact is None or contact.face is None:
         raise SolverError(

@@ -43,11 +43,6 @@ def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault
                 yield Fault(f"pair.{gear}.hub.{name}", f"{hub[name]}", allowed, "Leave one of them out")
     bent = [f"shafts.{gear}.segments" for gear in GEARS if _table(shafts, gear).get("segments")]
     aligned = _table(raw, "alignment")
-    if bent and "alignment" in raw:
-        for want in ("film", "losses"):
-            if want in listed:
-                allowed = f"knows no slopes of shafts, which {' and '.join(bent)} give beside [alignment]"
-                yield Fault("wants", f"'{want}'", allowed, f"Drop {want}, or leave one of the sections out")
     for name in _ALIGNMENT:
         if bent and name in aligned:
             allowed = f"gives the alignment twice, beside {' and '.join(bent)}"

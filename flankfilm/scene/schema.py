@@ -120,3 +120,21 @@ class Scene(Section):
         "Shafts, bearings, motor and load, with which the wanted sweep is of the drive train; rigid if left out",
         None,
     )
+
+    @property
+    def shafts_under_face(self) -> ShaftsSection | None:
+        """[shafts] where they bend and twist under cells of the face, which [alignment] asks for; None elsewhere."""
+        if self.alignment is None or self.shafts is None or not self.shafts.bends:
+            return None
+        return self.shafts
+
+    @property
+    def face(self) -> dict[str, Any] | None:
+        """What decides how the load varies along the face beside the gears, as plain values; None where nothing."""
+        if self.alignment is None:
+            return None
+        given = self.alignment.model_dump(exclude={"in_plane_tolerance_um"})
+        under = self.shafts_under_face
+        if under is None:
+            return given
+        return given | {"shafts": [None if one is None else one.bent for one in under.each]}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -117,6 +117,12 @@ class ShaftSection(Section):
             self.value("torque_position_mm"),
             steel,
         )
+
+    @property
+    def bent(self) -> dict[str, Any]:
+        """What decides how it bends and twists under a load that stands still, as plain values."""
+        still = {"inertia_kg_m2": True, "coupling_stiffness_Nm_per_rad": True}
+        return self.model_dump(exclude={**still, "bearings": {"__all__": {"damping_N_s_per_m"}}})
 
     @model_validator(mode="after")
     def _a_whole_shaft(self) -> ShaftSection:

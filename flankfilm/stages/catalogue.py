@@ -26,11 +26,8 @@ from flankfilm.scene.ground import under_keys
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = (
-    "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact "
-    "alignment shafts operating heat tolerance"
-)
-"""Keys of all that is loaded."""
+TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact face operating heat tolerance"
+"""Keys of all that is loaded; of [alignment] and [shafts] what the load over the face depends on."""
 
 
 def decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Mapping[str, Any]]:
@@ -119,7 +116,7 @@ def COMPLIANCE(run: Engine) -> fem.Compliance:
 @stage(
     "gears along the face",
     "gears along the face, solved once and kept",
-    "alignment",
+    "face",
     COMPLIANCE,
     kept="gears meshes fem",
     by_parts=True,
@@ -157,7 +154,12 @@ def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
     return coupling.single_pairs(run[PAIR], pinion_torque(run.scene), run[COMPLIANCE] if beside else None)
 
 
-@stage("verification", "closed forms against finite elements", TEETH, COMPLIANCE)
+@stage(
+    "verification",
+    "closed forms against finite elements",
+    "stiffness.contact_beyond_path operating",
+    COMPLIANCE,
+)
 def VERIFICATION(run: Engine) -> coupling.Verification:
     """Every closed form beside finite elements, of loads that are even along the face."""
     beyond, pair = run.scene.stiffness.contact_beyond_path, even_along_face(run[PAIR])

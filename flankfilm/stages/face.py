@@ -13,7 +13,12 @@ def FACE_MODELS(run: Engine) -> coupling.FaceLoadModels:
     return coupling.face_load_models(loaded_teeth(run), run[DRY_CYCLE])
 
 
-@stage("face over tolerance", "load over the face over a tolerance of the alignment", TEETH, COMPLIANCE)
+@stage(
+    "face over tolerance",
+    "load over the face over a tolerance of the alignment",
+    f"{TEETH} alignment",
+    COMPLIANCE,
+)
 def FACE_TOLERANCE(run: Engine) -> coupling.FaceTolerance:
     """Face-load factors with the axes as the scene has them, and by its tolerance more and less out of parallel."""
     section = run.scene.alignment

@@ -11,13 +11,14 @@ import dynamics
 import fem
 from base import InputError
 from flankfilm import figures
+from flankfilm.beforehand import refuse
 from flankfilm.cache import Cache
 from flankfilm.coupling import mesh_cycle, pair_drive
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE
+from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM
 from flankfilm.stages.catalogue import PAIR as PAIR_STAGE
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
@@ -168,9 +169,12 @@ def test_pictures_of_trains_do_not_call_their_first_freedom_x(cycle):
 def test_the_face_bears_on_the_shafts_of_the_scene():
     """What the scene's mesh cycle finds is what finite elements find with these shafts; straight shafts bear evenly."""
     text = TRAIN.replace('model = "ishikawa"\npairs = "independent"', 'model = "fem"').replace(
-        '"sweep"', '"stiffness"'
+        "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 2000"
     )
-    on_shafts = parse_scene(f'tolerance = 0.05\n{text}[alignment]\ncells = 4\nface_model = "slices"\n')
+    oil = "[lubricant]\nviscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\ntemperature_C = 80\n"
+    face = '[alignment]\ncells = 4\nface_model = "slices"\n[film]\nmodel = "dowson"\n'
+    whole = f"tolerance = 0.05\n{text}{oil}{face}"
+    on_shafts = parse_scene(whole.replace('"sweep"', '"film"'))
     engine = Engine(on_shafts, Cache(None))
     found = engine[DRY_CYCLE]
     straight = fem.mesh_cycle(
@@ -189,3 +193,8 @@ def test_the_face_bears_on_the_shafts_of_the_scene():
     assert found.contact.face_load_factor == pytest.approx(bent.face_load_factor, rel=1e-9)
     assert straight.face_load_factor.max() == pytest.approx(1.0, abs=1e-6)
     assert bent.face_load_factor.max() > 1.05
+    # films are thinnest where the slope of the shafts puts most of the load; losses go with them
+    over, wet = engine[FILM].over_face, engine[FILM].contact.face
+    assert np.abs(wet.shaft_misalignment[0]).min() > 1e-6
+    assert over.least_film_place == wet.face_position[np.argmax(wet.line_load.sum(axis=(0, 1)))]
+    refuse(parse_scene(whole.replace('"sweep"', '"losses"')))

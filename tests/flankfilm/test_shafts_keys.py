@@ -3,10 +3,13 @@
 import pytest
 
 from base import InputError
+from flankfilm.cache import Cache
 from flankfilm.scene import parse_scene, template
 from flankfilm.scene.key import key_of
 from flankfilm.scene.shafts import BearingSection, SegmentSection
 from flankfilm.scene.toml import toml
+from flankfilm.stages.catalogue import DRY_CYCLE
+from flankfilm.stages.engine import Engine
 
 BEARINGS = "[{ position_mm = 20, stiffness_N_per_m = 4e8 }, { position_mm = 180, stiffness_N_per_m = 4e8 }]"
 SHAFT = (
@@ -122,16 +125,31 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
             "alignment.in_plane_um",
             "gives the alignment twice, beside shafts.pinion.segments",
         ),
-        (
-            '"film"',
-            (("[dynamics]", "[alignment]\ncells = 16\n[dynamics]"),),
-            "wants",
-            "knows no slopes of shafts",
-        ),
     ],
 )
 def test_what_the_rest_of_the_scene_says_twice_or_cannot_have_is_refused(wants, changes, where, says):
     assert says in faults(f"[shafts.pinion]\n{SHAFT}", wants, changes)[where]
+
+
+def test_results_depend_on_what_bends_under_the_face_alone():
+    """Keys of the kept film and mesh: of [shafts] nothing without cells, and with them neither inertia nor damping."""
+
+    def keys(shaft: str, alignment: str) -> dict[str, object]:
+        changes = (("[dynamics]", f"{alignment}[dynamics]"),)
+        found = scene(f"[shafts.pinion]\n{shaft}torque_position_mm = 200\n", '"film"', changes)
+        return Engine(found, Cache(None)).inputs(DRY_CYCLE)
+
+    rigid = parse_scene(template().replace('"stiffness", "film", "sweep", "vtk", "report"', '"film"'))
+    cells = "[alignment]\ncells = 16\n"
+    assert keys(SHAFT, "") == Engine(rigid, Cache(None)).inputs(DRY_CYCLE)
+    whole = keys(SHAFT, cells)
+    assert whole != keys(SHAFT, "")
+    assert whole == keys(f"{SHAFT}inertia_kg_m2 = 0.02\n", cells)
+    assert whole == keys(SHAFT.replace("= 4e8 }, {", "= 4e8, damping_N_s_per_m = 9 }, {"), cells)
+    assert whole == keys(SHAFT, f"{cells}in_plane_tolerance_um = 5\n")
+    assert whole != keys(SHAFT.replace("diameter_mm = 40", "diameter_mm = 41"), cells)
+    assert whole != keys(SHAFT.replace("= 4e8 }, {", "= 5e8 }, {"), cells)
+    assert whole != keys(SHAFT, cells.replace("16", "18"))
 
 
 def test_rigid_shafts_leave_alignment_and_hubs_to_the_other_sections():

@@ -13,7 +13,15 @@ import fem
 from base import InputError, SolverError
 from fem.local_law import film_yielding
 from flankfilm import coupling
-from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, PlacedMeniscus, lubricate
+from flankfilm.coupling import (
+    FilmModel,
+    Flanks,
+    LoadedTeeth,
+    LubricatedCycle,
+    PlacedMeniscus,
+    film_table,
+    lubricate,
+)
 from flankfilm.coupling.film_table import HEAVIEST, LIGHTEST
 from flankfilm.coupling.films import contacts_of
 from flankfilm.coupling.resolution import resolution_of
@@ -34,11 +42,23 @@ def bodies() -> fem.Compliance:
 
 @pytest.fixture(scope="module")
 def cycles(bodies) -> Cycles:
-    def lubricated(film=FORMULA, torque=TORQUE, pair=PAIR, positions=8, cells=CELLS, alignment=SLOPE):
+    def lubricated(
+        film=FORMULA,
+        torque=TORQUE,
+        pair=PAIR,
+        positions=8,
+        cells=CELLS,
+        alignment=SLOPE,
+        speed=SPEED,
+        oil=OIL,
+        films=1.0,
+    ):
         flanks = Flanks(alignment=alignment, cells=cells, face_model="walls")
         teeth = LoadedTeeth(pair, torque, compliance=replace(bodies, pair=pair), flanks=flanks)
         dry = teeth.cycle(positions)
-        return lubricate(teeth, dry, SPEED, OIL, resolution_of(0.01), film, profiles=False)
+        asked = resolution_of(0.01)
+        asked = replace(asked, films=films * asked.films)
+        return lubricate(teeth, dry, speed, oil, asked, film, profiles=False)
 
     return lubricated
 
@@ -173,6 +193,56 @@ def test_arcs_with_films_over_the_face_have_the_curves(cycles):
     found = cycles(positions=24)
     assert found.mean_secant_stiffness == pytest.approx(found.secant_stiffness.mean(), rel=2e-3)
     assert found.secant_stiffness_change < 0.0
+
+
+def _relative(cycle: LubricatedCycle) -> np.ndarray:
+    """Means, peak to peak, extremes and harmonics with what films err by, relative (10, 2)."""
+    found = replace(cycle.arcs, other=0.0, before=None)
+    both = ("stiffness", "secant_stiffness")
+    every = [found.mean(name) for name in both] + [found.range("transmission_error")]
+    every += [found.extreme(name, greatest) for name in both for greatest in (False, True)]
+    sizes, errors = found.amplitudes("stiffness", np.arange(1, 4), over_mean=True)
+    return np.array([(one.value, one.error) for one in every] + list(zip(sizes, errors, strict=True)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("torque", "speed", "viscosity"), [(100.0, 200.0, 0.05), (10.0, 1500.0, 0.05), (40.0, 600.0, 0.3)]
+)
+def test_figures_by_arcs_err_by_what_films_over_the_face_do(cycles, torque, speed, viscosity, monkeypatch):
+    """Against twice as many places and loads, and films solved ten times as sharply; 4 % and 5 % by films of two."""
+    given = {"film": FilmModel(), "torque": torque, "speed": speed, "oil": replace(OIL, viscosity=viscosity)}
+    found = _relative(cycles(**given))
+    monkeypatch.setattr(film_table, "PLACES", 2 * film_table.PLACES - 1)
+    monkeypatch.setattr(film_table, "LOADS", 2 * film_table.LOADS - 1)
+    true = np.abs(found[:, 0] - _relative(cycles(**given, films=0.1))[:, 0])
+    assert np.all(true < 2.0 * found[:, 1])
+    assert np.median(found[:, 1] / true) < 60.0  # means are on the safe side: errors cancel in them
+
+
+def test_films_by_formula_err_by_their_interpolation_alone(cycles):
+    formula = cycles().over_face.table
+    assert formula.separation_shift is None
+    assert [table.separation.shape for table, _ in formula.varied()] == [(5, 21), (9, 11)]
+
+
+def test_films_that_err_move_the_figures_of_arcs(solved):
+    """What is varied is in the errors of means: more than the mesh and the cells alone give."""
+    arcs = solved.arcs
+    off, *grids = solved.over_face.table.varied()
+    np.testing.assert_allclose(
+        off[0].separation / solved.over_face.table.separation - 1.0,
+        solved.over_face.table.separation_shift,
+        atol=1e-12,
+    )
+    assert 0.0 < np.abs(solved.over_face.table.separation_shift).max() <= solved.over_face.film_error
+    assert [share for _, share in arcs.varied] == [1.0, *(share for _, share in grids)]
+    without = replace(arcs, varied=())
+    for name in ("stiffness", "secant_stiffness"):
+        whole, own = arcs.mean(name), without.mean(name)
+        changes = [share * abs(own.value - other.mean(name)[0]) for other, share in arcs.varied]
+        assert whole.error == pytest.approx(np.hypot(own.error, np.linalg.norm(changes)), rel=1e-9)
+        assert min(changes) > 0.0
 
 
 @pytest.mark.slow
