@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +30,9 @@ class FaceLoadModels:
     """Load over the face by several models of what couples its cells, the one that counts first.
 
     ISO 6336-1 has one pair under the whole torque, and a line load that is linear over the face: its mean here is that
-    of the pair at the pitch point. It counts slopes and alignment in the plane of action alone, no crowning.
+    of the pair at the pitch point. It counts slopes and alignment in the plane of action alone; the standard's factors
+    for modified leads (B_1, B_2, guide values of crowning and end relief in Annex B) are for amounts that follow
+    from tolerances, not for given ones. What of a pair it so leaves out is named.
     """
 
     no_error = UNKNOWN
@@ -67,6 +70,9 @@ class FaceLoadModels:
         no_error=EXACT,
     )
     iso_fault: str = part("why ISO 6336-1 has no answer; empty where it has one")
+    iso_left_out: str = quantity(
+        "", "what varies the load along this face and is not in the factor by ISO 6336-1"
+    )
     cost: Cost
 
 
@@ -125,6 +131,7 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
         line_load=np.array(loads),
         misalignment=float(slope),
         iso_fault=fault,
+        iso_left_out=", ".join(_left_out(own, teeth.pair)),
         cost=Cost(watch.seconds),
     )
 
@@ -150,6 +157,24 @@ def _iso(teeth: LoadedTeeth, misalignment: float) -> tuple[float, str]:
     except GeometryError as error:
         return float("nan"), str(error)
     return found.K_Hbeta, ""
+
+
+def _left_out(face: fem.FaceLoads, pair: gears.GearPair) -> Iterator[str]:
+    """What of a face no slope tells, by name."""
+    setting = face.setting
+    for name, lead in zip(("pinion", "wheel"), setting.leads, strict=True):
+        if lead.crowning:
+            yield f"crowning of the {name}"
+        if lead.end_relief:
+            yield f"end relief of the {name}"
+    if setting.alignment.out_of_plane:
+        yield "alignment across the plane of action"
+    if any(shaft is not None for shaft in setting.shafts):
+        yield "bending and twist of the shafts under the load"
+    if pair.face_widths != (pair.face_width, pair.face_width):
+        yield "what overhangs bear"
+    yield "free ends of the face"
+    yield "running in"
 
 
 def _linear(mean: float, factor: float, side: float, x: Array) -> Array:

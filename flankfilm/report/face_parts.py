@@ -121,7 +121,8 @@ def _failing(models: FaceLoadModels) -> Iterator[str]:
         yield f"ISO 6336-1 has no answer: {models.iso_fault}"
     else:
         off = _signed(at_c[iso] / at_c[first] - 1.0)
-        yield said("face_iso", off=off, first=first, misalignment=number(1e6 * abs(models.misalignment), 3))
+        slope = number(1e6 * abs(models.misalignment), 3)
+        yield said("face_iso", off=off, first=first, misalignment=slope, left_out=models.iso_left_out)
 
 
 def _signed(part: float) -> str:

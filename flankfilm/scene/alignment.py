@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from base import Limit
+from base import Fault, Limit
 from fem.face_setting import CELLS, FREE_ENDS, USUAL
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 from gears.face import ALIGNMENT_LIMITS
 
-__all__ = ["LEAD_KEYS", "AlignmentSection"]
+__all__ = ["LEAD_KEYS", "AlignmentSection", "faults_of_leads"]
 
 TOLERANCE = Limit(0.0, ALIGNMENT_LIMITS["in_plane"].high, "m")
 """What the tolerance of the alignment may be."""
 
 LEAD_KEYS = ("crowning_um", "lead_slope_um", "end_relief_um")
 """Keys of a gear that make its flanks differ along the face."""
+
+
+def faults_of_leads(raw: Mapping[str, Any]) -> Iterator[Fault]:
+    """End relief without a length, in the unchecked file: it is listed beside faults of other keys."""
+    pair = raw.get("pair")
+    for gear in ("pinion", "wheel"):
+        keys = pair.get(gear) if isinstance(pair, Mapping) else None
+        if not isinstance(keys, Mapping) or not isinstance(keys.get("end_relief_um"), int | float):
+            continue
+        if keys["end_relief_um"] > 0.0 and not keys.get("end_relief_length_mm"):
+            allowed = "must be more than 0 mm with end_relief_um"
+            remedy = "Give its length from either end"
+            yield Fault(f"pair.{gear}.end_relief_length_mm", "0", allowed, remedy)
 
 
 class AlignmentSection(Section):

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from base import Fault, InputError, Limit
+from base import InputError, Limit
 from flankfilm.scene.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section
@@ -178,12 +178,8 @@ class GearSection(Section):
 
     @model_validator(mode="after")
     def _whole(self) -> GearSection:
-        """Refuse lists without an entry for each tooth, and an end relief without a length."""
-        faults = list(wrong_counts(self.teeth, self.deviations, self.wear))
-        if self.end_relief_um > 0.0 and self.end_relief_length_mm == 0.0:
-            allowed = "must be more than 0 mm with end_relief_um"
-            faults.append(Fault("end_relief_length_mm", "0", allowed, "Give its length from either end"))
-        if faults:
+        """Refuse lists without an entry for each tooth."""
+        if faults := list(wrong_counts(self.teeth, self.deviations, self.wear)):
             raise InputError(faults)
         return self
 

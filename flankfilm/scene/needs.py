@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from base import Fault, shorten
-from flankfilm.scene.alignment import LEAD_KEYS
+from flankfilm.scene.alignment import LEAD_KEYS, faults_of_leads
 from flankfilm.scene.needs_of_shafts import faults_of_shafts
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
@@ -41,6 +41,7 @@ def faults_between_sections(raw: Raw) -> list[Fault]:
         *_missing_keys(raw, listed),
         *_models_that_do_not_fit(raw, listed),
         *faults_of_shafts(raw, listed),
+        *faults_of_leads(raw),
     ]
 
 

@@ -45,6 +45,9 @@ def iso6336_face_load(pair: GearPair, torque: float, misalignment: float) -> Iso
     The teeth are a linear spring in slices that know of each other by their common approach alone; the factor grows by
     the square root where the load lets go of one end.
 
+    F_by is given here: the standard's ways to it from deflections and tolerances, F_bx = 1.33 B_1 f_sh + B_2 f_ma with
+    factors for modified leads, guide values of crowning and end relief (Annex B) and running in, are left out.
+
     Parameters
     ----------
     pair : GearPair

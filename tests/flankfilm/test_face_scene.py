@@ -94,6 +94,12 @@ def test_faults_of_keys_come_together_in_their_units():
     )
 
 
+def test_an_end_relief_without_a_length_is_listed_beside_faults_of_the_same_gear():
+    found = faults(LEADS.replace(", end_relief_length_mm = 5", "").replace("teeth = 36", "teeth = 3"))
+    assert "must be more than 0 mm" in found["pair.pinion.end_relief_length_mm"]
+    assert "at least 5" in found["pair.pinion.teeth"]
+
+
 def test_what_is_of_even_loads_is_refused_at_once_before_anything_is_computed():
     text = ALIGNED.replace('["stiffness"]', '["stiffness", "film", "root-stress"]').replace(
         "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 2000"
@@ -152,6 +158,8 @@ def test_other_models_beside_it(ran):
     assert found.misalignment == pytest.approx(20e-6)  # 26 less the slope of 6
     iso = closed_form.iso6336_face_load(pair, 100.0, 20e-6).K_Hbeta
     assert found.pitch_point_factor[-1] == found.face_load_factor[-1] == pytest.approx(iso)
+    left_out = "crowning of the pinion, end relief of the pinion, free ends of the face, running in"
+    assert found.iso_left_out == left_out
     assert found.line_load_difference[0] == 0.0
     assert found.pitch_point_factor[1] > found.pitch_point_factor[0]  # slices bear too evenly
     # all have the load of the pair at the pitch point
@@ -191,6 +199,7 @@ def test_files_and_pictures_of_the_face(ran):
     assert [row[0] for row in part.tables[1].rows] == list(ran[FACE_MODELS].model)
     assert len(part.figures) == 3
     assert "20 µm of slopes" in part.notes[-1]
+    assert "Not in it: crowning of the pinion" in part.notes[-1]
     head = {one.name: one.note for one in face_parts.headlines(face_loads)}
     assert "slices, 8 cells" in head["greatest face-load factor"]
 
