@@ -22,6 +22,7 @@ from .files import replacing as replacing
 from .files import sweep_temporaries as sweep_temporaries
 from .limits import Faults as Faults
 from .limits import Limit as Limit
+from .memory import free_memory as free_memory
 from .results import Described as Described
 from .results import Figure as Figure
 from .results import Quantity as Quantity

@@ -23,6 +23,9 @@ __all__ = ["cell_coupling", "cell_matrix"]
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
 
+MOST_AT_ONCE = 4_000_000
+"""Numbers of the compliance of all candidates, of which those that cannot touch are left out again."""
+
 
 def cell_coupling(
     face: FaceSetting, bodies: Compliance, where: ContactCandidates, kappa: Array, matrix: Array
@@ -31,10 +34,17 @@ def cell_coupling(
     size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
 
     def cut() -> CellCoupling:
-        whole, own = cell_matrix(face, bodies, where.rho, kappa, matrix), np.arange(face.cells)
+        own, (positions, pairs) = np.arange(face.cells), kappa.shape
         cells = tuple((np.flatnonzero(row)[:, None] * face.cells + own).ravel() for row in where.touchable)
-        blocks = tuple(one[at[:, None], at] for one, at in zip(whole, cells, strict=True))
-        return CellCoupling(cells, blocks, whole.shape[-1])
+        blocks: list[Array] = []
+        step = max(1, MOST_AT_ONCE // (pairs * face.cells) ** 2)
+        for first in range(0, positions, step):
+            some = slice(first, first + step)
+            whole = cell_matrix(face, bodies, where.rho[:, some], kappa[some], matrix[some])
+            blocks += (
+                one.take(at, axis=0).take(at, axis=1) for one, at in zip(whole, cells[some], strict=True)
+            )
+        return CellCoupling(cells, tuple(blocks), pairs * face.cells)
 
     if size > MOST_KEPT:
         return cut()

@@ -62,8 +62,10 @@ class FaceSetting:
         """Middles of the cells (cells,) [m], 0 at mid-face."""
         return np.asarray(((np.arange(self.cells) + 0.5) / self.cells - 0.5) * face_width)
 
-    def check(self, found: Faults, pair: GearPair) -> None:
-        """Note everything that is wrong."""
+    def check(self, found: Faults, pair: GearPair, positions: int) -> None:
+        """Note everything that is wrong, and what takes more memory at a number of positions than there is."""
+        from fem.face_memory import check_memory
+
         found.number("cells", self.cells, CELLS)
         found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
         if self.cells % 2:
@@ -76,6 +78,8 @@ class FaceSetting:
                     f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
                 )
 
+        if not found.found:
+            check_memory(found, pair, self.cells, positions, self.model)
         for k, shaft in enumerate(self.shafts):
             if shaft is not None:
                 _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])

@@ -13,6 +13,7 @@ whose law holds tooth and body, change by W as those of a flank at its corner do
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -135,6 +136,7 @@ class _Face:
         arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
         start, laws = _on_cells(near, cells), CellLaws(self.laws, cells)
 
+        @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> CellCoupling:
             return cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
 

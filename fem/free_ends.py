@@ -21,7 +21,7 @@ from base import Array, record
 from fem.line_load import FlankPoints
 from fem.prism import Face, Section, prism
 
-__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells"]
+__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells", "unknowns_along"]
 
 ORDER = 3
 """Of the polynomials of one piece of the face."""
@@ -103,6 +103,19 @@ def _values(s: Array) -> Array:
     return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
 
 
+def _lengths(half_width: float, module: float) -> list[float]:
+    """Lengths of pieces from the end to mid-face, all together half the face or more [m]."""
+    lengths = [LAST * module]
+    while sum(lengths) < half_width:
+        lengths.append(lengths[-1] * GROWTH)
+    return lengths
+
+
+def unknowns_along(width: float) -> int:
+    """Unknowns of a node of the section on half a face of some width in modules, all three directions."""
+    return 3 * (ORDER * len(_lengths(0.5 * width, 1.0)) + 1)
+
+
 def half_face(half_width: float, module: float) -> HalfFace:
     """Divide half a face into pieces that shorten towards the end.
 
@@ -111,9 +124,7 @@ def half_face(half_width: float, module: float) -> HalfFace:
     half_width, module : float
         [m]
     """
-    lengths = [LAST * module]
-    while sum(lengths) < half_width:
-        lengths.append(lengths[-1] * GROWTH)
+    lengths = _lengths(half_width, module)
     ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
     n = ORDER * len(lengths) + 1
     s, weight = legendre.leggauss(ORDER + 1)

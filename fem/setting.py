@@ -116,7 +116,7 @@ class Setting:
         found.number("pitches", self.pitches, COUNT)
         found.number("friction", self.friction, FRICTION)
         if self.face is not None:
-            self.face.check(found, self.pair)
+            self.face.check(found, self.pair, self.positions)
             if self.moving_contact:
                 remedy = "leave moving_contact out"
                 found.add("moving_contact", True, "must be False where the face has cells", remedy)

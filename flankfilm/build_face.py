@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypedDict
 import gears
 from base import Fault, Faults
 from flankfilm.coupling.flanks import contacts_move
+from flankfilm.coupling.loaded_teeth import POSITIONS
 from flankfilm.scene.alignment import LEAD_KEYS
 from flankfilm.scene.dynamics import BY_FILM
 from flankfilm.scene.ground import in_keys
@@ -120,6 +121,9 @@ def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         given.get("shafts"),
     )
     if setting is not None:
-        setting.check(found, pair)
+        setting.check(found, pair, POSITIONS)
     for fault in found.found:
-        yield in_keys(fault, scene.pair, "pair")
+        if fault.where in ("cells", "face_model"):
+            yield in_keys(fault, scene.alignment, "alignment")
+        else:
+            yield in_keys(fault, scene.pair, "pair")

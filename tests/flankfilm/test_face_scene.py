@@ -94,6 +94,13 @@ def test_faults_of_keys_come_together_in_their_units():
     )
 
 
+def test_a_face_that_takes_more_memory_than_is_free_is_refused_beforehand(monkeypatch):
+    monkeypatch.setattr("fem.face_memory.free_memory", lambda: 0.6e9)
+    found = faults(ALIGNED.replace("cells = 32", "cells = 512"))
+    assert "more memory than is free, 0.6 GB: at 120 positions" in found["alignment.cells"]
+    assert "Take 166 cells or free memory" in found["alignment.cells"]
+
+
 def test_an_end_relief_without_a_length_is_listed_beside_faults_of_the_same_gear():
     found = faults(LEADS.replace(", end_relief_length_mm = 5", "").replace("teeth = 36", "teeth = 3"))
     assert "must be more than 0 mm" in found["pair.pinion.end_relief_length_mm"]
