@@ -11,7 +11,7 @@ import numpy as np
 import gears
 from base import Fault, Faults, InputError
 from flankfilm.build import pinion_torque, supports, tip_roundings, warm_pair
-from flankfilm.build_face import faults_of_face
+from flankfilm.build_face import faults_of_face, varies_by
 from flankfilm.build_film import lubricant, roughness
 from flankfilm.build_flanks import deviations
 from flankfilm.scene import Scene
@@ -128,5 +128,6 @@ def _menisci(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         safely = math.ceil(1e5 * float(half_width(load, largest, pair.reduced_modulus)) + 1) / 1e2
         least = f"{1e3 * surely:.3g} mm"
         allowed = f"must be outside the dry contact, whose half-width at the pitch point is more than {least}"
-        remedy = f"Nearer in no film forms: move it out to {safely:g} mm, or give meniscus_half_widths"
+        remedy = f"Nearer in no film forms: move it out to {safely:g} mm"
+        remedy += "" if varies_by(scene) else ", or give meniscus_half_widths"
         yield Fault("film.meniscus_mm", f"{scene.film.meniscus_mm:g}", allowed, remedy)

@@ -97,9 +97,10 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
 
 def _of_films(scene: Scene, where: str, drop: str) -> Iterator[Fault]:
     """Faults of films that do not follow from place and line load alone, and of what has no films over the face."""
-    if scene.film.supply == "meniscus":
-        allowed = f"must not be a meniscus {where}, whose place each cell would decide"
-        yield Fault("film.supply", "'meniscus'", allowed, f'Take "flooded" or "oil-layer", {drop}')
+    if scene.film.meniscus_half_widths is not None:
+        allowed = f"must be left out {where}: every cell would hold the meniscus elsewhere"
+        value = f"{scene.film.meniscus_half_widths:g}"
+        yield Fault("film.meniscus_half_widths", value, allowed, f"Give meniscus_mm instead, {drop}")
     if scene.film.stiffness is not None:
         allowed = f"must be left out {where}: films of cells have their own slope by the load"
         yield Fault("film.stiffness", f"{scene.film.stiffness!r}", allowed, f"Leave it out, {drop}")

@@ -24,7 +24,8 @@ from scipy.interpolate import RectBivariateSpline
 import ehl
 import gears
 from base import Array, InputError, RangeWarning
-from flankfilm.coupling.films import FilmModel, PathFilms, Solved, film_inside, films_of
+from flankfilm.coupling.films import FilmModel, PathFilms, PlacedMeniscus, Solved, film_inside, films_of
+from gears.hertz import half_width
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
@@ -186,7 +187,7 @@ def film_table(
         Of the pinion [rad/s].
     lubricant : ehl.Lubricant
     model : FilmModel
-        Films that follow from place and load alone: not behind a meniscus.
+        Films that follow from place and load alone: not behind a meniscus that each load places by itself.
     tolerance : float
         Relative, of the films.
 
@@ -206,6 +207,7 @@ def film_table(
     ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
     rho1 = np.linspace(*ends, PLACES)
     load = np.geomspace(HEAVIEST * greatest, LIGHTEST * greatest, LOADS)
+    _check_place(model, pair, float(pair.path_at(rho1).radius.max()), float(load[0]))
     return table_on(pair, rho1, load[::-1], speed, lubricant, model, tolerance)
 
 
@@ -263,9 +265,25 @@ def _shift(film: Solved) -> float:
 
 def _check(model: FilmModel) -> None:
     """Refuse films that follow from more than place and line load."""
-    if model.held == "meniscus":
-        allowed = "must not be a meniscus where the load varies along the face: it lies where each cell's load puts it"
-        raise InputError.at("film.supply", "a meniscus", allowed, "take flooded contacts or a layer of oil")
+    if isinstance(model.supply, PlacedMeniscus):
+        allowed = (
+            "must not be a meniscus in half-widths where the load varies along the face: every cell would hold it "
+            "elsewhere, and its film yield by where that is"
+        )
+        remedy = "give its place, the same for all cells, or take flooded contacts or a layer of oil"
+        raise InputError.at("film.supply", "a meniscus in half-widths", allowed, remedy)
     if model.definition is not None:
         allowed = "must be left out where the load varies along the face: films there have their own slope by the load"
         raise InputError.at("film.definition", repr(model.definition), allowed, "leave it out")
+
+
+def _check_place(model: FilmModel, pair: gears.GearPair, radius: float, load: float) -> None:
+    """Refuse a meniscus inside the contact of the heaviest film [m], [N/m]."""
+    if not isinstance(model.supply, ehl.Meniscus):
+        return
+    held, wide = -model.supply.position, float(half_width(load, radius, pair.reduced_modulus))
+    if held <= wide:
+        allowed = (
+            f"must be more than {wide:.4g} m, the half-width where cells bear {HEAVIEST:g} times what they do"
+        )
+        raise InputError.at("meniscus", f"{held:g}", allowed, "nearer in no film forms; move it out")

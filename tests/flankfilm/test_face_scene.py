@@ -273,10 +273,13 @@ def test_films_over_the_face_from_scene_to_page():
 
 def test_films_that_do_not_follow_from_place_and_load_are_refused_under_their_keys():
     for old, new, where in (
-        ('model = "dowson"', 'supply = "meniscus"\nmeniscus_half_widths = 1.3', "film.supply"),
+        ('model = "dowson"', 'supply = "meniscus"\nmeniscus_half_widths = 1.3', "film.meniscus_half_widths"),
         ('model = "dowson"', 'model = "ehl"\nstiffness = "tangent"', "film.stiffness"),
     ):
         assert old in OILED
         assert "where the load varies along the face" in faults(OILED.replace(old, new))[where]
     refuse(parse_scene(OILED.replace('model = "dowson"', 'supply = "oil-layer"\noil_layer_um = 0.2')))
+    refuse(parse_scene(OILED.replace('model = "dowson"', 'supply = "meniscus"\nmeniscus_mm = 0.4')))
+    near = faults(OILED.replace('model = "dowson"', 'supply = "meniscus"\nmeniscus_mm = 0.01'))
+    assert near["film.meniscus_mm"].endswith(" mm")  # in half-widths it would be refused
     refuse(parse_scene(OILED.replace('["film", "report"]', '["losses"]')))

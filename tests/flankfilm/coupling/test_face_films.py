@@ -68,10 +68,10 @@ def solved(cycles) -> LubricatedCycle:
     return cycles(FilmModel())
 
 
-def _film(rho1: float, load: float) -> ehl.Film:
+def _film(rho1: float, load: float, supply: ehl.Meniscus | None = None) -> ehl.Film:
     path = PAIR.path_at(np.array([rho1]))
     u, radius = float(path.entrainment(SPEED)[0]), float(path.radius[0])
-    return ehl.solve(ehl.LineContact(load, u, radius, PAIR.reduced_modulus, OIL), 1e-3)
+    return ehl.solve(ehl.LineContact(load, u, radius, PAIR.reduced_modulus, OIL), 1e-3, supply=supply)
 
 
 def test_the_table_is_what_films_are_between_its_places_and_loads(solved):
@@ -256,9 +256,27 @@ def test_a_layer_of_oil_and_roughness(cycles):
     assert rough.least_film > flooded.over_face.least_film  # asperities carry a share
 
 
+@pytest.mark.slow
+def test_a_meniscus_that_stands_at_one_place_for_all_cells(cycles, bodies):
+    """Even cells have the films of the plane, and yield as those do; on a slope films are as solved alone."""
+    held = FilmModel(supply=ehl.Meniscus(-0.18e-3))  # 1.6 half-widths of the heaviest contacts
+    even, teeth = cycles(held, alignment=Alignment()), LoadedTeeth(PAIR, TORQUE, compliance=bodies)
+    plane = lubricate(teeth, teeth.cycle(8), SPEED, OIL, resolution_of(0.01), held, profiles=False)
+    np.testing.assert_allclose(even.least_film, plane.least_film, rtol=2.0 * even.over_face.error)
+    change, other = (one.stiffness / one.dry.stiffness - 1.0 for one in (even, plane))
+    np.testing.assert_allclose(change, other, rtol=0.02)
+    sloped, flooded = cycles(held).over_face, cycles(FilmModel()).over_face
+    assert np.nanmin(flooded.minimum_thickness[3] / sloped.minimum_thickness[3]) > 1.02
+    at = (3, 1, 5)
+    rho1 = PAIR.points.A + sloped.travel[at[:2]]
+    alone = _film(rho1, sloped.line_load[at], held.supply)
+    assert sloped.minimum_thickness[at] == pytest.approx(alone.minimum_thickness, rel=sloped.error)
+
+
 def test_what_is_refused(cycles, bodies):
     for film, where in (
         (FilmModel(supply=PlacedMeniscus(1.3)), "film.supply"),
+        (FilmModel(supply=ehl.Meniscus(-0.05e-3)), "meniscus"),
         (FilmModel(definition="tangent"), "film.definition"),
     ):
         with pytest.raises(InputError) as told:
