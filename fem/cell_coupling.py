@@ -53,6 +53,16 @@ class CellCoupling(Coupling):
             row[cells] = np.diagonal(block)
         return found
 
+    @cached_property
+    def shortest(self) -> Array:
+        """What each cell yields by its own unit force more than its neighbour does (positions, n) [m/N]."""
+        found = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+            by_next = np.diagonal(block, 1)
+            less = np.maximum(np.append(by_next, by_next[-1]), np.append(by_next[0], by_next))
+            row[cells] = np.diagonal(block) - less
+        return found
+
     def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
         """As of ``gears.load_coupling.Coupling``; 0 where cells cannot touch."""
         found = known.copy()

@@ -106,9 +106,7 @@ def cycle_of(
         else LoadedContacts(given, bodies, where, turned, approach, force),
         problem=None
         if refusal
-        else ContactProblem(
-            replace(given, both=both), bodies, force, film, tolerance, tables=tables, cells_error=by_cells
-        ),
+        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
     )

@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, SolverError
 from fem.bodies import Compliance
 from fem.edge_tables import EdgeTables
+from fem.face_errors import half_as_many
 from fem.face_share import yielding_over_face
 from fem.local_law import Film, film_yielding
 from fem.relieved_flanks import ends_of_flanks, starts_of_relief
@@ -53,8 +54,6 @@ class ContactProblem:
         Laws of the tip edges that are known already.
     varied : tuple of (Film, float)
         Other films, and how much of what they change is error.
-    cells_error : float
-        Relative, of stiffness and deflection by the cells of the face; 0 without.
     """
 
     given: Setting
@@ -67,7 +66,6 @@ class ContactProblem:
     turn: Array | None = None
     tables: EdgeTables | None = None
     varied: tuple[tuple[Film, float], ...] = ()
-    cells_error: float = 0.0
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -85,8 +83,11 @@ class ContactProblem:
         before = self.bodies.coarser  # with the tips that have been asked for
         coarse = None if before is None else self._alike(before, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
+        if self.given.face is not None:
+            few, share = half_as_many(self.given.face)
+            others.append((replace(self, given=replace(self.given, face=few)), share))
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
-        return MeshArcs(fine, coarse, self.bodies.gain, self.cells_error, varied)
+        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""

@@ -9,8 +9,8 @@ import numpy as np
 from base import Array, described, part, quantity, record
 from base.results import EXACT
 from fem.elasticity import reduced_modulus
+from fem.face_errors import face_load_factors
 from fem.face_setting import FaceSetting
-from fem.face_share import face_load_factors
 from gears.hertz import peak_pressure
 
 if TYPE_CHECKING:

@@ -20,6 +20,9 @@ USUAL = 64
 FREE_ENDS, WALLS, SLICES = "free-ends", "walls", "slices"
 """What couples the cells of the face."""
 
+PLACES = 2049
+"""Along the face at which its least gap is looked for."""
+
 CELLS = Limit(4, 512, remedy="64 resolve what a face does", whole=True)
 
 
@@ -86,11 +89,21 @@ class FaceSetting:
 
     def least_gap(self, pair: GearPair) -> float:
         """Least of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
-        return float(np.min(self.gaps(pair, np.array(np.inf))))
+        z = np.linspace(-0.5, 0.5, PLACES) * pair.face_width
+        return float(np.min(self._gaps_at(pair, z, np.array(np.inf))))
 
     def gaps(self, pair: GearPair, radius: Array) -> Array:
-        """Gaps along the face (..., cells) [m], less those at mid-face of straight aligned gears."""
-        z = self.middles(pair.face_width)
+        """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears."""
+        both = self.gaps_within(pair, radius, 2)
+        return np.asarray((both[..., :-1:2] + 4.0 * both[..., 1::2] + both[..., 2::2]) / 6.0)
+
+    def gaps_within(self, pair: GearPair, radius: Array, parts: int) -> Array:
+        """Gaps at the ends of equal parts of every cell (..., parts cells + 1) [m]."""
+        z = np.linspace(-0.5, 0.5, parts * self.cells + 1) * pair.face_width
+        return self._gaps_at(pair, z, radius)
+
+    def _gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
+        """Gaps (..., n) [m] at places along the face (n,) [m]."""
         removed = sum(
             lead.removed(z - offset, width)
             for lead, width, offset in zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)

@@ -1,0 +1,170 @@
+"""Contact of all cells of the face of whole pairs: one active set, with strips as wide as the contact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Integers, record
+from fem.cell_laws import CellLaws, between_middles
+from fem.cell_matrix import cell_coupling
+from fem.flamant import hertz_half_width
+from fem.local_law import FilmLaw, PairLaws
+from fem.part_cells import WITHIN, part_cells, rises
+from fem.wide_contact import shared_by_width
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+    from fem.cell_coupling import CellCoupling
+    from fem.contact_candidates import ContactCandidates
+    from fem.face_setting import FaceSetting
+    from fem.setting import Setting
+    from gears import LoadShare
+
+__all__ = ["CellContact", "CellShare"]
+
+
+@record
+class CellShare:
+    """Share of cells.
+
+    Attributes
+    ----------
+    share : LoadShare
+        (torques, pitches, positions, pairs cells).
+    bends, left : (torques, pitches, positions, pairs, cells) arrays
+        How far bodies bend, and the gap that is so left under load [m]; where a cell bears, minus what the contact's
+        own law yields.
+    """
+
+    share: LoadShare
+    bends: Array
+    left: Array
+
+    @property
+    def forces(self) -> Array:
+        """On cells (torques, pitches, positions, pairs, cells) [N]."""
+        return _by_cells(self.share.forces, self.left.shape[-1])
+
+
+@record
+class CellContact:
+    """What is shared over the face of whole pairs, arguments as of ``gears.share_load``."""
+
+    given: Setting
+    bodies: Compliance
+    whole: Array
+    where: ContactCandidates
+    kappa: Array
+    matrix: Array
+    laws: PairLaws
+    gaps: Array
+    oil: FilmLaw | None
+    levers: Array | None
+
+    def shared(self, face: FaceSetting, near: Array, rise: Array | None = None) -> CellShare:
+        """Share over cells of a face.
+
+        Parameters
+        ----------
+        face : FaceSetting
+        near : (torques, ..., pairs, parts) array
+            Forces to begin with, on some parts of it [N].
+        rise : (torques, ..., pairs, cells) array, optional
+            By how much least gaps of cells fall short of their mean (`rises`) [m]; otherwise cells touch all over or
+            nowhere.
+        """
+        from gears.load_sharing import share_load
+
+        cells, unit = face.cells, self.given.pair.face_width / face.cells
+        apart, film = self._apart(face), None if self.oil is None else CellLaws(self.oil, cells)
+        arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
+        start, laws = (
+            _flat(between_middles(near, cells) * (near.shape[-1] / cells)),
+            CellLaws(self.laws, cells),
+        )
+
+        @lru_cache(maxsize=1)  # large ones are kept nowhere else
+        def coupling(strip: float) -> CellCoupling:
+            return cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
+
+        def share(strip: float, some: Integers) -> LoadShare:
+            stiff, whole, begin = coupling(strip), self.whole[some], start[some]
+            if rise is None:
+                return share_load(whole, stiff, laws, apart, film, arms, begin)
+            part = part_cells(laws, stiff, _flat(rise)[some])
+            first = apart - part.rise
+            least = first.min(axis=-1)
+            found = share_load(whole, stiff, part, first - least[..., None], film, arms, begin)
+            return replace(found, transmission_error=found.transmission_error + least)
+
+        def widest(found: LoadShare) -> Array:
+            return self._half_widths(_by_cells(found.forces, cells).max(axis=-1) / unit)
+
+        mean = self._half_widths(near.sum(axis=-1) / self.given.pair.face_width)
+        found, strips = shared_by_width(share, widest, unit, mean)
+        bends = np.zeros_like(found.forces)
+        for strip in np.unique(strips):
+            some = np.flatnonzero(strips == strip)
+            forces = found.forces[some]
+            every = np.ones(forces.shape[:-1], dtype=bool)
+            bends[some] = coupling(float(strip)).applied(forces, every, np.zeros_like(forces))
+        left = bends + apart - found.transmission_error[..., None]
+        if film is not None:
+            left = left - film.approach(np.zeros_like(found.forces))
+        return CellShare(found, _by_cells(bends, cells), _by_cells(left, cells))
+
+    def rises(self, face: FaceSetting, coarse: CellShare) -> Array:
+        """By how much the least gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
+
+        By a solution with as many cells, or fewer.
+        """
+        return rises(face.gaps_within(self.given.pair, self._radius, WITHIN), coarse.bends)
+
+    def _apart(self, face: FaceSetting) -> Array:
+        """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
+        along = face.gaps(self.given.pair, self._radius) - face.least_gap(self.given.pair)
+        apart = self.gaps[..., None] + np.maximum(along, 0.0)
+        return _flat(np.where(self.where.touchable[..., None], apart, np.inf))
+
+    @property
+    def _radius(self) -> Array:
+        rho1, rho2 = self.where.rho
+        return np.asarray(rho1 * rho2 / (rho1 + rho2))
+
+    def _half_widths(self, line_load: Array) -> Array:
+        """Greatest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
+        flanks, modulus = self.where.touchable & ~self.where.edge, self.bodies.pinion.law.plane_modulus
+        other = self.bodies.wheel.law.plane_modulus
+        load = np.where(flanks, line_load / self.kappa, 0.0)
+        radius = np.where(flanks, self._radius, 1.0)
+        wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
+        return np.asarray(wide.max(axis=(1, 2, 3)))
+
+    def at(self, torque: int, pitch: int, position: int) -> CellContact:
+        """The same at a single torque and position."""
+        one, where = slice(position, position + 1), self.where
+        return replace(
+            self,
+            whole=self.whole[torque : torque + 1],
+            where=replace(where, rho=where.rho[:, one], touchable=where.touchable[one], edge=where.edge[one]),
+            kappa=self.kappa[one],
+            matrix=self.matrix[one],
+            laws=self.laws.at(position),
+            gaps=self.gaps[pitch : pitch + 1, one],
+            oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[one]),
+            levers=None if self.levers is None else self.levers[one],
+        )
+
+
+def _by_cells(values: Array, cells: int) -> Array:
+    """(..., pairs cells) as (..., pairs, cells)."""
+    return values.reshape(*values.shape[:-1], -1, cells)
+
+
+def _flat(values: Array) -> Array:
+    """(..., pairs, cells) as (..., pairs cells)."""
+    return np.asarray(values.reshape(*values.shape[:-2], -1))
