@@ -41,10 +41,18 @@ def _available() -> float:
 
 def _left_in_group() -> float:
     try:
-        most, used = ((GROUP / f"memory.{name}").read_text(encoding="ascii") for name in ("max", "current"))
+        most, used, parts = (
+            (GROUP / f"memory.{name}").read_text(encoding="ascii") for name in ("max", "current", "stat")
+        )
     except OSError:
         return math.inf
-    return math.inf if most.strip() == "max" else max(float(most) - float(used), 0.0)
+    if most.strip() == "max":
+        return math.inf
+    # pages of files that nothing reads now count as used, and are given back before anything is killed
+    given_back = sum(
+        float(count) for name, count in map(str.split, parts.splitlines()) if name == "inactive_file"
+    )
+    return max(float(most) - float(used) + given_back, 0.0)
 
 
 def _left_of_addresses() -> float:

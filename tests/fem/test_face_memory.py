@@ -67,12 +67,20 @@ def test_positions_put_together_in_parts_are_those_of_all(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("most", "used", "left"),
-    [("1000000\n", "400000\n", 6e5), ("max\n", "5\n", np.inf), ("10\n", "20\n", 0.0)],
+    ("most", "used", "files", "left"),
+    [
+        ("1000000\n", "400000\n", 0, 6e5),
+        ("1000000\n", "990000\n", 590000, 6e5),
+        ("max\n", "5\n", 0, np.inf),
+        ("10\n", "20\n", 0, 0.0),
+    ],
 )
-def test_the_limit_of_a_container_counts(tmp_path, monkeypatch, most, used, left):
+def test_the_limit_of_a_container_counts_without_pages_of_files(
+    tmp_path, monkeypatch, most, used, files, left
+):
     (tmp_path / "memory.max").write_text(most)
     (tmp_path / "memory.current").write_text(used)
+    (tmp_path / "memory.stat").write_text(f"anon 7\nfile {files + 9}\ninactive_file {files}\nslab 3\n")
     monkeypatch.setattr(base.memory, "GROUP", tmp_path)
     meminfo = tmp_path / "meminfo"
     meminfo.write_text("MemTotal:  9000 kB\nMemFree:  10 kB\nMemAvailable:   2000 kB\n")
