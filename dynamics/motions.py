@@ -9,11 +9,9 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flows import flow_of
 from dynamics.limits import PERIODS, POINTS, TRANSIENT
-from dynamics.oscillator import GearOscillator
-from dynamics.protocol import Flow, MapResult, Oscillator, exact_only
+from dynamics.protocol import Flow, MapResult, Oscillator, PeriodicOscillator, periodic_only
 from dynamics.states import checked_state
 
 
@@ -191,7 +189,7 @@ class ForceRange:
     error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
-def mesh_force(oscillator: GearOscillator | DriveOscillator, motion: Trajectory) -> Array:
+def mesh_force(oscillator: PeriodicOscillator, motion: Trajectory) -> Array:
     """Force k(tau) f(X) of the mesh at the samples of a motion, in the unit of the mean force.
 
     Raises
@@ -199,7 +197,7 @@ def mesh_force(oscillator: GearOscillator | DriveOscillator, motion: Trajectory)
     InputError
         If the oscillator has a force that is not piecewise linear.
     """
-    if not isinstance(oscillator, GearOscillator | DriveOscillator):
+    if not isinstance(oscillator, PeriodicOscillator):
         name, allowed = (
             type(oscillator).__name__,
             "must be a GearOscillator or a DriveOscillator in mesh_force",
@@ -207,11 +205,9 @@ def mesh_force(oscillator: GearOscillator | DriveOscillator, motion: Trajectory)
         raise InputError.at(
             "oscillator", name, allowed, "restoring_force gives the force of a SmoothOscillator"
         )
-    series = oscillator.stiffness if isinstance(oscillator, GearOscillator) else oscillator.mesh_stiffness
-    return np.asarray(series(oscillator.frequency * motion.tau) * oscillator.deflection(motion.x))
+    return oscillator.contact_force(oscillator.frequency * motion.tau, motion.x)
 
 
-@exact_only
 def share_below(clearance: Array) -> float:
     """Part of the time in which a curve is below zero, straight between its samples."""
     low, high = np.minimum(clearance[:-1], clearance[1:]), np.maximum(clearance[:-1], clearance[1:])
@@ -219,21 +215,29 @@ def share_below(clearance: Array) -> float:
     return float(np.mean(np.where(high <= 0.0, 1.0, np.where(low >= 0.0, 0.0, crossing))))
 
 
+@periodic_only
 def force_range(
-    oscillator: GearOscillator, state: npt.ArrayLike, periods: int = 1, samples: int = 400
+    oscillator: PeriodicOscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    samples: int = 400,
+    *,
+    load: float | None = None,
 ) -> ForceRange:
     """Least and greatest force of a motion.
 
     Parameters
     ----------
-    oscillator : GearOscillator
-        The oscillator; its mean force must not be zero.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
+    oscillator : GearOscillator or DriveOscillator
+        The oscillator.
+    state : array_like, shape (dimension,)
+        State at tau = 0.
     periods : int
         Excitation periods.
     samples : int
         Samples per period, even; the force is taken there, on the exact motion.
+    load : float, optional
+        Mean force of the mesh, not zero. Left out: that of a `GearOscillator`.
 
     Raises
     ------
@@ -250,9 +254,12 @@ def force_range(
     """
     with Faults() as faults:
         number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
-        if oscillator.mean_force == 0.0:
-            faults.add("mean_force", oscillator.mean_force, "must not be zero", "give a load")
-    force = mesh_force(oscillator, trajectory(oscillator, state, periods, number)) / oscillator.mean_force
+        mean = getattr(oscillator, "mean_force", 0.0) if load is None else load
+        if np.ndim(mean) or mean == 0.0:
+            faults.add(
+                "load" if np.ndim(mean) else "mean_force", mean, "must be one number, not zero", "give a load"
+            )
+    force = mesh_force(oscillator, trajectory(oscillator, state, periods, number)) / mean
     low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
     error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
     return ForceRange(low, high, error)

@@ -21,7 +21,7 @@ from dynamics.excitation import (
 )
 from dynamics.limits import OSCILLATOR
 from dynamics.naming import series, series_names
-from dynamics.protocol import PlanarOscillator
+from dynamics.protocol import PeriodicOscillator, PlanarOscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
 # in the vector of `GearOscillator.packed`, as in `dynamics.kernels`; amplitude and phase are the first harmonic's
@@ -43,7 +43,7 @@ MAX_CELLS = 200_000  # memory of the tables: about 1 kB a cell
 
 
 @dataclass(frozen=True)
-class GearOscillator(PlanarOscillator):
+class GearOscillator(PeriodicOscillator, PlanarOscillator):
     r"""Dimensionless torsional oscillator of a gear pair with backlash.
 
     .. math::
@@ -84,6 +84,7 @@ class GearOscillator(PlanarOscillator):
 
     is_exact: ClassVar = True
     has_steps: ClassVar = False
+    stiffness_name: ClassVar = "stiffness"
 
     stiffness: FourierStiffness
     damping_ratio: float

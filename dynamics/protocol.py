@@ -11,13 +11,16 @@ import functools
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from base import Array, Cost, InputError, Integers, quantity, record
 from dynamics.excitation import Harmonics, as_series, largest
 from dynamics.naming import natural_size, unknown, value_at, with_value
+from dynamics.stiffness import FourierStiffness
 
 EPS = float(np.finfo(np.float64).eps)
 P = ParamSpec("P")
@@ -228,6 +231,10 @@ class Oscillator(ABC):
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
         """Displacement that the backlash limits, and its rate, of states (k, dimension) at times (k,)."""
 
+    def with_frequency_step(self, state: Array, before: float, after: float) -> Array:
+        """State at tau = 0 just after the frequency has changed there: what is counted without the error stays."""
+        return state
+
     @property
     def error_series(self) -> Array:
         """Amplitudes and phases [rad] of the harmonics of the unloaded transmission error, shape (2, harmonics)."""
@@ -261,6 +268,34 @@ class Oscillator(ABC):
             raise unknown(parameter, self.parameters)
 
 
+class PeriodicOscillator(Oscillator):
+    """What moves by a periodic stiffness times the deflection past a backlash."""
+
+    stiffness_name: ClassVar[str]
+    """Field of the stiffness."""
+    half_backlash: float
+
+    @property
+    def contact_stiffness(self) -> FourierStiffness:
+        """Periodic stiffness in contact."""
+        found: FourierStiffness = getattr(self, self.stiffness_name)
+        return found
+
+    def with_contact_stiffness(self, stiffness: FourierStiffness) -> Self:
+        """The same with another periodic stiffness in contact."""
+        same: Any = self  # a dataclass, as all oscillators are
+        changed: Self = replace(same, **{self.stiffness_name: stiffness})
+        return changed
+
+    @abstractmethod
+    def deflection(self, x: npt.ArrayLike) -> Array:
+        """Deflection f(X) past the backlash, shape of `x`."""
+
+    def contact_force(self, angle: Array, x: Array) -> Array:
+        """Force k f(X) at angles of the excitation."""
+        return np.asarray(self.contact_stiffness(angle) * self.deflection(x))
+
+
 class PlanarOscillator(Oscillator):
     """What moves in one freedom: a state is X and V."""
 
@@ -282,6 +317,13 @@ class PlanarOscillator(Oscillator):
         """X and V."""
         return states[:, 0], states[:, 1]
 
+    def with_frequency_step(self, state: Array, before: float, after: float) -> Array:
+        """State at tau = 0 just after the frequency has changed there: V is counted from the error's rate."""
+        amplitudes, phases = self.error_series
+        j = np.arange(1, len(amplitudes) + 1)
+        slope = float(-np.sum(j * amplitudes * np.sin(phases)))
+        return np.array([state[0], state[1] - (after - before) * slope])
+
     def start_plane(self) -> tuple[Array, Array]:
         """The plane of X and V."""
         return np.eye(2), np.zeros(2)
@@ -295,15 +337,26 @@ def lost_motion(state: Array, reason: str) -> InputError:
 
 def exact_only(function: Callable[P, R]) -> Callable[P, R]:
     """Have a function refuse, by name, an oscillator that is no `GearOscillator`, or what moves by another one."""
+    return _refusing(function, lambda oscillator: oscillator.is_exact, "a GearOscillator")
+
+
+def periodic_only(function: Callable[P, R]) -> Callable[P, R]:
+    """Have a function refuse, by name, an oscillator whose force is no periodic stiffness past a backlash."""
+    allowed = "a GearOscillator or a DriveOscillator"
+    return _refusing(function, lambda oscillator: isinstance(oscillator, PeriodicOscillator), allowed)
+
+
+def _refusing(function: Callable[P, R], takes: Callable[[Oscillator], bool], allowed: str) -> Callable[P, R]:
+    """Have a function refuse, by name, an oscillator that it does not take, or what moves by one."""
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
         given: Any = args[0] if args else next(iter(kwargs.values()), None)
         oscillator = given if isinstance(given, Oscillator) else getattr(given, "oscillator", None)
-        if isinstance(oscillator, Oscillator) and not oscillator.is_exact:
+        if isinstance(oscillator, Oscillator) and not takes(oscillator):
             name = type(oscillator).__name__
             raise InputError.at(
-                "oscillator", name, f"must be a GearOscillator in {function.__name__}",
+                "oscillator", name, f"must be {allowed} in {function.__name__}",
                 "period_map, trajectory, find_orbit, continue_branch, doubled_orbit, sweep, lyapunov_exponents and "
                 f"basins take a {name} too",
             )  # fmt: skip

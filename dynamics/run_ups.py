@@ -4,7 +4,8 @@ The frequency is held for one excitation period and changed between periods, so 
 :math:`\theta` the angle of the excitation, a shaft that gains speed evenly in time has
 :math:`\omega^2 = \omega_0^2 + (\omega_1^2 - \omega_0^2)\,\theta/\theta_1`. X is what the gears' approach has beyond the
 error e, so that a step of the frequency by :math:`\delta` changes V by :math:`-\delta\,e'(\theta)`: these impulses are
-the term :math:`e'\dot\omega` of the equation with a varying frequency.
+the term :math:`e'\dot\omega` of the equation with a varying frequency. The displacements of a drive train are counted
+without the error, and stay.
 """
 
 from __future__ import annotations
@@ -17,12 +18,11 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT
 from dynamics.arrays import AsArray
-from dynamics.flow import tabulated
+from dynamics.flows import flow_of
 from dynamics.limits import POSITIVE, Whole
 from dynamics.motions import share_below
-from dynamics.oscillator import GearOscillator, cells_per_period
-from dynamics.protocol import exact_only
-from dynamics.states import checked_state
+from dynamics.protocol import PeriodicOscillator, periodic_only
+from dynamics.states import checked_outputs, checked_state
 from dynamics.sweeps import settling_periods
 
 SAMPLES = 64
@@ -33,6 +33,9 @@ BLOCK = 16
 
 HIGHEST = 6
 """Highest order of a block's lines."""
+
+HELD = 4
+"""Periods for which a drive train keeps a frequency: its tables cost as much as a hundred periods. A pair keeps one."""
 
 FAST = 0.1
 """Change of the frequency in one decay time, over the width of a resonance, above which motion lags behind."""
@@ -64,16 +67,26 @@ class RunUp(AsArray):
     force_order: Array = quantity(
         "1", "amplitude of the mesh force by block and order", "block line", error="error"
     )
-    state: Array = quantity("1", "X and V at the end", "state", no_error=STEADY)
+    output_rms: Array = quantity(
+        "1", "root mean square of each output about its mean in each block", "block output", error="error"
+    )
+    output_peak: Array = quantity(
+        "1", "greatest modulus of each output in each block", "block output", error="error"
+    )
+    state: Array = quantity(
+        "1", "state at the end: X and V, or displacements and speeds", "state", no_error=STEADY
+    )
     periods: int = quantity("1", "excitation periods in all", no_error=EXACT)
     rate: float = quantity(
         "1",
-        "greatest change of the frequency in one decay time over the width of a resonance, dw/dtau / (2 zeta^2); where "
-        "it is small the motion follows",
+        "greatest change of the frequency in one decay time over the width of a resonance, dw/dtau / (2 zeta^2), "
+        "of a drive train with its slowest decay; where it is small the motion follows",
         no_error=EXACT,
     )
     error: float = quantity(
-        "1", "median relative difference of the blocks' root mean square from a run with steps twice as long"
+        "1",
+        "median relative difference of the blocks' root mean square, of X or of the output that differs most, from a "
+        "run with steps twice as long",
     )
     cost: Cost
     converged: bool = quantity("1", "whether the motion stayed bounded")
@@ -89,26 +102,29 @@ class RunUp(AsArray):
         return np.column_stack([self.frequency, self.rms, self.peak, self.force_peak])
 
 
-@exact_only
+@periodic_only
 def run_up(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     bounds: tuple[float, float],
     periods: int = 8000,
     *,
     state: npt.ArrayLike | None = None,
+    outputs: npt.ArrayLike | None = None,
 ) -> RunUp:
     """Follow the motion while the frequency rises or falls evenly in time.
 
     Parameters
     ----------
-    oscillator : GearOscillator
-        The oscillator; its own frequency is not used.
+    oscillator : GearOscillator or DriveOscillator
+        The oscillator; its own frequency is not used. In several freedoms X is y, which the backlash limits.
     bounds : (float, float)
         Frequency at the start and at the end; the second may be the lower one: coast-down.
     periods : int
         Excitation periods, cut to whole blocks of 16; the more, the slower.
-    state : array_like, shape (2,), optional
-        X and V at the start. Left out: what the motion from rest settles to at the first frequency.
+    state : array_like, shape (dimension,), optional
+        State at the start. Left out: what the motion from rest settles to at the first frequency.
+    outputs : array_like, shape (outputs, dimension), optional
+        What else is wanted of the motion, linear in the state: factors on displacements and speeds, one row each.
 
     Raises
     ------
@@ -135,13 +151,15 @@ def run_up(
 
         at = period_map(here, here.rest_state(), 1, settling_periods(here)).state
     else:
-        at = checked_state(state)
-    fine = _ramp(oscillator, (first, last), number, at, 1)
-    coarse = _ramp(oscillator, (first, last), number, at, 2)
-    rms = fine[0][:, 0]
-    off = np.abs(coarse[0][:, 0] - rms) / np.maximum(rms, 1e-300)
+        at = checked_state(state, size=oscillator.dimension)
+    rows = checked_outputs(outputs, oscillator.dimension)
+    held = 1 if oscillator.is_exact else HELD
+    fine = _ramp(oscillator, (first, last), number, at, held, rows)
+    coarse = _ramp(oscillator, (first, last), number, at, 2 * held, rows)
+    swings = [0, *range(5, 5 + len(rows))]
+    off = np.abs(coarse[0] - fine[0])[:, swings] / np.maximum(fine[0][:, swings], 1e-300)
     good = bool(np.all(np.isfinite(fine[0])))
-    decay = max(oscillator.damping_ratio, 1e-300)
+    decay = max(oscillator.decay, 1e-300)
     change = abs(last**2 - first**2) / (4.0 * math.pi * number * BLOCK)  # dw/dtau = w dw/dtheta
     rate = change / (2.0 * decay**2)
     turns = BLOCK * (np.arange(number) + 0.5) / (BLOCK * number)
@@ -152,7 +170,7 @@ def run_up(
     )
     if rate > FAST:
         said += "; faster than the motion follows: jumps come late and peaks are lower than steady ones"
-    rms, peak, force_rms, force_peak, separated = np.ascontiguousarray(fine[0].T)
+    rms, peak, force_rms, force_peak, separated, *rest = np.ascontiguousarray(fine[0].T)
     return RunUp(
         np.sqrt(first**2 + (last**2 - first**2) * turns),
         fine[2],
@@ -164,10 +182,12 @@ def run_up(
         np.arange(1, HIGHEST * BLOCK + 1) / BLOCK,
         fine[1][:, 0],
         fine[1][:, 1],
+        np.array(rest[: len(rows)]).reshape(-1, number).T,
+        np.array(rest[len(rows) :]).reshape(-1, number).T,
         fine[3],
         number * BLOCK,
         rate,
-        float(np.nanmedian(off)) if np.any(np.isfinite(off)) else math.inf,
+        float(np.max(np.nanmedian(off, axis=0))) if np.any(np.isfinite(off)) else math.inf,
         Cost(watch.seconds, periods=2 * number * BLOCK),
         good,
         said,
@@ -175,45 +195,49 @@ def run_up(
 
 
 def _ramp(
-    oscillator: GearOscillator, bounds: tuple[float, float], number: int, state: Array, held: int
+    oscillator: PeriodicOscillator,
+    bounds: tuple[float, float],
+    number: int,
+    state: Array,
+    held: int,
+    rows: Array,
 ) -> tuple[Array, Array, Array, Array]:
-    """Figures (blocks, 5), lines (blocks, 2, orders), starts of the blocks and last state; steps of so many periods."""
+    """Figures (blocks, 5 + 2 outputs), lines (blocks, 2, orders), starts of the blocks and last state.
+
+    Each frequency is held for so many periods.
+    """
     first, last = bounds
     turns = held * (np.arange(number * BLOCK // held) + 0.5) / (number * BLOCK)
     frequencies = np.repeat(np.sqrt(first**2 + (last**2 - first**2) * turns), held)
-    packed, at = oscillator.packed(), np.array(state, dtype=np.float64)
-    slope = _slope_of_error(oscillator)
-    angle = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
-    stiffness = np.tile(oscillator.stiffness(angle), BLOCK)
-    figures, lines = np.full((number, 5), np.nan), np.full((number, 2, HIGHEST * BLOCK), np.nan)
-    starts, tau, before = np.zeros(number), 0.0, first
+    at, size = np.array(state, dtype=np.float64), max(1.0, oscillator.natural_size)
+    angle = np.tile(2.0 * np.pi * np.arange(SAMPLES) / SAMPLES, BLOCK)
+    stiffness = oscillator.contact_stiffness(angle)
+    figures = np.full((number, 5 + 2 * len(rows)), np.nan)
+    lines = np.full((number, 2, HIGHEST * BLOCK), np.nan)
+    starts, tau, before, flow = np.zeros(number), 0.0, first, None
     for block in range(number):
-        starts[block], parts = tau, []
+        starts[block], parts, states = tau, [], []
         for frequency in frequencies[block * BLOCK : (block + 1) * BLOCK].tolist():
-            at[1] -= (frequency - before) * slope
-            packed[4], before = frequency, frequency
-            flow = tabulated(packed.copy(), math.ceil(cells_per_period(packed)))
+            if flow is None or frequency != before:
+                at = oscillator.with_frequency_step(at, before, frequency)
+                here, before = oscillator.with_parameter("frequency", frequency), frequency
+                flow, times = flow_of(here), np.arange(SAMPLES) * (here.period / SAMPLES)
             samples, _, _ = flow.sampled(at, 1, SAMPLES)
-            parts.append(samples[:-1, 0])
+            parts.append(here.contact_motion(np.asarray(times), samples[:-1])[0])
+            states.append(samples[:-1])
             at = samples[-1].copy()
-            tau += 2.0 * math.pi / frequency
-        if not (np.all(np.isfinite(at)) and np.max(np.abs(at)) < LOST):
+            tau += here.period
+        if not (np.all(np.isfinite(at)) and np.max(np.abs(at)) < LOST * size):
             break
-        x = np.concatenate(parts)
+        x, carried = np.concatenate(parts), np.concatenate(states) @ rows.T
         force = stiffness * oscillator.deflection(x)
         free = share_below(x - oscillator.half_backlash)
-        figures[block] = np.std(x), np.max(x), np.std(force), np.max(force), free
+        figures[block, :5] = np.std(x), np.max(x), np.std(force), np.max(force), free
+        figures[block, 5:] = *np.std(carried, axis=0), *np.max(np.abs(carried), axis=0)
         for row, values in zip(lines[block], (x, force), strict=True):
             row[:] = 2.0 / len(x) * np.abs(np.fft.rfft(values))[1 : HIGHEST * BLOCK + 1]
     return figures, lines, starts, at
 
 
 LOST = 1e6
-"""Size at which a motion counts as grown without bound."""
-
-
-def _slope_of_error(oscillator: GearOscillator) -> float:
-    """Derivative of the error to the angle of the excitation at the angle 0."""
-    amplitudes, phases = oscillator.error_series
-    j = np.arange(1, len(amplitudes) + 1)
-    return float(-np.sum(j * amplitudes * np.sin(phases)))
+"""Size, over that of what drives it where that is more than 1, at which a motion counts as grown without bound."""

@@ -15,10 +15,10 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Limit, Stopwatch, quantity, record
 from base.results import EXACT
 from dynamics.arrays import AsArray
-from dynamics.drives.oscillator import DriveOscillator
 from dynamics.limits import NUMBER
 from dynamics.motions import mesh_force, trajectory
-from dynamics.oscillator import GearOscillator
+from dynamics.protocol import PeriodicOscillator
+from dynamics.states import checked_outputs
 
 STRETCHES = 8
 """Stretches that the spectrum of a motion without a period is averaged over, each half over the next."""
@@ -43,6 +43,7 @@ class Spectrum(AsArray):
     force: Array = quantity(
         "1", "amplitude of the mesh force k f(X), dimensionless like the mean force", "line", error="error"
     )
+    outputs: Array = quantity("1", "amplitude of each output, in its own unit", "line output", error="error")
     rms: float = quantity("1", "root mean square of X about its mean", error="error")
     force_rms: float = quantity("1", "root mean square of the mesh force about its mean", error="error")
     periods: int = quantity("1", "excitation periods of the motion, 0 if it does not repeat", no_error=EXACT)
@@ -60,11 +61,12 @@ class Spectrum(AsArray):
 
 
 def motion_spectrum(
-    oscillator: GearOscillator | DriveOscillator,
+    oscillator: PeriodicOscillator,
     state: npt.ArrayLike,
     periods: int = 1,
     *,
     highest: float = 10.0,
+    outputs: npt.ArrayLike | None = None,
 ) -> Spectrum:
     r"""Spectrum of a settled motion.
 
@@ -78,6 +80,8 @@ def motion_spectrum(
         Excitation periods after which it repeats; 0 for a motion that does not.
     highest : float
         Highest order.
+    outputs : array_like, shape (outputs, dimension), optional
+        What else is wanted of the motion, linear in the state: factors on displacements and speeds, one row each.
 
     Returns
     -------
@@ -107,16 +111,19 @@ def motion_spectrum(
     length = n or APERIODIC
     parts = 1 if n else STRETCHES
     per_period = 2 * math.ceil(OVERSAMPLED * max(top, 4.0) / 2.0) * 2
+    rows = checked_outputs(outputs, oscillator.dimension)
     motion = trajectory(oscillator, state, length * (parts + 1) // 2 if parts > 1 else length, per_period)
     x, force = motion.x[:-1], mesh_force(oscillator, motion)[:-1]
     lines = np.arange(1, math.floor(top * length + 1e-9) + 1)
-    found = [_amplitudes(one, length * per_period, parts)[lines] for one in (x, force)]
-    coarse = [_amplitudes(one[::2], length * per_period // 2, parts)[lines] for one in (x, force)]
+    curves = [x, force, *(motion.states[:-1] @ rows.T).T]
+    found = [_amplitudes(one, length * per_period, parts)[lines] for one in curves]
+    coarse = [_amplitudes(one[::2], length * per_period // 2, parts)[lines] for one in curves]
     off = max(_apart(there, here) for here, there in zip(found, coarse, strict=True))
     return Spectrum(
         lines / length,
         found[0],
         found[1],
+        np.array(found[2:]).reshape(len(rows), len(lines)).T,
         float(np.std(x)),
         float(np.std(force)),
         n,

@@ -36,6 +36,21 @@ def checked_state(state: npt.ArrayLike, where: str = "state", size: int = 2) -> 
     return at
 
 
+def checked_outputs(outputs: npt.ArrayLike | None, size: int) -> Array:
+    """Outputs as rows of factors on a state.
+
+    Raises
+    ------
+    InputError
+        If they are not finite, or not as long as a state.
+    """
+    rows = np.zeros((0, size)) if outputs is None else np.array(outputs, dtype=np.float64)
+    if rows.ndim != 2 or rows.shape[1] != size or not np.all(np.isfinite(rows)):
+        allowed = f"must be finite numbers of shape (outputs, {size})"
+        raise InputError.at("outputs", f"shape {rows.shape}", allowed, "one factor for each entry of a state")
+    return rows
+
+
 def checked_region(faults: Faults, region: Region) -> Region:
     """The rectangle as numbers; notes what is none, or out of order."""
     x, v = (

@@ -23,7 +23,7 @@ from dynamics.excitation import (
 )
 from dynamics.limits import OSCILLATOR
 from dynamics.naming import natural_size, series_names
-from dynamics.protocol import Oscillator
+from dynamics.protocol import PeriodicOscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
 MAX_ENTRIES = 20_000_000  # of the tables: 160 MB
@@ -32,7 +32,7 @@ MATRICES, VECTORS = ("mass", "damping", "stiffness"), ("direction", "mean_force"
 
 
 @dataclass(frozen=True, eq=False)
-class DriveOscillator(Oscillator):
+class DriveOscillator(PeriodicOscillator):
     r"""Drive train of n freedoms with one mesh that has periodic stiffness and backlash.
 
     .. math::
@@ -91,6 +91,7 @@ class DriveOscillator(Oscillator):
     """
 
     has_steps: ClassVar = False
+    stiffness_name: ClassVar = "mesh_stiffness"
 
     mass: npt.ArrayLike
     damping: npt.ArrayLike

@@ -1,6 +1,6 @@
 from .along_path import FilmAlongPath as FilmAlongPath
+from .carried import DriveOutput as DriveOutput
 from .cycle import MeshCycle as MeshCycle
-from .drive import DriveOutput as DriveOutput
 from .drive import PairDrive as PairDrive
 from .drive import pair_drive as pair_drive
 from .drive_sweep import DriveSweep as DriveSweep

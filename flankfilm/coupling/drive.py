@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 import dynamics
 import gears
 from base import Array, Cost, Faults, Limit, described, part, quantity, record
+from flankfilm.coupling.carried import DriveOutput
 from flankfilm.coupling.drive_side import Side, drive_side
 from flankfilm.coupling.oscillator import PairOscillator, pair_oscillator
 from gears.beams import ReducedShaft
@@ -29,31 +29,6 @@ RAYLEIGH = (
     Limit(0.0, 1e9, "1/s", "10 to 100 damps the lowest modes"),
     Limit(0.0, 10.0, "s", "1e-6 to 1e-5 damps the highest modes"),
 )
-
-
-@dataclass(frozen=True, eq=False)
-class DriveOutput:
-    """What a part of the train carries: linear in the state.
-
-    Attributes
-    ----------
-    name : str
-        Such as "pinion bearing 1", "wheel shaft" or "wheel coupling".
-    unit : str
-        N or N m.
-    displacement, speed : ndarray, shape (n,)
-        Factors on the oscillator's displacements and speeds.
-    """
-
-    name: str
-    unit: str
-    displacement: Array
-    speed: Array
-
-    def of(self, states: Array) -> Array:
-        """Values at states (k, 2 n) of the oscillator."""
-        n = len(self.displacement)
-        return np.asarray(states[:, :n] @ self.displacement + states[:, n:] @ self.speed)
 
 
 @record
@@ -90,6 +65,22 @@ class PairDrive:
         """Relative error of the mean stiffness; None where it is unknown. Shafts are beams without one."""
         return self.rigid.error
 
+    @property
+    def scales(self) -> dynamics.Scaling:
+        """Scales of mass, stiffness and length."""
+        assert self.rigid.scales is not None  # a drive has a pair
+        return self.rigid.scales
+
+    @property
+    def series(self) -> MeshSeries:
+        """Series of the mesh stiffness."""
+        return self.rigid.series
+
+    @property
+    def mean_force(self) -> float:
+        """Mean force of the mesh."""
+        return self.rigid.mean_force
+
     @described("Hz", error="error")
     def lowest_frequency(self) -> float:
         """Lowest natural frequency of the train in contact."""
@@ -99,6 +90,11 @@ class PairDrive:
     def mesh_frequency(self) -> float:
         """Natural frequency of the mode that has most of its elastic energy in the mesh."""
         return float(self.natural_frequencies[int(np.argmax(self.mesh_share))])
+
+    @described("rad/s", "mode", shown="rpm", error="error")
+    def resonance_speeds(self) -> Array:
+        """Pinion speeds at which the mesh frequency is a natural one."""
+        return np.array([self.resonance_speed(one) for one in self.natural_frequencies.tolist()])
 
     def resonance_speed(self, frequency: float) -> float:
         """Pinion speed [rad/s] at which the mesh frequency is a given one [Hz]."""

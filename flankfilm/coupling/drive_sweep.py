@@ -9,22 +9,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from base import Array, Cost, Stopwatch, described, quantity, record
-from base.results import EXACT
+from base.results import EXACT, ITSELF
+from flankfilm.coupling.carried import PARTS, greatest, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.motion import frequencies_of
+from flankfilm.coupling.resonance import Vibrations, vibrations
+from flankfilm.coupling.swept_truncation import LEAST_HARMONICS, checked_values, motion_changes
+from flankfilm.coupling.truncation import longer_motion
 
 if TYPE_CHECKING:
     import dynamics
+    from flankfilm.coupling.truncation import Longer
 
-SAMPLES = 400
-"""Samples of a mesh period."""
-
-APERIODIC = 60
-"""Mesh periods over which a motion that does not repeat is followed."""
-
-
-UNITS = {"bearing": "N", "shaft": "N m"}
-"""Of what bearings, and shafts and couplings, carry."""
+LEFT = (
+    "relative change of {} there by the longer series; nan where the motion does not repeat, infinite where there is "
+    "none of the same label"
+)
 
 
 @record
@@ -80,6 +80,38 @@ class DriveSweep:
     sampling_error: float = quantity(
         "1", "largest change with half as many samples of a period, over the greatest of its part"
     )
+    longer_order: int | None = quantity(
+        "1",
+        "harmonics of the longer series that the figures are held against; None for a given series",
+        no_error=EXACT,
+    )
+    checked: Array | None = quantity(
+        "1",
+        "frequencies at which motions are computed with the longer series as well",
+        "checked",
+        no_error=EXACT,
+    )
+    force_change: Mapping[str, Array] | None = quantity(
+        "1", LEFT.format("the greatest mesh force"), "checked", no_error=ITSELF
+    )
+    bearing_force_change: Mapping[str, Array] | None = quantity(
+        "1", LEFT.format("the greatest force of bearings"), "checked bearing", no_error=ITSELF
+    )
+    bearing_force_swing_change: Mapping[str, Array] | None = quantity(
+        "1",
+        LEFT.format("the root mean square of their forces, over the greatest,"),
+        "checked bearing",
+        no_error=ITSELF,
+    )
+    shaft_torque_change: Mapping[str, Array] | None = quantity(
+        "1", LEFT.format("the greatest torque of shafts and couplings"), "checked shaft", no_error=ITSELF
+    )
+    shaft_torque_swing_change: Mapping[str, Array] | None = quantity(
+        "1",
+        LEFT.format("the root mean square of their torques, over the greatest,"),
+        "checked shaft",
+        no_error=ITSELF,
+    )
     error: float = quantity("1", "relative error of one period map, the largest met")
     cost: Cost
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
@@ -88,18 +120,37 @@ class DriveSweep:
     @described("N", error="sampling_error")
     def greatest_bearing_force(self) -> float | None:
         """Greatest force of a bearing in both sweeps; None without bearings."""
-        return _greatest(self.bearing_force)
+        return greatest(self.bearing_force)
 
     @described("N m", error="sampling_error")
     def greatest_shaft_torque(self) -> float | None:
         """Greatest torque of a shaft or coupling in both sweeps; None without one that yields."""
-        return _greatest(self.shaft_torque)
+        return greatest(self.shaft_torque)
 
+    @described("1", no_error=ITSELF)
+    def truncation(self) -> float | None:
+        """Largest change of what parts carry by the longer series, of motions that it has; None if unknown."""
+        known = [found for one in self._changes if (found := greatest(one)) is not None]
+        return max(known, default=None)
 
-def _greatest(values: Mapping[str, Array]) -> float | None:
-    """Greatest of both directions, of the motions that could be followed; None without any."""
-    known = np.concatenate([one[np.isfinite(one)] for one in values.values()])
-    return float(known.max()) if known.size else None
+    @described("1", no_error=ITSELF)
+    def carried_error(self) -> float | None:
+        """Error of what parts carry by samples and the series' order; infinite where a motion is another one."""
+        known = [one[~np.isnan(one)] for change in self._changes for one in change.values()]
+        if not any(one.size for one in known):
+            return None
+        return self.sampling_error + float(np.max(np.concatenate([one.ravel() for one in known])))
+
+    @property
+    def _changes(self) -> list[Mapping[str, Array]]:
+        """Changes of all that parts carry, as far as they are known."""
+        every = (
+            self.bearing_force_change,
+            self.bearing_force_swing_change,
+            self.shaft_torque_change,
+            self.shaft_torque_swing_change,
+        )
+        return [one for one in every if one is not None]
 
 
 def drive_sweep(
@@ -136,24 +187,28 @@ def drive_sweep(
 
     watch = Stopwatch()
     values, speeds = frequencies_of(drive.rigid, speed, frequency)
-    scales = drive.rigid.scales
-    assert scales is not None  # a pair has them
     if speeds is None:
-        speeds = np.array([scales.speed(one) for one in values.tolist()])
-    found = {way: dynamics.sweep(drive.oscillator, "frequency", values, way) for way in ("up", "down")}
-    figures = {way: [_carried(drive, result, i) for i in range(len(values))] for way, result in found.items()}
+        speeds = np.array([drive.scales.speed(one) for one in values.tolist()])
+    oscillator, outputs = drive.oscillator, drive.outputs
+    found = {way: dynamics.sweep(oscillator, "frequency", values, way) for way in ("up", "down")}
+    shaken = {
+        way: vibrations(oscillator, result, load=drive.mean_force, outputs=outputs)
+        for way, result in found.items()
+    }
+    parts = {way: np.moveaxis(one.parts, 1, 0) for way, one in shaken.items()}
+    longer = longer_motion(drive, (float(values.min()), float(values.max())), LEAST_HARMONICS)
     lost = [result.message for result in found.values() if not result.converged]
-    stacked = {way: np.array([row for row, *_ in rows]) for way, rows in figures.items()}
-    changes = [change for rows in figures.values() for *_, change in rows]
     return DriveSweep(
         frequency=values,
         speed=speeds,
         labels={way: result.labels for way, result in found.items()},
-        force_factor={way: rows[:, 2, 0] for way, rows in stacked.items()},
-        separated={way: np.array([apart for _, apart, _ in rows]) for way, rows in figures.items()},
-        **_parts(drive, stacked, "bearing", "bearing_force"),
-        **_parts(drive, stacked, "shaft", "shaft_torque"),
-        sampling_error=max(changes),
+        force_factor={way: one.force for way, one in shaken.items()},
+        separated={way: one.separated for way, one in shaken.items()},
+        **part_figures(
+            outputs, {end: {way: one[k] for way, one in parts.items()} for k, end in enumerate(ENDINGS)}
+        ),
+        sampling_error=max(one.change for one in shaken.values()),
+        **_beside(drive, longer, found, shaken),
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
         converged=not lost,
@@ -161,40 +216,32 @@ def drive_sweep(
     )
 
 
-def _parts(drive: PairDrive, stacked: Mapping[str, Array], part: str, figure: str) -> dict[str, Any]:
-    """Names of all bearings, or of all shafts and couplings, and the figures of what they carry."""
-    unit = UNITS[part]
-    kept = [i for i, output in enumerate(drive.outputs) if output.unit == unit]
-    columns = [1 + i for i in kept]  # behind the mesh force
-    figures = {f"{figure}_mean": 0, f"{figure}_swing": 1, figure: 2}
-    return {
-        f"{part}s": tuple(drive.outputs[i].name for i in kept),
-        **{name: {way: rows[:, k, columns] for way, rows in stacked.items()} for name, k in figures.items()},
+ENDINGS = ("_mean", "_swing", "")
+"""Endings of the figures' names, in the order of `Vibration.parts`."""
+
+
+def _beside(
+    drive: PairDrive,
+    longer: Longer | None,
+    found: Mapping[str, dynamics.SweepResult],
+    shaken: Mapping[str, Vibrations],
+) -> dict[str, Any]:
+    """What the longer series changes of forces and torques; None of each for a given series."""
+    if longer is None:
+        figures = [f"{figure}{end}_change" for figure, _ in PARTS.values() for end in ENDINGS[1:]]
+        return dict.fromkeys(("longer_order", "checked", "force_change", *figures))
+    some = next(iter(found.values())).values
+    at = checked_values(len(some), {way: one.force for way, one in shaken.items()})
+    changes = {way: motion_changes(longer, drive, result, at) for way, result in found.items()}
+    by_end = {
+        f"{end}_change": {way: one.parts[:, k] for way, one in changes.items()}
+        for k, end in enumerate(ENDINGS)
+        if end != "_mean"
     }
-
-
-def _carried(drive: PairDrive, found: dynamics.SweepResult, at: int) -> tuple[Array, float, float]:
-    """Mean, swing and greatest of the mesh force over the mean force and of all outputs, shape (3, 1 + parts).
-
-    And the part of the time without contact, and the largest change with half as many samples; nan where the motion
-    was lost.
-    """
-    import dynamics
-    from dynamics.motions import mesh_force, share_below
-
-    start = found.states[at, -1]
-    if not np.all(np.isfinite(start)):
-        return np.full((3, 1 + len(drive.outputs)), np.nan), np.nan, 0.0
-    here = drive.oscillator.with_parameter("frequency", float(found.values[at]))
-    motion = dynamics.trajectory(here, start, int(found.periods[at]) or APERIODIC, SAMPLES)
-    load = drive.rigid.oscillator.mean_force
-    rows = [mesh_force(here, motion) / load, *(output.of(motion.states) for output in drive.outputs)]
-    curves = np.array(rows)[:, :-1]
-    whole, half = (_figures(curves[:, ::step]) for step in (1, 2))
-    change = float(np.max(np.abs(whole - half) / np.maximum(whole[2], 1e-300)))
-    return whole, share_below(motion.x - here.half_backlash), change
-
-
-def _figures(curves: Array) -> Array:
-    """Mean, root mean square about it, and greatest modulus of curves."""
-    return np.array([curves.mean(axis=1), curves.std(axis=1), np.abs(curves).max(axis=1)])
+    figures_of = part_figures(drive.outputs, by_end)
+    return {
+        "longer_order": longer.order,
+        "checked": some[at],
+        "force_change": {way: one.force for way, one in changes.items()},
+        **{name: value for name, value in figures_of.items() if name.endswith("_change")},
+    }

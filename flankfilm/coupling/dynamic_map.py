@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import dynamics
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.limits import NUMBER, checked_grid
+from flankfilm.coupling.carried import greatest, part_figures
+from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.resonance import vibrations
 from flankfilm.coupling.speed_ranges import standard_factors
@@ -49,7 +51,39 @@ class DynamicMap:
     iso: Array = quantity(
         "1", "K_v after ISO 6336-1, method B; nan where it does not hold", "torque speed", no_error=ITSELF
     )
-    sampling_error: float = quantity("1", "largest relative change of the factors with half as many samples")
+    bearings: tuple[str, ...] = quantity(
+        "", "bearings of a drive train, in the order of their forces", "bearing"
+    )
+    bearing_force: Array = quantity(
+        "N",
+        "greatest modulus of the force of bearings, of both sweeps the greater",
+        "torque speed bearing",
+        error="sampling_error",
+    )
+    bearing_force_swing: Array = quantity(
+        "N",
+        "root mean square about the mean force of bearings, likewise",
+        "torque speed bearing",
+        error="sampling_error",
+    )
+    shafts: tuple[str, ...] = quantity(
+        "", "shafts and couplings of a drive train, in the order of their torques", "shaft"
+    )
+    shaft_torque: Array = quantity(
+        "N m",
+        "greatest modulus of the torque of shafts and couplings, of both sweeps the greater",
+        "torque speed shaft",
+        error="sampling_error",
+    )
+    shaft_torque_swing: Array = quantity(
+        "N m",
+        "root mean square about the mean torque of shafts and couplings, likewise",
+        "torque speed shaft",
+        error="sampling_error",
+    )
+    sampling_error: float = quantity(
+        "1", "largest relative change of factors, forces and torques with half as many samples"
+    )
     cost: Cost
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = ""
@@ -64,16 +98,27 @@ class DynamicMap:
         """Greatest factor of the map."""
         return float(np.nanmax(self.factor))
 
+    @described("N", error="sampling_error")
+    def greatest_bearing_force(self) -> float | None:
+        """Greatest force of a bearing of the map; None without bearings."""
+        return greatest(self.bearing_force)
+
+    @described("N m", error="sampling_error")
+    def greatest_shaft_torque(self) -> float | None:
+        """Greatest torque of a shaft or coupling of the map; None without one that yields."""
+        return greatest(self.shaft_torque)
+
 
 def dynamic_map(
-    motion_at: Callable[[float], PairOscillator], torques: Sequence[float], speeds: ArrayLike
+    motion_at: Callable[[float], PairOscillator | PairDrive], torques: Sequence[float], speeds: ArrayLike
 ) -> DynamicMap:
     """Greatest force over the mean one, over speed and torque.
 
     Parameters
     ----------
     motion_at : callable
-        Gives the oscillator of a pair under a torque of the pinion [N m], with the stiffness that it has then.
+        Gives the oscillator of a pair under a torque of the pinion [N m], with the stiffness that it has then; or its
+        drive train, whose parts are the same under every torque.
     torques : sequence of float
         [N m]
     speeds : array_like, shape (n,)
@@ -100,21 +145,22 @@ def dynamic_map(
         loads = [faults.number(f"torques[{k}]", one, NUMBER) for k, one in enumerate(torques)]
         if not loads:
             faults.add("torques", "none", "must be at least one", "give a list of torques")
-    rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso")}
+    rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso", "parts")}
     resonances, lost, off, used = [], 0, 0.0, 0
     for torque in loads:
         motion = motion_at(torque)
         assert motion.scales is not None
         values = np.array([motion.scales.frequency(one) for one in at.tolist()])
-        parts = []
+        both = []
         for way in ("up", "down"):
             swept = dynamics.sweep(motion.oscillator, "frequency", values, way)
-            force, separated, _, change = vibrations(motion.oscillator, swept)
-            rows[way].append(force)
-            parts.append(separated)
-            off, used, lost = max(off, change), used + swept.cost.periods, lost + (not swept.converged)
-        rows["separated"].append(np.fmax(*parts))
-        rows["iso"].append(standard_factors(motion, values))
+            shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
+            rows[way].append(shaken.force)
+            both.append(shaken)
+            off, used, lost = max(off, shaken.change), used + swept.cost.periods, lost + (not swept.converged)
+        rows["separated"].append(np.fmax(*(one.separated for one in both)))
+        rows["parts"].append(np.fmax(*(one.parts for one in both)))
+        rows["iso"].append(standard_factors(motion.rigid, values))
         resonances.append(motion.scales.speed(1.0))
     found = {name: np.array(values) for name, values in rows.items()}
     return DynamicMap(
@@ -126,8 +172,9 @@ def dynamic_map(
         found["down"],
         found["separated"],
         found["iso"],
-        off,
-        Cost(watch.seconds, periods=used),
-        lost == 0,
-        "" if lost == 0 else "some motions grow without bound; their factors are nan",
+        **part_figures(motion.outputs, {"": found["parts"][:, :, 2], "_swing": found["parts"][:, :, 1]}),
+        sampling_error=off,
+        cost=Cost(watch.seconds, periods=used),
+        converged=lost == 0,
+        message="" if lost == 0 else "some motions grow without bound; their factors are nan",
     )

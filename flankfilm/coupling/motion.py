@@ -205,8 +205,8 @@ def speed_sweep(
     at = np.zeros(0, dtype=np.int64)
     beside, left_out = {}, None
     if longer is not None:
-        at = checked_values(len(values), {direction: force for direction, (force, *_) in shaken.items()})
-        beside = {way: motion_changes(longer, oscillator, result, at) for way, result in found.items()}
+        at = checked_values(len(values), {direction: one.force for direction, one in shaken.items()})
+        beside = {way: motion_changes(longer, motion, result, at) for way, result in found.items()}
         left_out = grazing_errors(longer, touched)
     return SpeedSweep(
         frequency=values,
@@ -219,16 +219,16 @@ def speed_sweep(
         ),
         grazings=touched,
         half_backlash=oscillator.half_backlash,
-        force_factor={direction: force for direction, (force, *_) in shaken.items()},
-        separated={direction: part for direction, (_, part, *_) in shaken.items()},
-        spread={direction: spread for direction, (_, _, spread, _) in shaken.items()},
-        sampling_error=max(error for *_, error in shaken.values()),
+        force_factor={direction: one.force for direction, one in shaken.items()},
+        separated={direction: one.separated for direction, one in shaken.items()},
+        spread={direction: one.spread for direction, one in shaken.items()},
+        sampling_error=max(one.change for one in shaken.values()),
         grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
         longer_order=None if longer is None else longer.order,
         grazing_error=left_out,
         checked=None if longer is None else values[at],
-        force_change={way: force for way, (force, _) in beside.items()} or None,
-        spread_change={way: spread for way, (_, spread) in beside.items()} or None,
+        force_change={way: one.force for way, one in beside.items()} or None,
+        spread_change={way: one.spread for way, one in beside.items()} or None,
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
         messages=tuple(one.message for one in solved if not one.converged),

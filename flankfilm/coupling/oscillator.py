@@ -12,6 +12,7 @@ import dynamics
 import gears
 from base import Array, Cost, InputError, described, part, quantity, record
 from base.results import EXACT
+from flankfilm.coupling.carried import DriveOutput
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.excitation import peak_to_peak
 from flankfilm.coupling.references import MEANINGS
@@ -80,6 +81,16 @@ class PairOscillator:
     def reference(self) -> str | None:
         """What the deflection of the stiffness is measured against; None for a given series."""
         return self.series.reference
+
+    @property
+    def rigid(self) -> PairOscillator:
+        """The pair on rigid shafts: itself."""
+        return self
+
+    @property
+    def outputs(self) -> tuple[DriveOutput, ...]:
+        """Forces of bearings and torques of shafts: none on rigid ones."""
+        return ()
 
     @described("m", shown="um", no_error=EXACT)
     def error_range(self) -> float:

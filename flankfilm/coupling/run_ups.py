@@ -8,9 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 
 import dynamics
-from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, described, quantity, record
 from base.results import EXACT
 from dynamics.limits import PERIODS, POSITIVE
+from flankfilm.coupling.carried import greatest, output_rows, part_figures
+from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator
 
 
@@ -57,6 +59,24 @@ class SpeedRunUp:
         "block line",
         error="error",
     )
+    bearings: tuple[str, ...] = quantity(
+        "", "bearings of a drive train, in the order of their forces", "bearing"
+    )
+    bearing_force: Mapping[str, Array] = quantity(
+        "N", "greatest modulus of the force of bearings", "block bearing", error="error"
+    )
+    bearing_force_swing: Mapping[str, Array] = quantity(
+        "N", "root mean square about the mean force of bearings", "block bearing", error="error"
+    )
+    shafts: tuple[str, ...] = quantity(
+        "", "shafts and couplings of a drive train, in the order of their torques", "shaft"
+    )
+    shaft_torque: Mapping[str, Array] = quantity(
+        "N m", "greatest modulus of the torque of shafts and couplings", "block shaft", error="error"
+    )
+    shaft_torque_swing: Mapping[str, Array] = quantity(
+        "N m", "root mean square about the mean torque of shafts and couplings", "block shaft", error="error"
+    )
     periods: int = quantity("1", "mesh periods of each direction", no_error=EXACT)
     seconds: float | None = quantity("s", "time of each direction", no_error=EXACT)
     rate: float = quantity(
@@ -69,9 +89,19 @@ class SpeedRunUp:
     converged: bool = quantity("1", "whether the motion stayed bounded in both directions", no_error=EXACT)
     message: str
 
+    @described("N", error="error")
+    def greatest_bearing_force(self) -> float | None:
+        """Greatest force of a bearing in run-up and coast-down; None without bearings."""
+        return greatest(self.bearing_force)
+
+    @described("N m", error="error")
+    def greatest_shaft_torque(self) -> float | None:
+        """Greatest torque of a shaft or coupling in run-up and coast-down; None without one that yields."""
+        return greatest(self.shaft_torque)
+
 
 def speed_run_up(
-    motion: PairOscillator,
+    motion: PairOscillator | PairDrive,
     speed: tuple[float, float] | None = None,
     *,
     frequency: tuple[float, float] | None = None,
@@ -82,7 +112,8 @@ def speed_run_up(
 
     Parameters
     ----------
-    motion : PairOscillator
+    motion : PairOscillator or PairDrive
+        On rigid shafts, or with its drive train.
     speed : (float, float)
         Pinion speeds, from and to, rising [rad/s].
     frequency : (float, float)
@@ -126,9 +157,10 @@ def speed_run_up(
     per_tau = 0.5 * (ends[0] + ends[1]) / (2.0 * math.pi)  # mesh periods in a unit of dimensionless time
     if seconds is not None and scales is not None:
         number = faults_of_time(seconds * scales.omega_n * per_tau)
-    up = dynamics.run_up(motion.oscillator, ends, number)
-    down = dynamics.run_up(motion.oscillator, ends[::-1], number)
-    each, mean = {"up": up, "down": down}, motion.oscillator.mean_force or np.nan
+    rows = output_rows(motion.outputs, motion.oscillator.dimension)
+    up = dynamics.run_up(motion.oscillator, ends, number, outputs=rows)
+    down = dynamics.run_up(motion.oscillator, ends[::-1], number, outputs=rows)
+    each, mean = {"up": up, "down": down}, motion.mean_force or np.nan
     said = [f"{way}: {one.message}" for way, one in each.items()]
     return SpeedRunUp(
         frequency={way: one.frequency for way, one in each.items()},
@@ -143,6 +175,13 @@ def speed_run_up(
         order=up.order,
         order_force={way: one.force_order / abs(mean) for way, one in each.items()},
         order_displacement={way: one.displacement_order for way, one in each.items()},
+        **part_figures(
+            motion.outputs,
+            {
+                "": {way: one.output_peak for way, one in each.items()},
+                "_swing": {way: one.output_rms for way, one in each.items()},
+            },
+        ),
         periods=up.periods,
         seconds=None if scales is None else up.periods / per_tau / scales.omega_n,
         rate=max(up.rate, down.rate),

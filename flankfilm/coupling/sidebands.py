@@ -17,9 +17,12 @@ import dynamics
 import gears
 from base import Array, Cost, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT, ITSELF
+from dynamics.protocol import PeriodicOscillator
 from dynamics.stiffness import MAX_ORDER
 from dynamics.sweeps import settling_periods
 from fem.setting import Deviations
+from flankfilm.coupling.carried import output_rows, part_figures
+from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.excitation import ErrorSeries, peak_to_peak, unloaded_error
 from flankfilm.coupling.oscillator import PairOscillator
 
@@ -41,6 +44,22 @@ class MotionSpectrum:
         "1", "amplitude of the displacement over the length scale", "line", error="error"
     )
     force: Array = quantity("1", "amplitude of the mesh force over the mean force", "line", error="error")
+    mode_order: Array = quantity(
+        "1",
+        "mesh orders at which natural frequencies lie: of the pair, or of its drive train",
+        "mode",
+        no_error="those of the natural frequencies",
+    )
+    bearings: tuple[str, ...] = quantity(
+        "", "bearings of a drive train, in the order of their forces", "bearing"
+    )
+    bearing_force: Array = quantity("N", "amplitude of the force of bearings", "line bearing", error="error")
+    shafts: tuple[str, ...] = quantity(
+        "", "shafts and couplings of a drive train, in the order of their torques", "shaft"
+    )
+    shaft_torque: Array = quantity(
+        "N m", "amplitude of the torque of shafts and couplings", "line shaft", error="error"
+    )
     error_order: Array = quantity("1", "cycles per mesh of the error's harmonics", "harmonic", no_error=EXACT)
     error_amplitude: Array = quantity(
         "1", "amplitude of the error's harmonics over the length scale", "harmonic", no_error=EXACT
@@ -136,14 +155,14 @@ def revolution_error(
     return replace(every, amplitude=np.abs(added), phase=np.angle(added), source="deviations of single teeth")
 
 
-def over_revolution(motion: PairOscillator, error: ErrorSeries) -> dynamics.GearOscillator:
+def over_revolution(motion: PairOscillator | PairDrive, error: ErrorSeries) -> PeriodicOscillator:
     """Oscillator whose period is that of an error of many meshes; the stiffness and its own error repeat every mesh.
 
     Harmonics of the mesh above 1000 over the meshes are left out, since an oscillator has no more.
 
     Parameters
     ----------
-    motion : PairOscillator
+    motion : PairOscillator or PairDrive
         With physical scales.
     error : ErrorSeries
         Added to the motion's own error.
@@ -169,7 +188,7 @@ def over_revolution(motion: PairOscillator, error: ErrorSeries) -> dynamics.Gear
         )
     own, every = motion.oscillator, error.meshes
     most = MAX_ORDER // every
-    stiffness, errors = own.stiffness, own.error_series[:, :most]
+    stiffness, errors = own.contact_stiffness, own.error_series[:, :most]
     kept = min(stiffness.order, most)
     amplitudes, phases = np.zeros(every * kept), np.zeros(every * kept)
     amplitudes[every - 1 :: every] = stiffness.amplitudes[:kept]
@@ -178,25 +197,25 @@ def over_revolution(motion: PairOscillator, error: ErrorSeries) -> dynamics.Gear
     mesh = errors[0] * np.exp(1j * errors[1])
     together[every - 1 : every * len(mesh) : every] += mesh
     together[: error.order] += error.amplitude / motion.scales.length * np.exp(1j * error.phase)
-    return replace(
-        own,
-        stiffness=dynamics.FourierStiffness(
-            stiffness.mean, tuple(amplitudes.tolist()), tuple(phases.tolist())
-        ),
+    series = dynamics.FourierStiffness(stiffness.mean, tuple(amplitudes.tolist()), tuple(phases.tolist()))
+    changed: Any = own.with_contact_stiffness(series)
+    found: PeriodicOscillator = replace(
+        changed,
         frequency=own.frequency / every,
         error_amplitude=tuple(np.abs(together).tolist()),
         error_phase=tuple(np.angle(together).tolist()),
     )
+    return found
 
 
 def mesh_spectrum(
-    motion: PairOscillator, error: ErrorSeries | None = None, *, highest: float = 4.0
+    motion: PairOscillator | PairDrive, error: ErrorSeries | None = None, *, highest: float = 4.0
 ) -> MotionSpectrum:
     """Spectrum of the motion that a pair settles to from rest at its speed.
 
     Parameters
     ----------
-    motion : PairOscillator
+    motion : PairOscillator or PairDrive
         At its speed.
     error : ErrorSeries, optional
         Over many meshes, added to the motion's own: of pitch deviations by `revolution_error`, or a measured curve of
@@ -224,8 +243,12 @@ def mesh_spectrum(
         transient=transient,
     )  # fmt: skip
     periods = int(settled.periods[0])
-    found = dynamics.motion_spectrum(whole, settled.states[0, -1], periods, highest=highest * meshes)
-    force = found.force / abs(whole.mean_force) if whole.mean_force else np.full_like(found.force, np.nan)
+    rows = output_rows(motion.outputs, whole.dimension)
+    found = dynamics.motion_spectrum(
+        whole, settled.states[0, -1], periods, highest=highest * meshes, outputs=rows
+    )
+    load = motion.mean_force
+    force = found.force / abs(load) if load else np.full_like(found.force, np.nan)
     at = np.round(found.order / meshes, 12)
     off = np.abs(at - np.round(at)) > 1e-9
     total = float(np.sum(found.force**2))
@@ -235,21 +258,30 @@ def mesh_spectrum(
         at,
         found.displacement,
         force,
-        np.arange(1, errors.shape[1] + 1) / meshes,
-        np.abs(errors[0]),
-        peak_to_peak(*errors),
-        None if error is None else error.remainder,
-        whole.frequency * meshes,
-        None if motion.scales is None else motion.scales.speed(whole.frequency * meshes),
-        meshes,
-        periods,
-        settled.labels[0],
-        math.sqrt(float(np.sum(found.force[off] ** 2)) / total) if total > 0.0 else 0.0,
-        found,
-        found.error,
-        Cost(watch.seconds, periods=settled.cost.periods + found.cost.periods),
-        repeats,
-        ""
+        _mode_orders(motion, whole.frequency * meshes),
+        **part_figures(motion.outputs, {"": found.outputs}),
+        error_order=np.arange(1, errors.shape[1] + 1) / meshes,
+        error_amplitude=np.abs(errors[0]),
+        error_range=peak_to_peak(*errors),
+        error_left_out=None if error is None else error.remainder,
+        frequency=whole.frequency * meshes,
+        speed=None if motion.scales is None else motion.scales.speed(whole.frequency * meshes),
+        meshes=meshes,
+        periods=periods,
+        motion=settled.labels[0],
+        sidebands=math.sqrt(float(np.sum(found.force[off] ** 2)) / total) if total > 0.0 else 0.0,
+        spectrum=found,
+        error=found.error,
+        cost=Cost(watch.seconds, periods=settled.cost.periods + found.cost.periods),
+        converged=repeats,
+        message=""
         if repeats
         else "the motion does not repeat; lines are averages of stretches, and their peaks depend on those",
     )
+
+
+def _mode_orders(motion: PairOscillator | PairDrive, frequency: float) -> Array:
+    """Natural frequencies over the mesh frequency, which is given over the natural one of the pair."""
+    if isinstance(motion, PairOscillator):
+        return np.array([1.0 / frequency])
+    return motion.natural_frequencies / (motion.scales.natural_frequency * frequency)

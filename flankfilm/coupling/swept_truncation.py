@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from base import Array, Integers
 from flankfilm.coupling.resonance import vibration
 
 if TYPE_CHECKING:
+    from flankfilm.coupling.drive import PairDrive
+    from flankfilm.coupling.oscillator import PairOscillator
     from flankfilm.coupling.truncation import Longer
 
 CHECKED = 12
@@ -48,26 +50,41 @@ def checked_values(count: int, forces: Mapping[str, Array]) -> Integers:
     return np.unique(np.concatenate([evenly, np.array(greatest, dtype=np.int64)]))
 
 
+class MotionChanges(NamedTuple):
+    """What the longer series changes of swept motions, relatively.
+
+    nan where the motion does not repeat; infinite where Newton's method finds no motion of the same label.
+
+    Attributes
+    ----------
+    force, spread : ndarray, shape (n,)
+        Of the greatest force and of the displacement's root mean square.
+    parts : ndarray, shape (n, 3, parts)
+        Of mean, root mean square and greatest of what each part of a drive train carries, all over the greatest.
+    """
+
+    force: Array
+    spread: Array
+    parts: Array
+
+
 def motion_changes(
-    longer: Longer, oscillator: dynamics.GearOscillator, swept: dynamics.SweepResult, at: Integers
-) -> tuple[Array, Array]:
-    """Relative changes of the greatest force and of the spread of swept motions by the longer series.
+    longer: Longer, motion: PairOscillator | PairDrive, swept: dynamics.SweepResult, at: Integers
+) -> MotionChanges:
+    """What the longer series changes of the figures of swept motions.
 
     Parameters
     ----------
     longer : Longer
-    oscillator : GearOscillator
+    motion : PairOscillator or PairDrive
         Of the sweep.
     swept : SweepResult
     at : ndarray of int, shape (n,)
         Values that are looked at.
-
-    Returns
-    -------
-    tuple of ndarray, shape (n,)
-        nan where the motion does not repeat; infinite where Newton's method finds no motion of the same label.
     """
     changes = np.full((len(at), 2), np.nan)
+    parts = np.full((len(at), 3, len(motion.outputs)), np.nan)
+    given: Any = {"load": motion.mean_force, "outputs": motion.outputs}
     for row, index in enumerate(at.tolist()):
         periods, frequency = int(swept.periods[index]), float(swept.values[index])
         if not periods:
@@ -76,10 +93,12 @@ def motion_changes(
         there = longer.oscillator.with_parameter("frequency", frequency)
         orbit = dynamics.find_orbit(there, state, periods=periods)
         if not orbit.converged or orbit.label != swept.labels[index]:
-            changes[row] = np.inf
+            changes[row], parts[row] = np.inf, np.inf
             continue
-        before = vibration(oscillator.with_parameter("frequency", frequency), state, periods)
-        after = vibration(there, orbit.state, periods)
+        here = motion.oscillator.with_parameter("frequency", frequency)
+        before = vibration(here, state, periods, **given)
+        after = vibration(there, orbit.state, periods, **given)
         for column, (one, other) in enumerate(((before.force, after.force), (before.spread, after.spread))):
             changes[row, column] = abs(one / other - 1.0) if other > 0.0 else np.nan
-    return changes[:, 0], changes[:, 1]
+        parts[row] = np.abs(before.parts - after.parts) / np.maximum(after.parts[2], 1e-300)
+    return MotionChanges(changes[:, 0], changes[:, 1], parts)

@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 import dynamics
 from base import Array
+from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MOST_HARMONICS, MeshSeries, arc_fit, left_out
 
@@ -40,31 +42,31 @@ ASIDE = 3
 
 @dataclass(frozen=True, eq=False)
 class Longer:
-    """A pair's oscillator with the longer series.
+    """Oscillator of a pair or of its drive train with the longer series.
 
     Attributes
     ----------
-    oscillator : GearOscillator
-    extended : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
+    extended : GearOscillator or DriveOscillator
         With room for further harmonics, of amplitude zero at their phases.
     beyond : tuple of float
         Amplitudes that these have.
     """
 
-    oscillator: dynamics.GearOscillator
-    extended: dynamics.GearOscillator
+    oscillator: Any
+    extended: Any
     beyond: tuple[float, ...]
 
     @property
     def order(self) -> int:
         """Highest harmonic."""
-        return self.oscillator.stiffness.order
+        return int(self.oscillator.contact_stiffness.order)
 
     def carried(
         self, oscillator: dynamics.GearOscillator, point: dynamics.SpecialPoint
     ) -> dynamics.SpecialPoint | None:
         """A jump over the frequency with the longer series; None where there is no such jump."""
-        return dynamics.carried_point(oscillator, "frequency", point, self.oscillator.stiffness)
+        return dynamics.carried_point(oscillator, "frequency", point, self.oscillator.contact_stiffness)
 
     def truncation(self, point: dynamics.SpecialPoint, carried: dynamics.SpecialPoint | None) -> float:
         """Relative error of a jump's frequency by what its series leaves out; infinite where there is no such jump."""
@@ -101,17 +103,17 @@ class MissedJump:
 
 
 def longer_motion(
-    motion: PairOscillator, bounds: tuple[float, float], least: int = LEAST_ORDER
+    motion: PairOscillator | PairDrive, bounds: tuple[float, float], least: int = LEAST_ORDER
 ) -> Longer | None:
     """Oscillator with the longer series for a range of the mesh frequency; None where the series was given."""
     series, oscillator = motion.series, motion.oscillator
     if series.fit is None:
         return None
-    order = max(least, longer_order(series, bounds, oscillator.damping_ratio))
-    whole = with_order(motion, order + BEYOND).stiffness
+    order = max(least, longer_order(series, bounds, motion.rigid.oscillator.damping_ratio))
+    whole = with_order(motion, order + BEYOND).contact_stiffness
     extended = replace(whole, amplitudes=whole.amplitudes[:order] + (0.0,) * BEYOND)
     return Longer(
-        with_order(motion, order), replace(oscillator, stiffness=extended), whole.amplitudes[order:]
+        with_order(motion, order), oscillator.with_contact_stiffness(extended), whole.amplitudes[order:]
     )
 
 
@@ -126,15 +128,14 @@ def longer_order(series: MeshSeries, bounds: tuple[float, float], damping_ratio:
     return max(2 * order, LEAST_ORDER, min(faded, MOST_HARMONICS))
 
 
-def with_order(motion: PairOscillator, order: int) -> dynamics.GearOscillator:
-    """A pair's oscillator with the series of another order."""
-    series, own = motion.series, motion.oscillator.stiffness
+def with_order(motion: PairOscillator | PairDrive, order: int) -> Any:
+    """Oscillator of a pair or of its drive train with the series of another order."""
+    series, oscillator = motion.series, motion.oscillator
+    own = oscillator.contact_stiffness
     assert series.cycle is not None
     fitted = arc_fit(series.cycle, series.kind, order).stiffness
     amplitudes = tuple(a / fitted.mean * own.mean for a in fitted.amplitudes)
-    return replace(
-        motion.oscillator, stiffness=dynamics.FourierStiffness(own.mean, amplitudes, fitted.phases)
-    )
+    return oscillator.with_contact_stiffness(dynamics.FourierStiffness(own.mean, amplitudes, fitted.phases))
 
 
 def longer_branches(

@@ -3,7 +3,9 @@ from .animation import animate_cycle as animate_cycle
 from .animation import teeth_scene as teeth_scene
 from .animation import tooth_picture as tooth_picture
 from .animation import view_cycle as view_cycle
+from .drives import drive_map as drive_map
 from .drives import drive_modes as drive_modes
+from .drives import drive_run_up as drive_run_up
 from .drives import drive_sweep as drive_sweep
 from .excitation import excitation as excitation
 from .excitation import spectrum as spectrum

@@ -13,6 +13,7 @@ from flankfilm.figures.style import DASHES, MARK, Style, colours, from_zero, leg
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 DRIVE = 'run a scene with [shafts] that wants "sweep"'
@@ -41,15 +42,83 @@ def drive_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(results, DRIVE, "drive_sweep_frequency", "drive_sweep_force_factor_up")
     over = "speed" if "drive_sweep_speed" in results.variables else "frequency"
     x = read(results, f"drive_sweep_{over}")
-    ways = {way: results[f"drive_sweep_force_factor_{way}"].values[:, None] for way in WAYS}
+    marks = resonances(results, over == "speed")
+    return carried(dict.fromkeys(WAYS, x.values), x.label, _rows(results, "drive_sweep"), marks, style)
+
+
+def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the greatest mesh force and what bearings, shafts and couplings carry at most in run-up and coast-down.
+
+    Run-up full, coast-down dashed. Grey lines stand where the mesh frequency is a natural one.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run with ``[shafts]`` that wants ``run-up``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(
+        results, 'run a scene with [shafts] that wants "run-up"', "run_up_speed_up", "drive_resonance_speeds"
+    )
+    x = {way: read(results, f"run_up_speed_{way}") for way in WAYS}
+    label = Reading(x["up"].values, "pinion speed", x["up"].unit).label
+    at = {way: one.values for way, one in x.items()}
+    return carried(at, label, _rows(results, "run_up"), resonances(results), style)
+
+
+def drive_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the greatest force of a bearing and the greatest torque of a shaft over the speed, at each torque.
+
+    Of the sweeps up and down the greater. Grey lines stand where the mesh frequency is a natural one at the scene's
+    torque.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run with ``[shafts]`` that wants ``dynamic-map``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    wanted = 'run a scene with [shafts] that wants "dynamic-map"'
+    need(results, wanted, "dynamic_map_speed", "drive_resonance_speeds")
+    speed, marks = read(results, "dynamic_map_speed"), resonances(results)
+    torques = results["dynamic_map_torque"].values.tolist()
+    kinds = [
+        (figure, label)
+        for part, (figure, label) in PARTS.items()
+        if f"dynamic_map_{part}s" in results.variables
+    ]
+    panels_of = [
+        (
+            read(results, f"dynamic_map_{figure}").named(label),
+            np.nanmax(results[f"dynamic_map_{figure}"].values, axis=2),
+        )
+        for figure, label in kinds
+    ] or [("dynamic factor K_v [-]", results["dynamic_map_factor"].values)]
+    with sheet(style, len(panels_of), height=1.2 + 1.9 * len(panels_of), legend=0) as (drawn, panels):
+        for axes, (label, values) in zip(panels, panels_of, strict=True):
+            for row, load, colour in zip(values, torques, 5 * colours(7), strict=False):
+                axes.plot(speed.values, row, color=colour, label=f"{load:g} N m")
+            _mark(axes, marks, speed.values)
+            axes.set_ylabel(label)
+        legend_over(panels[0], 5)
+        from_zero(*panels)
+        panels[-1].set_xlabel(speed.label)
+    return drawn
+
+
+def _rows(results: xr.Dataset, prefix: str) -> list[Row]:
+    """Panels of the mesh force, of all bearings, and of all shafts and couplings, as far as there are any."""
+    ways = {way: results[f"{prefix}_force_factor_{way}"].values[:, None] for way in WAYS}
     rows = [Row(FORCE, ("mesh",), ways)]
     for part, (figure, label) in PARTS.items():
-        if f"drive_sweep_{part}s" in results.variables:
-            found = {way: read(results, f"drive_sweep_{figure}_{way}") for way in WAYS}
-            names = tuple(str(name) for name in results[f"drive_sweep_{part}s"].values)
+        if f"{prefix}_{part}s" in results.variables:
+            found = {way: read(results, f"{prefix}_{figure}_{way}") for way in WAYS}
+            names = tuple(str(name) for name in results[f"{prefix}_{part}s"].values)
             ways = {way: reading.values for way, reading in found.items()}
             rows.append(Row(found["up"].named(label), names, ways))
-    return carried(x, rows, resonances(results), style)
+    return rows
 
 
 class Row(NamedTuple):
@@ -60,31 +129,37 @@ class Row(NamedTuple):
     ways: Mapping[str, Array]
 
 
-def carried(x: Reading, rows: Sequence[Row], marks: Array, style: Style | None = None) -> Figure:
-    """Draw what parts carry over the speed or the frequency, panel by panel, with lines at some places."""
+def carried(
+    at: Mapping[str, Array], label: str, rows: Sequence[Row], marks: Array, style: Style | None = None
+) -> Figure:
+    """Draw what parts carry over the speed or the frequency of each direction, panel by panel, with lines at places."""
     with sheet(style, len(rows), height=1.2 + 1.9 * len(rows), legend=0) as (drawn, panels):
         for axes, row in zip(panels, rows, strict=True):
             for column, (name, colour) in enumerate(zip(row.names, 3 * colours(7), strict=False)):
                 for way, dash in zip(WAYS, DASHES, strict=False):
-                    label = f"{name}, speed {WAYS[way]}" if len(row.names) == 1 else name
-                    shown = label if way == "up" or len(row.names) == 1 else None
-                    axes.plot(x.values, row.ways[way][:, column], linestyle=dash, color=colour, label=shown)
-            for at in marks[(marks >= x.values.min()) & (marks <= x.values.max())]:
-                axes.axvline(at, color=MARK, linewidth=0.8, zorder=0)
+                    text = f"{name}, speed {WAYS[way]}" if len(row.names) == 1 else name
+                    shown = text if way == "up" or len(row.names) == 1 else None
+                    axes.plot(at[way], row.ways[way][:, column], linestyle=dash, color=colour, label=shown)
+            _mark(axes, marks, at["up"])
             axes.set_ylabel(row.label)
             legend_over(axes, min(max(len(row.names), 2), 4))
         from_zero(*panels)
-        panels[-1].set_xlabel(x.label)
+        panels[-1].set_xlabel(label)
     return drawn
 
 
-def resonances(results: xr.Dataset) -> Array:
-    """Places on the axis of a sweep at which the mesh frequency is a natural one of the train."""
-    frequency, rpm = results["drive_sweep_frequency"].values, results.get("drive_sweep_speed")
-    natural = results["drive_natural_frequencies"].values / float(results["oscillator_natural_frequency"])
-    if rpm is None:
-        return np.asarray(natural)
-    return np.asarray(natural * read(results, "drive_sweep_speed").values[-1] / frequency[-1])
+def _mark(axes: Axes, marks: Array, over: Array) -> None:
+    """Draw lines at those places that lie within a range."""
+    for at in marks[(marks >= over.min()) & (marks <= over.max())]:
+        axes.axvline(at, color=MARK, linewidth=0.8, zorder=0)
+
+
+def resonances(results: xr.Dataset, speeds: bool = True) -> Array:
+    """Pinion speeds [rpm], or frequencies over the pair's, at which the mesh meets the natural ones of the train."""
+    if not speeds:
+        natural = results["drive_natural_frequencies"].values
+        return np.asarray(natural / float(results["oscillator_natural_frequency"]))
+    return read(results, "drive_resonance_speeds").values
 
 
 def drive_modes(results: xr.Dataset, *, style: Style | None = None) -> Figure:

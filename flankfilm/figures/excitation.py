@@ -6,13 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.motion import rpm_text, scale
 from flankfilm.figures.reading import need, read
 from flankfilm.figures.style import MARK, Style, colours, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+CARRIED = {
+    "bearing_force": "bearings, largest\namplitude",
+    "shaft_torque": "shafts, largest\namplitude",
+}
+"""What parts of a drive train carry, and how the largest of them is called."""
 
 SHOWN = 40
 """Harmonics that are drawn."""
@@ -84,33 +92,38 @@ def spectrum(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     )
     order = results["spectrum_order"].values
     force, length = scale(results, "force"), scale(results, "length")
-    whole = np.abs(order - np.round(order)) < 1e-9
-    with sheet(style, 2, height=4.8, legend=2) as (drawn, panels):
-        for axes, name, unit, label in zip(
-            panels,
-            ("force", "displacement"),
-            (force, length),
-            ("force, amplitude", "displacement,\namplitude"),
-            strict=True,
-        ):
-            values = float(unit.values) * results[f"spectrum_{name}"].values
-            low = max(float(np.nanmax(values, initial=0.0)), 1e-300) * 10.0**-DECADES
-            for these, colour, width, text in zip(
-                (~whole, whole),
-                colours(6)[5:] + colours(1),
-                (0.8, 1.8),
-                ("sidebands", "mesh orders"),
-                strict=True,
-            ):
-                if these.any():
-                    axes.vlines(
-                        order[these],
-                        low,
-                        np.maximum(values[these], low),
-                        color=colour,
-                        linewidth=width,
-                        label=text,
-                    )
-            axes.set(yscale="log", ylim=(low, None), ylabel=unit.named(label))
+    shown = [
+        (float(force.values) * results["spectrum_force"].values, force.named("force, amplitude")),
+        (
+            float(length.values) * results["spectrum_displacement"].values,
+            length.named("displacement,\namplitude"),
+        ),
+    ]
+    for figure, label in CARRIED.items():
+        if f"spectrum_{figure}" in results.variables:
+            found = read(results, f"spectrum_{figure}")
+            shown.append((found.values.max(axis=1), found.named(label)))
+    with sheet(style, len(shown), height=1.0 + 1.9 * len(shown), legend=2) as (drawn, panels):
+        for axes, (values, label) in zip(panels, shown, strict=True):
+            _lines(axes, order, values, results["spectrum_mode_order"].values)
+            axes.set_ylabel(label)
         panels[-1].set(xlabel=f"mesh order [-], at {rpm_text(results)}")
     return drawn
+
+
+def _lines(axes: Axes, order: Array, values: Array, modes: Array) -> None:
+    """Draw amplitudes of orders, sidebands and mesh orders apart, and where natural frequencies lie."""
+    whole = np.abs(order - np.round(order)) < 1e-9
+    low = max(float(np.nanmax(values, initial=0.0)), 1e-300) * 10.0**-DECADES
+    for these, colour, width, text in zip(
+        (~whole, whole), colours(6)[5:] + colours(1), (0.8, 1.8), ("sidebands", "mesh orders"), strict=True
+    ):
+        if these.any():
+            heights = np.maximum(values[these], low)
+            axes.vlines(order[these], low, heights, color=colour, linewidth=width, label=text)
+    inside, text = modes[modes <= order.max() * 1.02], "natural frequencies"
+    for k, at in enumerate(inside.tolist()):
+        axes.axvline(
+            at, color=colours(3)[2], linewidth=1.2, linestyle="--", zorder=0, label=None if k else text
+        )
+    axes.set(yscale="log", ylim=(low, None))

@@ -28,4 +28,5 @@ def drive_sweep(found: DriveSweep) -> Figure:
         unit = "N" if part == "bearing" else "N m"
         if names:
             rows.append(Row(f"{label} [{unit}]", names, getattr(found, figure)))
-    return carried(read_figure(found, "speed"), rows, np.zeros(0))
+    speed = read_figure(found, "speed")
+    return carried(dict.fromkeys(found.force_factor, speed.values), speed.label, rows, np.zeros(0))

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from base.results import figures
+from flankfilm.coupling.carried import PARTS
 from flankfilm.output.variables import of_record
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.coupling import DriveSweep, PairDrive
+    from flankfilm.coupling import DriveSweep, DynamicMap, MotionSpectrum, PairDrive, SpeedRunUp
 
 
 def train(drive: PairDrive | None, swept: DriveSweep | None) -> Iterator[xr.Dataset]:
@@ -19,8 +20,11 @@ def train(drive: PairDrive | None, swept: DriveSweep | None) -> Iterator[xr.Data
     if drive is not None:
         yield of_record("drive", drive)
     if swept is not None:
-        without = [
-            name for name, parts in (("bearing", swept.bearings), ("shaft", swept.shafts)) if not parts
-        ]
-        kept = [name for name in figures(type(swept)) if not any(part in name for part in without)]
-        yield of_record("drive_sweep", swept, kept)
+        yield carrying("drive_sweep", swept)
+
+
+def carrying(prefix: str, found: DriveSweep | SpeedRunUp | DynamicMap | MotionSpectrum) -> xr.Dataset:
+    """Variables of a record without those of bearings or of shafts where it has none."""
+    without = [part for part in PARTS if not getattr(found, f"{part}s")]
+    kept = [name for name in figures(type(found)) if not any(part in name for part in without)]
+    return of_record(prefix, found, kept)

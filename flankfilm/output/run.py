@@ -15,6 +15,7 @@ from base import Quantity
 from base.results import EXACT, figures, why_no_error
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
+from flankfilm.coupling.carried import PARTS
 from flankfilm.figures import drawn
 from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables
@@ -66,6 +67,10 @@ RESONANCE = (
     "frequency",
     *(f"{what}_{way}" for way in ("up", "down") for what in ("force_factor", "separated", "spread")),
 )
+
+
+CARRIED = tuple(f"{figure}{end}" for figure, _ in PARTS.values() for end in ("", "_swing"))
+"""What bearings, shafts and couplings carry, where there are any."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +137,9 @@ TABLES: Mapping[str, Table] = {
     "spectrum": Table("spectrum", "force", axis="line"),
     "run_up": Table("run_up", "force_factor_up", axis="block"),
     "dynamic_map": Table(
-        "dynamic_map", "factor", ("torque", "speed", "factor", "factor_up", "factor_down", "iso")
+        "dynamic_map",
+        "factor",
+        ("torque", "speed", "factor", "factor_up", "factor_down", "iso", *CARRIED),
     ),
     "resonance": Table("sweep", "force_factor_up", RESONANCE),
     "diagram": Table("diagram", "frequency", axis="point"),
@@ -236,11 +243,11 @@ def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Data
         yield from _sweep(sweep)
     yield from drives.train(values.get("drive"), values.get("drive sweep"))
     if (spectrum := values.get("spectrum")) is not None:
-        yield of_record("spectrum", spectrum)
+        yield drives.carrying("spectrum", spectrum)
     if (ramps := values.get("run-up")) is not None:
-        yield of_record("run_up", ramps)
+        yield drives.carrying("run_up", ramps)
     if (over := values.get("dynamic-map")) is not None:
-        yield of_record("dynamic_map", over)
+        yield drives.carrying("dynamic_map", over)
     if (diagram := values.get("diagram")) is not None:
         yield from branch_tables(diagram)
     if (fields := values.get("fields")) is not None and pair is not None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
-ASIDE = ("pair", *COMMON)
+ASIDE = ("pair", "bearing", "shaft", *COMMON)
 """Axes whose entries stand beside each other as columns; all others run down the rows."""
 
 
@@ -55,7 +55,7 @@ def columns(
         head = spelt(name.removeprefix(f"{prefix}_"), read_in(data, name))
         for places in product(*(range(data.sizes[dim]) for dim in aside)):
             picked = dict(zip(aside, places, strict=True))
-            label = "".join(f"_{_entry(dim, place, prefix)}" for dim, place in picked.items())
+            label = "".join(f"_{_entry(data, dim, place, prefix)}" for dim, place in picked.items())
             found[head + label] = _shown(data, name, variable.isel(picked).set_dims(rows).values.ravel())
     return found
 
@@ -89,5 +89,11 @@ def _aside(dim: str, prefix: str) -> bool:
     return dim.removeprefix(f"{prefix}_") in ASIDE
 
 
-def _entry(dim: str, place: int, prefix: str) -> str:
-    return COMMON[dim][place] if dim in COMMON else f"{dim.removeprefix(f'{prefix}_')}_{place + 1}"
+def _entry(data: xr.Dataset, dim: str, place: int, prefix: str) -> str:
+    """What tells an entry of an axis from the others: its name where it has one, else its place."""
+    if dim in COMMON:
+        return COMMON[dim][place]
+    names = f"{dim}s"
+    if names in data.variables:
+        return str(data[names].values[place]).replace(" ", "_")
+    return f"{dim.removeprefix(f'{prefix}_')}_{place + 1}"

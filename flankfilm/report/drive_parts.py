@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base.units import factor
+from flankfilm.coupling.carried import PARTS
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent, plus_minus
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from base import Array
-    from flankfilm.coupling import DriveSweep, PairDrive
+    from flankfilm.coupling import DriveSweep, DynamicMap, PairDrive, SpeedRunUp
 
 RPM = 1.0 / factor("rpm")
 
@@ -52,7 +53,7 @@ def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
     heads = ("part", "mean", "greatest", "at [rpm]", "root mean square about the mean, greatest", "unit")
     rows = (*_rows(stage, "bearing", "bearing_force", "N"), *_rows(stage, "shaft", "shaft_torque", "N m"))
     said_of = {"error": percent(stage.sampling_error), "periods": counted(stage.cost.periods, "period")}
-    notes = [said("drive_sweep", flow=f"{stage.error:.0e}", **said_of)]
+    notes = [said("drive_sweep", flow=f"{stage.error:.0e}", **said_of), *_truncated(stage)]
     notes += [stage.message] if stage.message else []
     drawn = pictures(results, "drive_sweep")
     return Part(
@@ -62,6 +63,27 @@ def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
         tables=(Table(heads, rows),),
         notes=tuple(notes),
     )
+
+
+def _truncated(stage: DriveSweep) -> list[str]:
+    """What the series leaves out of forces and torques; nothing for a given series."""
+    if stage.force_change is None or stage.checked is None:
+        return []
+    changes = np.concatenate(list(stage.force_change.values()))
+    same, repeating = np.isfinite(changes), ~np.isnan(changes)
+    other, rest = int(np.sum(repeating & ~same)), int(np.sum(~repeating))
+    force = float(changes[same].max()) if same.any() else None
+    return [
+        said(
+            "truncated_drive",
+            order=stage.longer_order,
+            count=int(same.sum()),
+            all=len(changes),
+            force=percent(force),
+            parts=percent(stage.truncation),
+            unknown=said("truncated_unknown", other=other, rest=rest) if other + rest else "",
+        )
+    ]
 
 
 def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tuple[str, ...]]:
@@ -80,6 +102,38 @@ def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tupl
             number(float(np.nanmax(swing))),
             unit,
         )
+
+
+def carried_table(
+    stage: SpeedRunUp | DynamicMap,
+    places: tuple[str, ...],
+    values: Callable[[str], Array],
+    where: Callable[[Sequence[int]], tuple[str, ...]],
+) -> tuple[Table, ...]:
+    """Table of the greatest and the swing of every part, and where they are met; none for a pair on rigid shafts.
+
+    Parameters
+    ----------
+    stage : SpeedRunUp or DynamicMap
+    places : tuple of str
+        Heads of the columns that say where.
+    values : callable
+        Gives all values of a figure, the parts along the last axis.
+    where : callable
+        Gives the cells of these columns for indices of the other axes.
+    """
+    rows = []
+    for part, (figure, unit) in PARTS.items():
+        for column, name in enumerate(getattr(stage, f"{part}s")):
+            most, swing = (values(f"{figure}{kind}")[..., column] for kind in ("", "_swing"))
+            if not np.isfinite(most).any():
+                continue
+            at = [int(k) for k in np.unravel_index(int(np.nanargmax(most)), most.shape)]
+            rows.append(
+                (name, number(float(np.nanmax(most))), *where(at), number(float(np.nanmax(swing))), unit)
+            )
+    heads = ("part", "greatest", *places, "root mean square about the mean, greatest", "unit")
+    return (Table(heads, tuple(rows)),) if rows else ()
 
 
 def _both(stage: DriveSweep, figure: str, column: int) -> Array:
@@ -101,6 +155,10 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         row, column = np.unravel_index(int(np.nanargmax(values)), values.shape)
         rpm = RPM * stage.speed[int(row) % len(stage.speed)]
         error = f"{plus_minus(stage.sampling_error)} by samples"
+        if stage.carried_error is not None:
+            left = stage.carried_error - stage.sampling_error
+            known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"
+            error += f", {known} by harmonics that the series leaves out"
         note = f"{names[int(column)]}, at {rpm:.0f} rpm of the speeds swept; {error}"
         found.append(Headline(what, number(float(values[row, column])), note, unit))
     return found

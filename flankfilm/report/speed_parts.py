@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.motion import scale
+from flankfilm.report.drive_parts import carried_table
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
 
@@ -38,8 +40,22 @@ def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
         rate=number(stage.rate),
         error=percent(stage.error),
     )
-    drawn = pictures(results, "run_up", "waterfall")
-    return Part("run-up", "Run-up and coast-down", figures=drawn, tables=(Table(heads, rows),), notes=(note,))
+    carried = _carried_on_the_way(stage)
+    drawn = pictures(results, "run_up", "waterfall", *(["drive_run_up"] if carried else []))
+    tables = (Table(heads, rows), *carried)
+    return Part("run-up", "Run-up and coast-down", figures=drawn, tables=tables, notes=(note,))
+
+
+def _carried_on_the_way(stage: SpeedRunUp) -> tuple[Table, ...]:
+    """What parts of a drive train carry at most in run-up and coast-down."""
+    if stage.speed is None:
+        return ()
+    speed = np.concatenate([stage.speed[way] for way in ("up", "down")])
+
+    def values(figure: str) -> Array:
+        return np.concatenate([getattr(stage, figure)[way] for way in ("up", "down")])
+
+    return carried_table(stage, ("at [rpm]",), values, lambda at: (f"{RPM * speed[at[0]]:.0f}",))
 
 
 def _extremes(stage: SpeedRunUp, way: str, unit: float) -> tuple[str, ...]:
@@ -85,10 +101,16 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
     )
     note = said("dynamic_map", error=percent(stage.sampling_error))
     notes = (note,) if stage.converged else (note, stage.message)
-    drawn = pictures(results, "dynamic_map")
-    table = Table(heads, tuple(rows))
+    carried = carried_table(
+        stage,
+        ("at [rpm]", "at [N m]"),
+        lambda figure: np.asarray(getattr(stage, figure)),
+        lambda at: (f"{RPM * stage.speed[at[1]]:.0f}", number(float(stage.torque[at[0]]))),
+    )
+    drawn = pictures(results, "dynamic_map", *(["drive_map"] if carried else []))
+    tables = (Table(heads, tuple(rows)), *carried)
     return Part(
-        "dynamic-map", "Dynamic factor over speed and torque", figures=drawn, tables=(table,), notes=notes
+        "dynamic-map", "Dynamic factor over speed and torque", figures=drawn, tables=tables, notes=notes
     )
 
 

@@ -7,8 +7,11 @@ from typing import Any
 
 from base import Fault
 
-WITHOUT_DRIVES = ("diagram", "spectrum", "run-up", "dynamic-map")
+WITHOUT_DRIVES = ("diagram",)
 """Wants of motions that are of the pair on rigid shafts alone."""
+
+MOVING = ("sweep", "diagram", "spectrum", "run-up", "dynamic-map")
+"""Wants of motions, which need masses and springs in physical units beside shafts."""
 
 GEARS = ("pinion", "wheel")
 _HUB = ("radial_stiffness_N_per_m", "torsional_stiffness_Nm_per_rad")
@@ -21,10 +24,10 @@ def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault
     if "shafts" not in raw:
         return
     shafts, dynamics = _table(raw, "shafts"), _table(raw, "dynamics")
-    moving = "sweep" in listed or any(want in listed for want in WITHOUT_DRIVES)
+    moving = any(want in listed for want in MOVING)
     for want in WITHOUT_DRIVES:
         if want in listed:
-            allowed = "knows no [shafts]: of a drive train there is the sweep"
+            allowed = "knows no [shafts]: of a drive train there are sweep, run-up, spectrum and dynamic-map"
             yield Fault("wants", f"'{want}'", allowed, f"Drop {want}, or leave [shafts] out")
     if moving and "mean_force" in dynamics:
         allowed = "excludes the dimensionless form, which has no gears"

@@ -1,4 +1,4 @@
-"""The stages of the drive train: the pair on the scene's shafts, and its sweep over the speed."""
+"""The stages of the drive train: the pair on the scene's shafts, its sweep over the speed, and what moves."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flankfilm.stages.catalogue import PAIR
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
-from flankfilm.stages.motion import FOURIER, of_the_pair
+from flankfilm.stages.motion import FOURIER, SCALING, of_the_pair
 
 
 @stage(
@@ -32,6 +32,11 @@ def DRIVE(run: Engine) -> coupling.PairDrive:
     return coupling.pair_drive(
         run[PAIR], run[FOURIER], pinion_torque(run.scene), speed, **drive_arguments(run.scene), **given
     )
+
+
+def moving(run: Engine) -> coupling.PairOscillator | coupling.PairDrive:
+    """What moves: the drive train of a scene with shafts, else the pair on rigid ones."""
+    return run[SCALING] if run.scene.shafts is None else run[DRIVE]
 
 
 @stage(

@@ -15,7 +15,7 @@ from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.face import FACE_MODELS
-from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
+from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP, SPECTRUM
 
 
 def goals(scene: Scene) -> tuple[Stage[Any], ...]:
@@ -54,10 +54,10 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
         yield FILM_DAMPING
     if scene.dynamics is not None and scene.dynamics.error_curve is not None and wants & {*needs.MOTIONS}:
         yield EXCITATION
-    if "sweep" in wants and scene.shafts is not None:
-        yield from (motion.SCALING, DRIVE, DRIVE_SWEEP)
+    if scene.shafts is not None and wants & {*needs.MOTIONS}:
+        yield from (motion.SCALING, DRIVE, *((DRIVE_SWEEP,) if "sweep" in wants else ()))
         wants = wants - {"sweep"}
-    for wanted in (motion.SWEEP, motion.DIAGRAM, motion.SPECTRUM, RUN_UP, DYNAMIC_MAP):
+    for wanted in (motion.SWEEP, motion.DIAGRAM, SPECTRUM, RUN_UP, DYNAMIC_MAP):
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)
     if "vtk" in wants:

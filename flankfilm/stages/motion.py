@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 import dynamics
-from base import InputError
 from flankfilm import coupling
 from flankfilm.build import pinion_torque
 from flankfilm.scene.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
@@ -19,7 +18,7 @@ from flankfilm.slow_motion import followed_speed
 from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
-from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
+from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.ranges import frequency_range, moving_mesh
 
 
@@ -176,26 +175,6 @@ def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
         return run[BRANCHES].diagram
     asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
     return coupling.jump_speeds(run[SCALING], **_ranged(asked))
-
-
-@stage(
-    "spectrum",
-    "orders of the motion at the speed, with sidebands of a revolution",
-    "operating dynamics",
-    SCALING,
-    REVOLUTION_ERROR,
-    kept="dynamics flankfilm gears",
-)
-def SPECTRUM(run: Engine) -> coupling.MotionSpectrum:
-    """Spectrum of the motion at the scene's speed; over a revolution where teeth differ."""
-    motion = run[SCALING]
-    error = None if motion.scales is None else run[REVOLUTION_ERROR]
-    if error is not None and pinion_torque(run.scene) < 0.0:
-        allowed = "must be positive for a spectrum with deviations of single teeth, which are those of the front flanks"
-        raise InputError.at(
-            "operating.pinion_torque_Nm", "negative", allowed, "leave spectrum out, or the pitches"
-        )
-    return coupling.mesh_spectrum(motion, error)
 
 
 def _ranged(asked: DiagramSection) -> dict[str, Any]:

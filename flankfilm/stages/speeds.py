@@ -1,4 +1,4 @@
-"""The stages of the motion over speed as a test rig runs it: run-up and coast-down, and a map over speed and torque."""
+"""The stages of the motion as a test rig sees it: orders, run-up and coast-down, and a map over speed and torque."""
 
 from __future__ import annotations
 
@@ -7,35 +7,59 @@ from dataclasses import replace
 
 import numpy as np
 
+from base import InputError
 from flankfilm import coupling
-from flankfilm.build import pinion_speed
+from flankfilm.build import pinion_speed, pinion_torque
 from flankfilm.build_film import film_model, lubricant
+from flankfilm.build_shafts import drive_arguments
 from flankfilm.scene.dynamics import OSCILLATOR
 from flankfilm.scene.section import required
 from flankfilm.stages.catalogue import DRY_CYCLE, FILM, MESH, PAIR, PLAN, TEETH, loaded_teeth, with_arcs
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
+from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
-from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
 from flankfilm.stages.motion import FOURIER, SCALING
 
 
-@stage("run-up", "run-up and coast-down", "dynamics", SCALING, kept="dynamics flankfilm")
+@stage(
+    "spectrum",
+    "orders of the motion at the speed, with sidebands of a revolution",
+    "operating dynamics",
+    SCALING,
+    DRIVE,
+    REVOLUTION_ERROR,
+    kept="dynamics flankfilm gears",
+)
+def SPECTRUM(run: Engine) -> coupling.MotionSpectrum:
+    """Spectrum of the motion at the scene's speed; over a revolution where teeth differ."""
+    motion = moving(run)
+    error = None if motion.scales is None else run[REVOLUTION_ERROR]
+    if error is not None and pinion_torque(run.scene) < 0.0:
+        allowed = "must be positive for a spectrum with deviations of single teeth, which are those of the front flanks"
+        raise InputError.at(
+            "operating.pinion_torque_Nm", "negative", allowed, "leave spectrum out, or the pitches"
+        )
+    return coupling.mesh_spectrum(motion, error)
+
+
+@stage("run-up", "run-up and coast-down", "dynamics", SCALING, DRIVE, kept="dynamics flankfilm gears")
 def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     """Motion while the speed rises and falls evenly in time."""
     section = required(run.scene.dynamics, "[dynamics]", "the run-up")
     asked = required(section.run_up, "dynamics.run_up", "the run-up", "add the range")
     periods = 8000 if asked.periods is None else asked.periods
     if asked.frequency is not None:
-        return coupling.speed_run_up(run[SCALING], frequency=asked.frequency, periods=periods)
+        return coupling.speed_run_up(moving(run), frequency=asked.frequency, periods=periods)
     low, high = asked.ends
     speeds = (low * math.pi / 30.0, high * math.pi / 30.0)
-    return coupling.speed_run_up(run[SCALING], speeds, seconds=asked.seconds, periods=periods)
+    return coupling.speed_run_up(moving(run), speeds, seconds=asked.seconds, periods=periods)
 
 
 @stage(
     "dynamic-map",
     "dynamic factor over speed and torque",
-    f"{TEETH} operating dynamics film lubricant roughness",
+    f"{TEETH} operating dynamics film lubricant roughness shafts",
     DRY_CYCLE,
     FILM,
     FOURIER,
@@ -61,11 +85,15 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
     speeds = np.linspace(*asked.ends, asked.points) * math.pi / 30.0
     order = run[FOURIER].order
 
-    def at(torque: float) -> coupling.PairOscillator:
+    shafts = None if scene.shafts is None else drive_arguments(scene)
+
+    def at(torque: float) -> coupling.PairOscillator | coupling.PairDrive:
         cycle = _mesh_at(run, torque)
         if cycle.contact is not None:
             cycle = cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
         series = coupling.mesh_series(cycle, section.stiffness, order)
+        if shafts is not None:
+            return coupling.pair_drive(run[PAIR], series, torque, float(speeds[0]), **shafts, **given)
         return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **given)
 
     return coupling.dynamic_map(at, operating.torques_Nm, speeds)

@@ -13,13 +13,15 @@ from base import Array, Figure, InputError
 from base.results import figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.drive_sweep import DriveSweep
+from flankfilm.coupling.dynamic_map import DynamicMap
 from flankfilm.coupling.oscillator import PairOscillator
+from flankfilm.coupling.run_ups import SpeedRunUp
 from flankfilm.coupling.series import MEANS
 from flankfilm.coupling.sidebands import MotionSpectrum
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
-from flankfilm.stages.engine import Engine
-from flankfilm.stages.motion import DIAGRAM, SCALING, SPECTRUM, SWEEP
-from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP
+from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
+from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP, SPECTRUM
 from flankfilm.studies.output import Named, in_result, output_of, outputs_from
 
 if TYPE_CHECKING:
@@ -29,6 +31,24 @@ if TYPE_CHECKING:
 _oscillator = outputs_from(lambda engine: engine[SCALING], PairOscillator, "fourier")
 _drive = outputs_from(lambda engine: engine[DRIVE], PairDrive, "sweep")
 _carried = outputs_from(lambda engine: engine[DRIVE_SWEEP], DriveSweep, "sweep")
+
+
+def _of_a_train(stage: Stage[Any]) -> Callable[[Engine], Any]:
+    """Result of a stage, of scenes with shafts alone."""
+
+    def of(engine: Engine) -> Any:
+        if engine.scene.shafts is None:
+            allowed = "are of a drive train: there are no bearings and shafts without [shafts]"
+            raise InputError.at(
+                "outputs", "bearing forces and shaft torques", allowed, "Give [shafts], or drop them"
+            )
+        return engine[stage]
+
+    return of
+
+
+_on_the_way = outputs_from(_of_a_train(RUN_UP), SpeedRunUp, "run-up")
+_of_map = outputs_from(_of_a_train(DYNAMIC_MAP), DynamicMap, "dynamic-map")
 
 
 def _resonance(motion: PairOscillator) -> float | None:
@@ -74,8 +94,6 @@ def _moved(name: str, figure: Figure, value: Callable[[SpeedSweep | DriveSweep],
 
 def _force_error(found: SpeedSweep | DriveSweep) -> float | None:
     """Sampling, and what more harmonics change at the values that were looked at; None where that is not known."""
-    if isinstance(found, DriveSweep):
-        return None
     truncation = _greatest(found.force_change)
     return None if truncation is None else truncation + found.sampling_error
 
@@ -175,10 +193,12 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     output_of(
         "drive_sweep_error",
         Figure(
-            "1", "estimated relative error of forces and torques of a drive train, by samples of a period"
+            "1",
+            "estimated relative error of forces and torques of a drive train, by samples and the series' order; "
+            "nan for a given series",
         ),
         "sweep",
-        in_result(DRIVE_SWEEP, attrgetter("sampling_error")),
+        in_result(DRIVE_SWEEP, attrgetter("carried_error")),
     ),
     _oscillator("error_range"),
     output_of(
@@ -204,6 +224,18 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         Figure("1", "estimated relative error of that factor by samples of a period"),
         "dynamic-map",
         in_result(DYNAMIC_MAP, attrgetter("sampling_error")),
+    ),
+    _on_the_way("greatest_bearing_force", name="greatest_run_up_bearing_force"),
+    _on_the_way("greatest_shaft_torque", name="greatest_run_up_shaft_torque"),
+    _of_map("greatest_bearing_force", name="greatest_map_bearing_force"),
+    _of_map("greatest_shaft_torque", name="greatest_map_shaft_torque"),
+    output_of(
+        "run_up_error",
+        Figure(
+            "1", "estimated relative error of forces and torques of the run-up, by steps of the frequency"
+        ),
+        "run-up",
+        in_result(RUN_UP, attrgetter("error")),
     ),
     *_jumps(),
     output_of(

@@ -43,6 +43,16 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "greatest_force_factor_error": ("greatest_force_factor",),
     "drive_frequency_error": ("lowest_drive_frequency_Hz", "drive_mesh_frequency_Hz"),
     "drive_sweep_error": ("greatest_bearing_force_N", "greatest_shaft_torque_Nm"),
+    "run_up_error": (
+        "greatest_run_up_factor",
+        "greatest_run_up_bearing_force_N",
+        "greatest_run_up_shaft_torque_Nm",
+    ),
+    "greatest_map_factor_error": (
+        "greatest_map_factor",
+        "greatest_map_bearing_force_N",
+        "greatest_map_shaft_torque_Nm",
+    ),
     "contact_loss_error": ("contact_loss_speed_rpm",),
     "jump_error_rising": ("jump_speed_rising_rpm", "jump_frequency_rising"),
     "jump_error_falling": ("jump_speed_falling_rpm", "jump_frequency_falling"),

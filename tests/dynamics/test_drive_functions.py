@@ -25,6 +25,7 @@ TAKEN = {
     "lyapunov_exponents": lambda: dynamics.lyapunov_exponents(DRIVE, 20, transient=0),
     "lyapunov_scan": lambda: dynamics.lyapunov_scan(DRIVE, "frequency", [0.9], 20, transient=0),
     "motion_spectrum": lambda: dynamics.motion_spectrum(DRIVE, find_orbit(DRIVE, STATE, transient=100).state),
+    "run_up": lambda: dynamics.run_up(DRIVE, (0.89, 0.91), 64),
     "basins": lambda: dynamics.basins(DRIVE, (-0.1, 0.1, 2), (-0.1, 0.1, 2), limit=40),
 }  # fmt: skip
 REFUSED = {
@@ -40,7 +41,6 @@ REFUSED = {
     "manifold": (),
     "multi_sweep": ("frequency", [0.5]),
     "restoring_force": (0.0, 0.1),
-    "run_up": ((0.6, 0.9), 160),
     "special_sensitivities": ("frequency", None),
 }
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import dynamics.run_ups
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, run_up
+from tests.dynamics.test_drives import chain, same_as
 from tests.validation.article_motion import lubricated
 
 
@@ -46,6 +48,72 @@ def test_a_ramp_is_that_of_the_equation_with_a_varying_frequency():
         assert found.rms[block] == pytest.approx(spread, rel=2e-3)
         assert found.peak[block] == pytest.approx(x[mine].max(), rel=2e-3)
     assert found.error < 2e-3
+
+
+def test_a_train_of_one_freedom_runs_up_as_the_pair(monkeypatch):
+    """Frequency by frequency the same motion: impulses of the error's rate are the train's own; q is X and e."""
+    monkeypatch.setattr(dynamics.run_ups, "HELD", 1)
+    gear = GearOscillator(
+        FourierStiffness(1.0, (0.18,), (0.3,)), 0.05, 0.1, (0.2, 0.03), 0.6, 0.2, (0.4, 1.0)
+    )
+    bounds = (0.66, 0.7)  # contact is lost, which is seldom to the last block
+    ours = run_up(same_as(gear), bounds, 128, outputs=[[1.0, 0.0], [0.0, 3.0]])
+    theirs = run_up(gear, bounds, 128)
+    assert theirs.separated.max() > 0.1
+    for name in ("rms", "peak", "force_rms", "force_peak", "separated", "force_order", "displacement_order"):
+        assert getattr(ours, name) == pytest.approx(getattr(theirs, name), rel=1e-8, abs=1e-10), name
+    assert ours.rate == pytest.approx(theirs.rate, rel=1e-12)
+    assert ours.output_rms.shape == ours.output_peak.shape == (8, 2)
+    assert np.all(np.abs(ours.output_peak[:, 0] - ours.peak) < 0.23)
+    assert theirs.output_peak.shape == (8, 0)
+
+
+@pytest.mark.slow
+def test_a_train_on_a_ramp_is_that_of_its_equations_with_a_varying_frequency():
+    """Four freedoms in contact; scipy knows no steps. What a shaft carries is an output."""
+    drive = chain(mean_force=[0.4, 0.0, 0.0, 0.5], error_amplitude=(0.1, 0.02), error_phase=(0.4, 1.0))
+    first, last, periods = 0.85, 0.9, 160
+    shaft = np.array([0.8, -0.8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    start = drive.rest_state()
+    found = run_up(drive, (first, last), periods, state=start, outputs=[shaft])
+    assert np.all(found.separated == 0.0)
+    growth = (last**2 - first**2) / (2.0 * math.pi * periods)
+    mass, damping, stiffness, g, force = (
+        np.asarray(getattr(drive, name))
+        for name in ("mass", "damping", "stiffness", "direction", "mean_force")
+    )
+    inverse = np.linalg.inv(mass)
+
+    def motion(tau, y):
+        q, speed, theta = y[:4], y[4:8], y[8]
+        w = math.sqrt(first**2 + growth * theta)
+        e = sum(a * math.cos(j * theta + p) for j, a, p in ((1, 0.1, 0.4), (2, 0.02, 1.0)))
+        rate = -w * sum(j * a * math.sin(j * theta + p) for j, a, p in ((1, 0.1, 0.4), (2, 0.02, 1.0)))
+        gap = g @ q - e
+        push = drive.mesh_stiffness(theta) * (gap - 0.15) + drive.mesh_damping * (g @ speed - rate)
+        bent = inverse @ (force - damping @ speed - stiffness @ q - g * push)
+        return [*speed, *bent, w]
+
+    def reached(tau, y):
+        return y[8] - 2.0 * math.pi * periods
+
+    reached.terminal = True
+    done = solve_ivp(motion, (0.0, 1e6), [*start, 0.0], events=reached, rtol=1e-8, atol=1e-10, max_step=0.3)
+    y, carried = g @ done.y[:4], shaft[:4] @ done.y[:4]
+    y = y - sum(a * np.cos(j * done.y[8] + p) for j, a, p in ((1, 0.1, 0.4), (2, 0.02, 1.0)))
+    blocks = (done.y[8] // (32.0 * math.pi)).astype(int)
+    for block in (1, 4, 8):
+        mine = blocks == block
+        assert found.rms[block] == pytest.approx(_rms(done.t[mine], y[mine]), rel=3e-3)
+        assert found.output_rms[block, 0] == pytest.approx(_rms(done.t[mine], carried[mine]), rel=3e-3)
+        assert found.output_peak[block, 0] == pytest.approx(np.abs(carried[mine]).max(), rel=3e-3)
+    assert found.error < 3e-3
+
+
+@pytest.mark.parametrize("outputs", [[[1.0, 0.0, 0.0]], [1.0, 0.0], [[np.nan, 0.0]]])
+def test_outputs_are_rows_as_long_as_a_state(outputs):
+    with pytest.raises(InputError, match="outputs"):
+        run_up(lubricated(0.6), (0.6, 0.61), 64, outputs=outputs)
 
 
 def _reached(end):

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
 import dynamics
+import dynamics.run_ups
 import fem
 from base import InputError
 from flankfilm import figures
 from flankfilm.beforehand import refuse
 from flankfilm.cache import Cache
-from flankfilm.coupling import mesh_cycle, pair_drive
+from flankfilm.coupling import drive_sweep, mesh_cycle, pair_drive
+from flankfilm.coupling.truncation import with_order
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene
@@ -26,10 +29,13 @@ from gears import Gear, GearPair
 from tests.flankfilm.scenes import ISHIKAWA
 
 MOVING = (
-    ISHIKAWA.replace("WANTS", '"sweep"')
+    ISHIKAWA.replace("WANTS", '"sweep"').replace(
+        "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 7200\ntorques_Nm = [300, 600]"
+    )
     + """
 [dynamics]
 error_amplitude_um = 4
+run_up = { speed_rpm = [7000, 7100], periods = 128 }
 sweep = { speed_rpm = [7000, 7400], points = 2 }
 """
 )
@@ -43,14 +49,23 @@ TRAIN = f"{MOVING}[shafts.pinion]{SHAFT}[shafts.wheel]\ninertia_kg_m2 = 0.05\nco
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04)
 
 
+EVERY = ("sweep", "spectrum", "run-up", "dynamic-map")
+ALL = TRAIN.replace('"sweep"', ", ".join(f'"{want}"' for want in EVERY))
+
+
 @pytest.fixture(scope="module")
 def train():
-    return run_scene(parse_scene(TRAIN), None)
+    return run_scene(parse_scene(ALL), None)
 
 
-def test_a_rigid_train_moves_as_the_pair_does():
-    """Rigid shafts with nothing on them: both equations are the same, and forces agree to what sweeps leave over."""
-    extra = MOVING.replace(
+def test_a_rigid_train_moves_as_the_pair_does(monkeypatch):
+    """Rigid shafts with nothing on them: both equations are the same, and forces agree to what sweeps leave over.
+
+    The run-up too, where the train changes its frequency as often as the pair does; sweeps leave 1e-6 of a motion,
+    and of its swing more.
+    """
+    monkeypatch.setattr(dynamics.run_ups, "HELD", 1)
+    extra = MOVING.replace('"sweep"', ", ".join(f'"{want}"' for want in EVERY)).replace(
         "[dynamics]", "[dynamics]\nextra_inertia_kg_m2 = { pinion = 0.002, wheel = 0.003 }"
     )
     rigid = extra + "[shafts]\npinion = {}\nwheel = {}\n"
@@ -59,6 +74,13 @@ def test_a_rigid_train_moves_as_the_pair_does():
         expected = theirs[f"sweep_force_factor_{way}"].values
         assert ours[f"drive_sweep_force_factor_{way}"].values == pytest.approx(expected, rel=2e-6)
     assert "drive_sweep_bearing_force_up" not in ours
+    for name in ("run_up_force_factor_up", "run_up_peak_down", "run_up_force_rms_up", "run_up_separated_up"):
+        assert ours[name].values == pytest.approx(theirs[name].values, rel=1e-5, abs=1e-9), name
+    for name in ("spectrum_force", "spectrum_displacement", "dynamic_map_factor", "dynamic_map_factor_down"):
+        expected = theirs[name].values
+        assert ours[name].values == pytest.approx(expected, abs=1e-5 * expected.max()), name
+    assert ours.spectrum_mode_order.values == pytest.approx(theirs.spectrum_mode_order.values, rel=1e-12)
+    assert not any("bearing" in name or "shaft" in name for name in map(str, ours.data_vars))
     assert float(ours.drive_lowest_frequency) == pytest.approx(
         float(theirs.oscillator_natural_frequency), rel=1e-12
     )
@@ -84,6 +106,10 @@ def test_a_train_is_in_tables_report_and_outputs(train):
     tables = results_tables(data)
     assert {"drive_sweep", "drive_modes"} <= {*tables}
     assert "sweep_up" not in tables
+    assert {"bearing_force_up_N_pinion_bearing_1", "shaft_torque_down_Nm_wheel_coupling"} <= {
+        *tables["drive_sweep"]
+    }
+    assert {len(column) for column in tables["drive_sweep"].values()} == {2}
     for name in ("drive", "drive sweep"):
         part = PARTS[name](train.values[name], data)
         assert part.figures
@@ -98,13 +124,64 @@ def test_a_train_is_in_tables_report_and_outputs(train):
         ("greatest_shaft_torque_Nm", "drive_sweep_greatest_shaft_torque"),
         ("lowest_drive_frequency_Hz", "drive_lowest_frequency"),
         ("drive_mesh_frequency_Hz", "drive_mesh_frequency"),
-        ("drive_sweep_error", "drive_sweep_sampling_error"),
+        ("drive_sweep_error", "drive_sweep_carried_error"),
+        ("greatest_run_up_bearing_force_N", "run_up_greatest_bearing_force"),
+        ("greatest_map_shaft_torque_Nm", "dynamic_map_greatest_shaft_torque"),
     ):
         assert OUTPUTS[name].value(engine) == float(data[figure])
     most = max(float(data[f"drive_sweep_force_factor_{way}"].max()) for way in ("up", "down"))
     assert OUTPUTS["greatest_force_factor"].value(engine) == most
     with pytest.raises(InputError, match="rigid shafts"):
         OUTPUTS["contact_loss_speed_rpm"].value(engine)
+
+
+def test_a_run_up_a_map_and_orders_carry_what_settled_motions_do(train):
+    """A slow run-up by the sweep's forces at its ends, a map's row by the sweep, orders by the root mean square."""
+    data = train.dataset
+    swept = data.drive_sweep_bearing_force_up.values
+    assert data.dynamic_map_bearing_force.values[1] == pytest.approx(
+        np.fmax(swept, data.drive_sweep_bearing_force_down.values), rel=1e-6
+    )
+    torque = data.dynamic_map_shaft_torque.values
+    assert torque[0] == pytest.approx(0.5 * torque[1], rel=0.1)  # half the load, the same error
+    assert data.run_up_bearing_force_up.values[-1] == pytest.approx(swept[0], rel=0.02)
+    assert data.run_up_shaft_torque_up.values[-1] == pytest.approx(
+        data.drive_sweep_shaft_torque_up.values[0], rel=0.02
+    )
+    lines = data.spectrum_bearing_force.values
+    swing = 0.5 * data.drive_sweep_bearing_force_swing_up.values.sum(
+        axis=0
+    )  # of 7000 and 7400 rpm; orders of 7200
+    assert np.sqrt(0.5 * np.sum(lines**2, axis=0)) == pytest.approx(swing, rel=0.1)
+    modes = data.drive_natural_frequencies.values / (7200.0 / 60.0 * 36.0)
+    assert data.spectrum_mode_order.values == pytest.approx(modes, rel=1e-12)
+
+
+def test_harmonics_beyond_the_series_are_estimated(train):
+    """What is told is the difference of sweeps with the series and with a longer one, part by part."""
+    found = train.values["drive sweep"]
+    drive = train.values["drive"]
+    assert found.longer_order >= 32
+    assert found.truncation > 1e-3
+    longer = drive.oscillator.with_contact_stiffness(with_order(drive, found.longer_order).contact_stiffness)
+    again = drive_sweep(dataclasses.replace(drive, oscillator=longer), frequency=found.checked)
+    same = np.array([one == other for one, other in zip(found.labels["up"], again.labels["up"], strict=True)])
+    assert same.tolist() == [False, True]  # 7000 rpm touches the back flank with more harmonics
+    assert np.isinf(found.force_change["up"][~same]).all()
+    for figure in ("bearing_force", "shaft_torque"):
+        ours, theirs = (getattr(one, figure)["up"][same] for one in (found, again))
+        told = getattr(found, f"{figure}_change")["up"]
+        assert np.isinf(told[~same]).all()
+        assert told[same] == pytest.approx(np.abs(ours - theirs) / theirs, rel=1e-4)
+
+
+def test_reports_of_run_ups_maps_and_orders(train):
+    for name, tables in (("spectrum", 1), ("run-up", 2), ("dynamic-map", 2)):
+        part = PARTS[name](train.values[name], train.dataset)
+        assert part.figures
+        assert len(part.tables) == tables
+    for draw in (figures.drive_run_up, figures.drive_map, figures.spectrum):
+        assert draw(train.dataset).axes
 
 
 @pytest.fixture(scope="module")

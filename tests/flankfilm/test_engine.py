@@ -12,7 +12,7 @@ from flankfilm.cache import Cache
 from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.running import run_scene
 from flankfilm.scene import Scene, parse_scene, template
-from flankfilm.stages import catalogue, motion
+from flankfilm.stages import catalogue, drives, motion, speeds
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine, KeptPart, Stage, StageRun
 from flankfilm.stages.goals import goals
@@ -114,8 +114,9 @@ def test_warnings_are_gathered_once_each():
 
 
 def test_each_stage_comes_after_what_it_needs_and_has_a_name_of_its_own():
-    stages = [stage for stage in (vars(catalogue) | vars(motion)).values() if isinstance(stage, Stage)]
-    assert len({stage.name for stage in stages}) == len(stages) == 29
+    named = vars(catalogue) | vars(motion) | vars(drives) | vars(speeds)
+    stages = [stage for stage in named.values() if isinstance(stage, Stage)]
+    assert len({stage.name for stage in stages}) == len(stages) == 33
     for number, stage in enumerate(stages):
         assert set(stage.needs) <= set(stages[:number])
 

@@ -111,7 +111,6 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
     ("wants", "changes", "where", "says"),
     [
         ('"diagram", "sweep"', (), "wants", "knows no [shafts]"),
-        ('"run-up"', (("# run_up =", "run_up ="),), "wants", "knows no [shafts]"),
         ('"sweep"', (("# portraits_rpm =", "portraits_rpm ="),), "dynamics.portraits_rpm", "rigid shafts"),
         (
             '"sweep"',
