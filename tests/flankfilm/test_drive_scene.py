@@ -246,7 +246,7 @@ def test_pictures_of_trains_do_not_call_their_first_freedom_x(cycle):
 def test_the_face_bears_on_the_shafts_of_the_scene():
     """What the scene's mesh cycle finds is what finite elements find with these shafts; straight shafts bear evenly."""
     text = TRAIN.replace('model = "ishikawa"\npairs = "independent"', 'model = "fem"').replace(
-        "pinion_torque_Nm = 600", "pinion_torque_Nm = 600\npinion_speed_rpm = 2000"
+        "pinion_speed_rpm = 7200", "pinion_speed_rpm = 2000"
     )
     oil = "[lubricant]\nviscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\ntemperature_C = 80\n"
     face = '[alignment]\ncells = 4\nface_model = "slices"\n[film]\nmodel = "dowson"\n'
