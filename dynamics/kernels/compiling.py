@@ -1,4 +1,9 @@
-"""How kernels are compiled, and when a compiled kernel on disk is still good."""
+"""How kernels are compiled, and when a compiled kernel on disk is still good.
+
+What leans on the insides of numba, the shorter way of `pipeline` and calls by address, is for the versions of numba
+that it was tried with. With any other, helpers and shared pieces are compiled into their callers in numba's own way,
+which takes longer and gives the same to rounding.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +14,7 @@ from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import numba
 import numpy as np
 import numpy.typing as npt
 from llvmlite import binding
@@ -26,6 +32,7 @@ Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]  # see tables.room_of
 F = TypeVar("F", bound=Callable[..., Any])
 
+TRIED = ("0.68.",)
 # places in `par`; FREE is the damping ratio in the dead zone
 MEAN, ZETA, FORCE, ERROR, FREQUENCY, PHASE, HALF_BACKLASH, SIDES, ORDER, FREE, SERIES = range(11)
 # all well, not finite, too many events in a cell, Newton's method failed
@@ -34,8 +41,19 @@ FINE, DIVERGED, CROWDED, LOST = range(4)
 ZERO, ONE, TWO = cast(int, np.int64(0)), cast(int, np.int64(1)), cast(int, np.int64(2))
 YES, NO = cast(bool, np.bool_(True)), cast(bool, np.bool_(False))
 # a product and a sum may be rounded once; nothing else is relaxed
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}}
-_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python
+_OPTIONS: dict[str, Any] = {
+    "error_model": "numpy",
+    "nogil": True,
+    "fastmath": {"contract"},
+    "no_cfunc_wrapper": True,
+}
+_INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True}  # not for Python
+LINKED: dict[str, Any] = {}
+WHOLE: dict[str, Any] = {}
+if numba.__version__.startswith(TRIED):
+    from dynamics.kernels.pipeline import Inner, Outer
+
+    LINKED["pipeline_class"], WHOLE["pipeline_class"] = Inner, Outer
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
 
 
@@ -94,7 +112,7 @@ def helper(function: F) -> F:
     A helper allocates nothing: `_nrt=False` leaves out the counting of references to its arrays, whose locked
     instructions would take longer than the arithmetic of an impact.
     """
-    return cast(F, njit(_nrt=False, **_INNER)(function))
+    return cast(F, njit(_nrt=False, **_INNER, **LINKED)(function))
 
 
 def shared(types: str) -> Callable[[F], F]:
@@ -108,7 +126,7 @@ def called(compiled: F, types: Any) -> F:
     A helper is compiled again into every caller, and into the callers of these. What is long, and takes much longer to
     run than a call, is better called. It raises nothing.
     """
-    if config.DISABLE_JIT:
+    if config.DISABLE_JIT or not LINKED:
         return compiled
     function: Callable[..., Any] = cast(Any, compiled).py_func
     arguments, result = sigutils.normalize_signature(types)
@@ -137,12 +155,12 @@ def called(compiled: F, types: Any) -> F:
 
 def maker(function: F) -> F:
     """Compile as a helper that returns a fresh array."""
-    return cast(F, njit(**_INNER)(function))
+    return cast(F, njit(**_INNER, **LINKED)(function))
 
 
 def kept(function: F, **options: Any) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    compiled = njit(**options)(function)
+    compiled = njit(**options, **WHOLE)(function)
     compiled._cache = _Kept(function)
     return cast(F, compiled)
 

@@ -450,7 +450,8 @@ def test_a_changed_helper_is_compiled_again(tmp_path, kept, how):
     """
     package = tmp_path / "dynamics" / "kernels"
     package.mkdir(parents=True)
-    shutil.copy(Path(dynamics.__file__).parent / "kernels" / "compiling.py", package)
+    for source in ("compiling.py", "pipeline.py"):
+        shutil.copy(Path(dynamics.__file__).parent / "kernels" / source, package)
     for folder in (package.parent, package):
         (folder / "__init__.py").touch()
     head = "from dynamics.kernels.compiling import helper, kernel, shared\n"

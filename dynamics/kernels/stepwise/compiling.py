@@ -7,9 +7,10 @@ from typing import Any, TypeVar, cast
 
 from numba import cfunc, njit, types
 
-from dynamics.kernels.compiling import FloatArray, IntArray, kept
+from dynamics.kernels.compiling import LINKED, WHOLE, FloatArray, IntArray, kept
 
 F = TypeVar("F", bound=Callable[..., Any])
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
 # own parameters, law, parameters and data of the law, places of the parameters to differentiate by; a tuple that
 # began with a function would not be typed as one
 Model = tuple[FloatArray, Any, FloatArray, FloatArray, IntArray]
@@ -30,14 +31,14 @@ CARRY = types.int64(
 
 def helper(function: F) -> F:
     """Compile when first called by a kernel; not kept on disk, because its callers hold it."""
-    return cast(F, njit(error_model="numpy", nogil=True)(function))
+    return cast(F, njit(no_cpython_wrapper=True, **_OPTIONS, **LINKED)(function))
 
 
 def kernel(function: F) -> F:
     """Compile when first called, keep the result on disk until any kernel source changes."""
-    return kept(function, error_model="numpy", nogil=True)
+    return kept(function, **_OPTIONS)
 
 
 def law_kernel(function: Callable[..., None]) -> Any:
     """Compile a law of this package; kept on disk until its file changes."""
-    return cfunc(LAW, cache=True, error_model="numpy")(function)
+    return cfunc(LAW, cache=True, error_model="numpy", **WHOLE)(function)

@@ -1,0 +1,186 @@
+"""A shorter way through numba for kernels: what they do not need is left out, what is known is not sought again.
+
+Three things take most of the time in which numba compiles a kernel of forty helpers:
+
+- every helper becomes machine code of its own, which nobody calls, because its callers link and inline it. Here it is
+  handed to them as it is before LLVM works on it, and is worked on there;
+- for every ``+`` and every ``a[i]`` numba tries all that it knows of these operators, in each round of the inference of
+  types and once more for the code, and again for each literal index. Here the answer is remembered by types;
+- a dozen passes look for what kernels do not have: closures, ``with``, strings, expressions of whole arrays.
+
+What a kernel links is its own: elsewhere LLVM's loader takes the first of several functions of one name, so that last
+digits would hang on what a process has compiled or loaded before.
+
+All this leans on how numba is built inside, and is for the versions of `compiling.TRIED`.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+from llvmlite.binding import Linkage
+from numba.core import typed_passes, types, untyped_passes
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, PassManager
+from numba.core.types.containers import BaseTuple
+from numba.core.types.misc import SliceType
+
+_OPERATORS = frozenset(
+    {
+        operator.getitem, operator.setitem, operator.add, operator.sub, operator.mul, operator.truediv,
+        operator.floordiv, operator.mod, operator.iadd, operator.isub, operator.imul, operator.itruediv, operator.neg,
+        operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne,
+    }
+)  # fmt: skip
+_PASSES = (
+    untyped_passes.TranslateByteCode,
+    untyped_passes.FixupArgs,
+    untyped_passes.IRProcessing,
+    untyped_passes.GenericRewrites,
+    untyped_passes.ReconstructSSA,
+    typed_passes.NopythonTypeInference,
+    typed_passes.PreLowerStripPhis,
+    typed_passes.IRLegalization,
+    typed_passes.AnnotateTypes,
+    typed_passes.NativeLowering,
+    typed_passes.NoPythonBackend,
+)
+
+
+class _Operator(types.Function):
+    """An operator that remembers what it gives for which types of numbers and arrays of them."""
+
+    def __init__(self, function: types.Function) -> None:
+        super().__init__(function.templates)
+        self._known: dict[Any, Any] = {}
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Signature for these arguments, whether numbers and indices are literal or not."""
+        plain = tuple([_unliteral(given) for given in args])
+        if kws or None in plain:
+            return super().get_call_type(context, args, kws)
+        if plain not in self._known:
+            self._known[plain] = super().get_call_type(context, plain, kws)
+        return self._known[plain]
+
+
+_KNOWN: dict[types.Function, _Operator] = {}
+
+
+def _unliteral(given: Any) -> Any:
+    """Type of a number, of an array of numbers or of an index without its value; None of anything else."""
+    if isinstance(given, types.IntegerLiteral):
+        return given.literal_type
+    if isinstance(given, (types.Integer, types.Float, types.Boolean, SliceType)):
+        return given
+    if isinstance(given, types.Array):
+        return given if _numbers(given) else None
+    if isinstance(given, BaseTuple):
+        parts = tuple([_unliteral(part) for part in given])
+        if all(isinstance(part, (types.Integer, SliceType)) for part in parts):
+            return BaseTuple.from_types(parts)
+    return None
+
+
+def _numbers(given: Any) -> bool:
+    """Whether this is an array of numbers, whose items are all alike."""
+    return isinstance(given, types.Array) and isinstance(given.dtype, types.Number)
+
+
+class _Remembering:
+    """Numba's context of types, with operators that remember."""
+
+    def __init__(self, context: Any) -> None:
+        self._context, self._met = context, dict[Any, Any]()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def resolve_value_type(self, value: Any) -> Any:
+        if not callable(value) or value not in _OPERATORS:
+            return self._context.resolve_value_type(value)
+        if value not in self._met:
+            function = self._context.resolve_value_type(value)
+            self._met[value] = _KNOWN.setdefault(function, _Operator(function))
+        return self._met[value]
+
+    def resolve_setitem(self, target: Any, index: Any, value: Any) -> Any:
+        return self.resolve_value_type(operator.setitem).get_call_type(self, (target, index, value), {})
+
+    def resolve_static_getitem(self, value: Any, index: Any) -> Any:
+        return None if _numbers(value) else self._context.resolve_static_getitem(value, index)
+
+    def resolve_static_setitem(self, target: Any, index: Any, value: Any) -> Any:
+        return None if _numbers(target) else self._context.resolve_static_setitem(target, index, value)
+
+
+class _Optimised(JITCodeLibrary):
+    """Machine code of a kernel, worked on by LLVM once, when all that it links is there and its own."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == Linkage.linkonce_odr:
+                function.linkage = Linkage.internal
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
+
+
+class _Linked(_Optimised):
+    """What a helper's callers link: never machine code by itself."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return 0
+
+    @property
+    def codegen(self) -> Any:
+        """Of machine code alone: a helper raises nothing, and has no environment to be told of."""
+        return _Mute(self._codegen)
+
+
+class _Mute:
+    """Numba's code generator for functions that have no machine code."""
+
+    def __init__(self, codegen: Any) -> None:
+        self._codegen = codegen
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._codegen, name)
+
+    def set_env(self, name: str, env: Any) -> None:
+        """There is nowhere to write it."""
+
+
+class Outer(CompilerBase):
+    """The way of what is called from Python, or where it lies."""
+
+    library: type[JITCodeLibrary] = _Optimised
+
+    def define_pipelines(self) -> list[Any]:
+        """Passes that a kernel needs."""
+        state = self.state
+        state.typingctx = _Remembering(state.typingctx)
+        state.targetctx = state.targetctx.subtarget(typing_context=state.typingctx)
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        passes = PassManager("kernel")
+        for one in _PASSES:
+            passes.add_pass(one, one.__name__)
+        passes.finalize()
+        return [passes]
+
+
+class Inner(Outer):
+    """The way of what kernels link."""
+
+    library = _Linked
