@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, described, part, quantity, record
 from base.results import EXACT
 from fem.elasticity import reduced_modulus
+from fem.face_cells import IN_SINGLE_CELLS, FaceCells
 from fem.face_errors import face_load_factors
 from fem.face_setting import FaceSetting
 from gears.hertz import peak_pressure
@@ -16,7 +17,6 @@ from gears.hertz import peak_pressure
 if TYPE_CHECKING:
     from fem.setting import Setting
     from fem.sharing import Solution
-    from gears import GearPair
 
 __all__ = ["FaceLoads", "face_loads"]
 
@@ -24,41 +24,23 @@ HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not 
 
 
 @record
-class FaceLoads:
+class FaceLoads(FaceCells):
     """Line loads over the face at the positions of a mesh cycle.
 
     ``error`` is that of the greatest face-load factor: what twice as many cells would change, and a part of what free
     ends do.
     """
 
-    no_error = "not estimated cell by cell; the face-load factor has an error"
+    no_error = IN_SINGLE_CELLS
     headline = ("greatest_face_load_factor", "greatest_line_load")
 
-    face_position: Array = quantity(
-        "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
-    )
-    line_load: Array = quantity(
-        "N/m",
-        "line load: force per length of face; zero where flanks stand clear",
-        "position pair cell",
-        shown="N/mm",
-    )
     face_load_factor: Array = quantity(
         "1", "greatest line load of the most loaded pair over that pair's mean", "position", error="error"
     )
     setting: FaceSetting = part("cells, alignment, leads and ends")
-    pair: GearPair = part("the gears")
     plane: str = part('"strain" or "stress", as of the compliance')
     curvature_radius: Array = quantity(
         "m", "radius of relative curvature; nan where no two flanks touch", "position pair", no_error=EXACT
-    )
-    travel: Array = quantity(
-        "m",
-        "travel of each pair along the path of contact from A, beyond it where a tip edge touches; nan where a pair "
-        "cannot touch",
-        "position pair",
-        shown="mm",
-        no_error=EXACT,
     )
     gap: Array = quantity(
         "m",
@@ -120,15 +102,15 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
     radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
     return FaceLoads(
-        given.face.middles(pair.face_width),
-        forces * cells / pair.face_width,
-        factors,
-        given.face,
-        pair,
-        plane,
-        np.tile(radius, (given.pitches, 1)),
-        np.tile(travel, (given.pitches, 1)),
-        np.maximum(over.left[number], 0.0).reshape(forces.shape),
-        float(over.factor_error[number] / np.max(factors)),
-        bent,
+        face_position=given.face.middles(pair.face_width),
+        travel=np.tile(travel, (given.pitches, 1)),
+        line_load=forces * cells / pair.face_width,
+        pair=pair,
+        face_load_factor=factors,
+        setting=given.face,
+        plane=plane,
+        curvature_radius=np.tile(radius, (given.pitches, 1)),
+        gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
+        error=float(over.factor_error[number] / np.max(factors)),
+        shaft_misalignment=bent,
     )

@@ -143,6 +143,11 @@ class MeshCycle(MeshFigures):
         """Estimated relative numerical error of the peak-to-peak transmission error, of meshes and arcs."""
         return self.errors["transmission_error_range"]
 
+    @property
+    def face(self) -> fem.FaceLoads | None:
+        """What cells of the face bear; None where the load is even along it, as closed forms take it."""
+        return None if self.contact is None else self.contact.face
+
     def curve(self, kind: str) -> Array:
         """Curve of a kind of stiffness, ``"secant"`` or ``"tangent"`` (positions,) [N/m]."""
         return {"secant": self.secant_stiffness, "tangent": self.stiffness}[kind]

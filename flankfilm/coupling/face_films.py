@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import gears
 from base import Array, Cost, described, part, quantity, record
 from base.results import EXACT, ITSELF
+from fem.face_cells import FaceCells
 from flankfilm.coupling.along_path import FORMULA
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.film_table import FilmTable
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ _BEARS = 0.01
 
 
 @record
-class FaceFilms:
+class FaceFilms(FaceCells):
     """Films of all cells of the face at the positions of a mesh cycle, each that of a line contact under its line load.
 
     Left out is oil that flows along the face: at its ends, over about `end_zone`, where the film is thinner than here,
@@ -31,23 +32,6 @@ class FaceFilms:
 
     headline = ("least_film", "greatest_film_pressure")
 
-    face_position: Array = quantity(
-        "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
-    )
-    travel: Array = quantity(
-        "m",
-        "travel of each pair along the path of contact from A; nan where a pair cannot touch",
-        "position pair",
-        shown="mm",
-        no_error=EXACT,
-    )
-    line_load: Array = quantity(
-        "N/m",
-        "force per length of face with films; zero where flanks stand clear",
-        "position pair cell",
-        shown="N/mm",
-        no_error="that of the face-load factor: it errs as the dry one does",
-    )
     minimum_thickness: Array = quantity(
         "m",
         "least film of each cell; nan where it bears less than the lightest film that was solved",
@@ -87,7 +71,6 @@ class FaceFilms:
         "1", "relative error by what is interpolated between places and loads", no_error=ITSELF
     )
     table: FilmTable = part("the films over place and load")
-    pair: gears.GearPair = part("the gears")
     cost: Cost
     converged: bool = True
     message: str = ""
@@ -153,18 +136,12 @@ def face_films(cycle: MeshCycle, table: FilmTable, seconds: float) -> FaceFilms:
     seconds : float
         Cost of the films [s].
     """
-    assert cycle.contact is not None
-    assert cycle.contact.face is not None
-    face = cycle.contact.face
-    rho1 = np.broadcast_to(cycle.rho1[..., None], face.line_load.shape)
+    face, rho1, bear = cells_of(cycle)
     pressure = np.where(np.isfinite(rho1), face.hertz_pressure, np.nan)
-    bears = np.isfinite(pressure) & (face.line_load > 0.0)
     width = np.full_like(pressure, np.nan)
-    width[bears] = 2.0 * face.line_load[bears] / (np.pi * pressure[bears])
+    width[bear] = 2.0 * face.line_load[bear] / (np.pi * pressure[bear])
     return FaceFilms(
-        face_position=face.face_position,
-        travel=face.travel,
-        line_load=face.line_load,
+        **face.cells,
         minimum_thickness=table.thickness("minimum_thickness", rho1, face.line_load),
         central_thickness=table.thickness("central_thickness", rho1, face.line_load),
         hertz_pressure=pressure,
@@ -174,6 +151,5 @@ def face_films(cycle: MeshCycle, table: FilmTable, seconds: float) -> FaceFilms:
         film_error=table.film_error,
         table_error=table.error,
         table=table,
-        pair=face.pair,
         cost=Cost(seconds),
     )

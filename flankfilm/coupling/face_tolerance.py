@@ -9,6 +9,7 @@ import numpy as np
 import gears
 from base import Array, Cost, Faults, Limit, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from gears.face import ALIGNED, ALIGNMENT_LIMITS
 
@@ -93,7 +94,6 @@ def face_load_tolerance(teeth: LoadedTeeth, tolerance: float, positions: int = P
 
 def _factor(teeth: LoadedTeeth, alignment: gears.Alignment, positions: int) -> tuple[float, float]:
     """Greatest face-load factor with an alignment, and its error."""
-    contact = replace(teeth, flanks=replace(teeth.flanks, alignment=alignment)).cycle(positions).contact
-    assert contact is not None
-    assert contact.face is not None
-    return contact.face.greatest_face_load_factor, contact.face.error
+    cycle = replace(teeth, flanks=replace(teeth.flanks, alignment=alignment)).cycle(positions)
+    face = cells_of(cycle).face
+    return face.greatest_face_load_factor, face.error

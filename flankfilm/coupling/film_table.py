@@ -24,7 +24,9 @@ from scipy.interpolate import RectBivariateSpline
 import ehl
 import gears
 from base import Array, InputError, RangeWarning
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.films import FilmModel, PathFilms, PlacedMeniscus, Solved, film_inside, films_of
+from flankfilm.coupling.line_contacts import line_contacts
 from gears.hertz import half_width
 
 if TYPE_CHECKING:
@@ -199,9 +201,7 @@ def film_table(
         Where a film has no solution.
     """
     _check(model)
-    assert dry.contact is not None
-    assert dry.contact.face is not None
-    greatest = dry.contact.face.greatest_line_load
+    greatest = cells_of(dry).face.greatest_line_load
     loaded = dry.rho1[np.isfinite(dry.rho1) & (dry.forces > 0.0)]
     half = 0.5 * pair.base_pitch / dry.position.size
     ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
@@ -221,22 +221,15 @@ def table_on(
     tolerance: float,
 ) -> FilmTable:
     """Solve films at places (places,) [m] under line loads (loads,) [N/m], both rising; else as of `film_table`."""
-    path, heaviest_first = pair.path_at(rho1), load[::-1].tolist()
     rows: list[tuple[Solved, ...]] = []
     before: PathFilms | None = None
-    for place, u, r in zip(
-        rho1.tolist(), path.entrainment(speed).tolist(), path.radius.tolist(), strict=True
-    ):
-        contacts = tuple(
-            ehl.LineContact(
-                load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
-            )
-            for w in heaviest_first
-        )
+    for place in rho1:
+        at = np.full(load.size, place)
+        contacts = line_contacts(pair, at, load[::-1], speed, lubricant)
         with warnings.catch_warnings():
             if rows:  # what the first place has warned of
                 warnings.simplefilter("ignore", RangeWarning)
-            before = films_of(model, np.full(load.size, place), contacts, before, tolerance)
+            before = films_of(model, at, contacts, before, tolerance)
         rows.append(before.films)
 
     def each(figure: str) -> Array:

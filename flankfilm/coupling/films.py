@@ -13,6 +13,7 @@ import gears
 from base import Array, Faults, InputError, Integers, RangeWarning, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
+from flankfilm.coupling.line_contacts import line_contacts
 
 Solved: TypeAlias = "ehl.Film | ehl.MixedFilm | ehl.FormulaFilm"
 Supply: TypeAlias = "ehl.Meniscus | ehl.OilLayer | None"
@@ -165,22 +166,13 @@ def contacts_of(
         line_load = cycle.forces / pair.face_width
     position, number = touching(cycle)
     rho1 = cycle.rho1[position, number]
-    path = pair.path_at(rho1)
-    load = line_load[position, number]
-    each = np.stack((load, path.entrainment(speed), path.radius), axis=1).tolist()
-    contacts = tuple(
-        ehl.LineContact(
-            load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
-        )
-        for w, u, r in each
-    )
-    return rho1, contacts
+    return rho1, line_contacts(pair, rho1, line_load[position, number], speed, lubricant)
 
 
 def _require_even(pair: gears.GearPair, cycle: MeshCycle) -> None:
     """Refuse loads that vary along the face."""
     by = "with leads" if not pair.straight else "with cells of the face"
-    if not pair.straight or (cycle.contact is not None and cycle.contact.face is not None):
+    if not pair.straight or cycle.face is not None:
         allowed = "must be loaded evenly along the face for these films"
         remedy = "leave leads, alignment and cells out; lubricated_cycle by finite elements has films over the face"
         raise InputError.at("pair", by, allowed, remedy)

@@ -13,6 +13,7 @@ import gears
 from base import Array, Integers, SolverError
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import Held, Supply, contacts_of, supply_of
+from flankfilm.coupling.line_contacts import with_sliding
 
 T = TypeVar("T")
 
@@ -153,8 +154,7 @@ def sliding_contacts(
 ) -> tuple[Array, tuple[ehl.LineContact, ...]]:
     """Line contacts of a cycle with their sliding speeds, with their places on the path [m]; see `contacts_of`."""
     rho1, contacts = contacts_of(pair, cycle, speed, lubricant, line_load)
-    slides = pair.path_at(rho1).sliding(speed).tolist()
-    return rho1, tuple(replace(contact, sliding=slip) for contact, slip in zip(contacts, slides, strict=True))
+    return rho1, with_sliding(pair, rho1, contacts, speed)
 
 
 def heated_films(

@@ -12,7 +12,9 @@ from scipy.interpolate import RectBivariateSpline
 import ehl
 import gears
 from base import Array
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films
+from flankfilm.coupling.line_contacts import line_contacts, with_sliding
 from flankfilm.coupling.mean_losses import Borne, Carried
 
 if TYPE_CHECKING:
@@ -82,13 +84,9 @@ class HeatedTable:
 
     def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
         """What the cells of a cycle bear, with friction and rolling."""
-        assert cycle.contact is not None
-        assert cycle.contact.face is not None
-        load = cycle.contact.face.line_load
-        width = face_width / load.shape[-1]
-        rho1 = np.broadcast_to(cycle.rho1[..., None], load.shape)
-        touching = np.isfinite(rho1) & (load > 0.0)
-        rho1, load = rho1[touching], load[touching]
+        cells = cells_of(cycle)
+        width = face_width / cells.rho1.shape[-1]
+        rho1, load = cells.rho1[cells.bear], cells.face.line_load[cells.bear]
         friction, rolling, first = (
             self.at(name, rho1, load) for name in ("friction", "rolling", "first_part")
         )
@@ -162,28 +160,15 @@ def heated_table(
     SolverError
         Where a film has no solution.
     """
-    assert cycle.contact is not None
-    assert cycle.contact.face is not None
     places, loads = grid
-    greatest = HEAVIEST * cycle.contact.face.greatest_line_load
+    greatest = HEAVIEST * cells_of(cycle).face.greatest_line_load
     load = np.geomspace(greatest, LIGHTEST * greatest, loads)
     rho1 = _places(pair, places)
-    path = pair.path_at(rho1)
-    entrainment, sliding = path.entrainment(speed).tolist(), path.sliding(speed).tolist()
     rows: list[HeatedFilms] = []
-    for k, (u, slip, r) in enumerate(zip(entrainment, sliding, path.radius.tolist(), strict=True)):
-        contacts = [
-            ehl.LineContact(
-                load=w,
-                entrainment=u,
-                sliding=slip,
-                radius=r,
-                reduced_modulus=pair.reduced_modulus,
-                lubricant=lubricant,
-            )
-            for w in load.tolist()
-        ]
+    for k, place in enumerate(rho1):
+        at = np.full(loads, place)
+        contacts = with_sliding(pair, at, line_contacts(pair, at, load, speed, lubricant), speed)
         same = before is not None and len(before.rows) == places and len(before.load) == loads
         near = before.rows[k] if same and before is not None else rows[-1] if rows else None
-        rows.append(heated_films(np.full(loads, rho1[k]), contacts, oil, bulk, near))
+        rows.append(heated_films(at, contacts, oil, bulk, near))
     return HeatedTable(rho1, load, tuple(rows), bulk)

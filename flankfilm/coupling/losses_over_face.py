@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import gears
-from base import Array, described, part, quantity, record
+from base import Array, described, quantity, record
 from base.results import EXACT, ITSELF
+from fem.face_cells import FaceCells
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.films import touching
 from flankfilm.coupling.heated_table import HeatedTable
 from flankfilm.coupling.losses_along_path import LossesAlongPath
@@ -23,7 +25,7 @@ _AS_FILMS = "that of the films: see the path, and table_error for what is interp
 
 
 @record
-class FaceLosses:
+class FaceLosses(FaceCells):
     """Friction, losses and temperatures of all cells of the face, each a line contact under its line load.
 
     Heat does not flow along the face here, and oil neither; cells that bear less than the lightest film have its
@@ -33,17 +35,6 @@ class FaceLosses:
     no_error = "not estimated cell by cell; the mean losses have an error"
     headline = ("greatest_cell_temperature", "table_error")
 
-    face_position: Array = quantity(
-        "m", "middles of the cells, 0 at mid-face", "cell", shown="mm", no_error=EXACT
-    )
-    travel: Array = quantity(
-        "m",
-        "travel of each pair along the path of contact from A; nan where a pair cannot touch",
-        "position pair",
-        shown="mm",
-        no_error=EXACT,
-    )
-    line_load: Array = quantity("N/m", "force per length of face", "position pair cell", shown="N/mm")
     friction_coefficient: Array = quantity(
         "1", "coefficient of friction of each cell", "position pair cell", no_error=_AS_FILMS
     )
@@ -71,7 +62,6 @@ class FaceLosses:
         "relative error of the mean losses by what is interpolated between places and loads",
         no_error=ITSELF,
     )
-    pair: gears.GearPair = part("the gears")
 
     @described("W/m", "cell", no_error=_AS_FILMS)
     def mean_loss(self) -> Array:
@@ -101,27 +91,21 @@ def face_losses(
     table_error : float
         Of the mean losses.
     """
-    assert cycle.contact is not None
-    assert cycle.contact.face is not None
-    face = cycle.contact.face
+    face, rho1, bear = cells_of(cycle)
     load = face.line_load
-    rho1 = np.broadcast_to(cycle.rho1[..., None], load.shape)
-    bears = np.isfinite(rho1) & (load > 0.0)
 
     def each(figure: str) -> Array:
-        return np.where(bears, table.at(figure, rho1, load), np.nan)
+        return np.where(bear, table.at(figure, rho1, load), np.nan)
 
     friction = each("friction")
-    slip = np.abs(pair.path_at(np.where(bears, rho1, pair.points.C).ravel()).sliding(speed)).reshape(
+    slip = np.abs(pair.path_at(np.where(bear, rho1, pair.points.C).ravel()).sliding(speed)).reshape(
         load.shape
     )
     first, second = (
         each(f"{side}_rise") + at for side, at in zip(("first", "second"), table.bulk, strict=True)
     )
     return FaceLosses(
-        face_position=face.face_position,
-        travel=face.travel,
-        line_load=load,
+        **face.cells,
         friction_coefficient=friction,
         minimum_thickness=each("minimum_thickness"),
         oil_temperature_rise=each("oil_rise"),
@@ -130,7 +114,6 @@ def face_losses(
         rolling_loss=np.nan_to_num(each("rolling")),
         films=len(table.films),
         table_error=table_error,
-        pair=pair,
     )
 
 

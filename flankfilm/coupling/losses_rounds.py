@@ -9,6 +9,7 @@ import numpy as np
 import ehl
 from base import Array, SolverError
 from flankfilm.coupling.bulk_balance import BulkBalance
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films, sliding_contacts, thinned
 from flankfilm.coupling.heated_table import FEW as FEW_GRID
@@ -78,9 +79,7 @@ class LossRounds:
         """Films along the path; those of the most loaded cells where the load varies along the face."""
         if isinstance(agreed.films, HeatedFilms):
             return agreed.films
-        assert cycle.contact is not None
-        assert cycle.contact.face is not None
-        greatest = cycle.contact.face.line_load.max(axis=-1)
+        greatest = cells_of(cycle).greatest
         rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant, greatest)
         return heated_films(rho1, contacts, self.oil, agreed.bulk)
 
@@ -121,7 +120,7 @@ class LossRounds:
         bulk: tuple[float, float],
         before: HeatedFilms | HeatedTable | None,
     ) -> HeatedFilms | HeatedTable:
-        if cycle.contact is not None and cycle.contact.face is not None:
+        if cycle.face is not None:
             return self._table(cycle, GRID if most is None else FEW_GRID, bulk, before)
         assert not isinstance(before, HeatedTable)
         rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant)
@@ -139,10 +138,8 @@ class LossRounds:
         before: HeatedFilms | HeatedTable | None,
     ) -> HeatedTable:
         """Films over place and line load: those of the round before where these are the same."""
-        assert cycle.contact is not None
-        assert cycle.contact.face is not None
         table = before if isinstance(before, HeatedTable) and len(before.rows) == grid[0] else None
-        greatest = cycle.contact.face.greatest_line_load
+        greatest = cells_of(cycle).face.greatest_line_load
         if table is not None and table.bulk == bulk and greatest <= table.load[0]:
             return table
         return heated_table(self.teeth.pair, cycle, self.speed, self.lubricant, self.oil, bulk, grid, table)

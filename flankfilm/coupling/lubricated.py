@@ -181,7 +181,7 @@ def lubricate(
     """
     with unclocked():
         ehl.solve  # noqa: B018 - loads the solver
-    if dry.contact is not None and dry.contact.face is not None:
+    if dry.face is not None:
         return lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
     run = _Run(teeth, dry, speed, lubricant, resolution, model)
     agreed = run.agree(min(FILM_POSITIONS, dry.position.size))

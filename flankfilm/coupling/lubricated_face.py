@@ -11,6 +11,7 @@ import ehl
 from base import Array, SolverError, Stopwatch
 from fem.face_share import yielding_over_face
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
+from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.face_films import face_films
 from flankfilm.coupling.film_table import film_table
@@ -48,13 +49,13 @@ def lubricate_face(
     seconds = watch.seconds
     tolerance = min(resolution.sampling, resolution.transmission_error)
     cycle = teeth.cycle(dry.position.size, table, tolerance, table.varied())
-    contact = cycle.contact
-    if contact is None or contact.face is None:
+    face = cycle.face
+    if face is None:
         raise SolverError(
             "films reach the flanks on the other side, which know no cells of the face: raise the torque, or give "
             "more backlash"
         )
-    forces = contact.face.line_load * teeth.pair.face_width / contact.face.line_load.shape[-1]
+    forces = face.line_load * teeth.pair.face_width / face.line_load.shape[-1]
     yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
     secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)
     over = face_films(cycle, table, seconds)
@@ -94,8 +95,6 @@ def _along_path(
     profiles: bool,
 ) -> FilmAlongPath:
     """Films of the most loaded cells at some of the positions."""
-    assert cycle.contact is not None
-    assert cycle.contact.face is not None
     watch, step = Stopwatch(), max(1, cycle.position.size // SHOWN)
     kept = slice(step // 2, None, step)
     few = replace(
@@ -105,7 +104,7 @@ def _along_path(
         load_share=cycle.load_share[kept],
         contact=None,
     )
-    greatest = cycle.contact.face.line_load.max(axis=-1)[kept]
+    greatest = cells_of(cycle).greatest[kept]
     rho1, contacts = contacts_of(teeth.pair, few, speed, lubricant, greatest)
     path = films_of(model, rho1, contacts, None, resolution.films)
     positions = greatest.shape[0] if profiles else None
