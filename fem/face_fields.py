@@ -10,7 +10,7 @@ import numpy as np
 from base import Array, Faults, Integers, quantity, record
 from fem.cycle import MeshCycle
 from fem.cycle_rows import check_row
-from fem.face_waves import FaceWaves, GearPrisms, gear_prisms, on_flank
+from fem.face_waves import BESIDE, FaceWaves, GearPrisms, gear_prisms, on_flank
 from fem.flank_patches import FlankField, FlankPatch, Place, joined
 from fem.loaded_gears import frames
 
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from gears import GearPair
 
 __all__ = ["FaceField", "ToothField", "face_fields"]
-
-BESIDE = 1
-"""Teeth that are drawn on either side of the loaded ones."""
 
 
 @record
@@ -34,7 +31,8 @@ class ToothField:
     cells: Integers = quantity("1", "points of each wedge, a triangle along the face", "cell corner")
     displacement_m: Array = quantity(
         "m",
-        "elastic displacement of a gear between frictionless walls, on a hub that stands still",
+        "elastic displacement of a gear on a hub that stands still; with free ends where its cells are coupled so, "
+        "else between frictionless walls",
         "point space",
     )
     tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
@@ -87,7 +85,7 @@ def face_fields(
     found = Faults()
     check_row(found, cycle, row, over_face=True)
     found.raise_if_any()
-    ready = prisms or gear_prisms(bodies)
+    ready = prisms or gear_prisms(bodies, cycle)
     first, second = (_face_field(pair, cycle, row, bodies, gear, ready[gear]) for gear in (0, 1))
     return first, second
 
@@ -102,7 +100,14 @@ def _face_field(
     waves = FaceWaves.of(pair, cycle, row, loaded)
     places = [on_flank(ready.mesh, rho / module) for rho in cycle.flank_rho[gear][row, loaded]]
     apart = [[tooth - own for tooth in teeth] for own in tooth_of[loaded].tolist()]
-    moved = waves.moved(ready, places, apart) / flexible.law.plane_modulus
+    moved = waves.moved(ready, places, apart)
+    if ready.ends is not None and cycle.face is not None:
+        edges = (cycle.face.setting.edges(pair) - pair.face_offsets[gear]) / module
+        for load, place, some in zip(cycle.face.line_load[row, loaded], places, apart, strict=True):
+            forces = load * pair.face_width / len(load)
+            added = ready.ends.moved(float(place.rho[0]), forces, edges, some) / module
+            moved[:, :, ready.ends.nodes] += added
+    moved /= flexible.law.plane_modulus
     angle, centre = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))[gear]
     pitch = pair.teeth_profiles[gear].pitch_angle
     stands = [Place(angle + tooth * pitch, centre) for tooth in teeth]

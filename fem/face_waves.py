@@ -6,8 +6,8 @@ wave as a prism between frictionless walls (``fem.prism``), here with its whole 
     u(x, y, z) = sum_m q_m cos k_m (z + b/2) U(x, y; k_m),   w likewise by sines.
 
 U is solved for the waves of ``fem.gear_face`` and interpolated between them. Loads stand on the mesh as nodal forces:
-within an element of a contact the displacement is the mesh's and not that of Hertz's pressure. What free ends add is
-in the loads, but not in the displacement.
+within an element of a contact the displacement is the mesh's and not that of Hertz's pressure. Where cells are coupled
+by bodies with free ends, what these add is a table of its own (``fem.face_ends``).
 """
 
 from __future__ import annotations
@@ -19,22 +19,31 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.cycle import MeshCycle
+from fem.face_ends import EndFields, end_fields
+from fem.face_setting import FREE_ENDS
 from fem.gear_face import between_waves, section_of, solved_waves
 from fem.line_load import FlankPoints, flank_points
 from fem.prism import Face, Prism, prism
 from meshes import SectorMesh
+from meshes.outline import Sizes
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
     from gears import GearPair
 
-__all__ = ["FaceWaves", "GearPrisms", "gear_prisms", "on_flank"]
+__all__ = ["BESIDE", "FaceWaves", "GearPrisms", "gear_prisms", "layers_of", "on_flank"]
 
 DEPTH = 2.0
 """Depth below the root circle down to which the body is drawn, in modules."""
 
 SLIVER = 1e-6
 """Twice the area of a triangle that is left out where the body is cut off, in square modules."""
+
+ENDS_SIZES = Sizes(flank=0.5, fillet=0.4, root=0.45, corner=0.4, top=1.2, growth=1.0)
+"""Of the section where ends are free: four more prisms are solved on it, for pictures."""
+
+BESIDE = 1
+"""Teeth that are drawn on either side of the loaded ones."""
 
 LAYERS = 12
 """Layers of the solid along the face, or as many as there are cells if these are fewer."""
@@ -53,12 +62,15 @@ class GearPrisms:
         What is drawn of a sector: second-order triangles in four.
     points : (nodes, 2) array
         Where its nodes are drawn: those below a depth on the circle there, which cuts the body off.
+    ends : EndFields or None
+        What free ends add; None between walls.
     """
 
     mesh: SectorMesh
     prisms: tuple[Prism, ...]
     triangles: Integers
     points: Array
+    ends: EndFields | None = None
 
     def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
         """Displacements (waves, teeth, nodes, 3, loads) in each tooth's frame by unit line loads on tooth 0."""
@@ -69,20 +81,29 @@ class GearPrisms:
         return found
 
 
-def gear_prisms(bodies: Compliance) -> tuple[GearPrisms, GearPrisms]:
-    """Factorise both gears for waves along the face, on a coarse mesh.
+def gear_prisms(bodies: Compliance, cycle: MeshCycle) -> tuple[GearPrisms, GearPrisms]:
+    """Factorise both gears for waves along the face, on a coarse mesh; with free ends if its cells have these.
 
     Parameters
     ----------
     bodies : Compliance
+    cycle : MeshCycle
+        With cells.
     """
-    first, second = (_gear_prisms(bodies, gear) for gear in (0, 1))
+    first, second = (_gear_prisms(bodies, cycle, gear) for gear in (0, 1))
     return first, second
 
 
-def _gear_prisms(bodies: Compliance, gear: int) -> GearPrisms:
-    meshed = bodies.meshed[gear]
-    over, (_, waves) = section_of(meshed, meshed.sizes, 0), solved_waves()
+def layers_of(pair: GearPair, cells: int) -> Array:
+    """Layers of the solid along the face in contact (layers,) [m], 0 at mid-face."""
+    return np.asarray(np.linspace(-0.5, 0.5, min(LAYERS, cells) + 1) * pair.face_width)
+
+
+def _gear_prisms(bodies: Compliance, cycle: MeshCycle, gear: int) -> GearPrisms:
+    assert cycle.face is not None
+    meshed, setting, pair = bodies.meshed[gear], cycle.face.setting, bodies.pair
+    free = setting.model == FREE_ENDS
+    over, (_, waves) = section_of(meshed, ENDS_SIZES if free else meshed.sizes, 0), solved_waves()
     mesh = over.mesh
     a, b, c, ab, bc, ca = mesh.triangles.T
     quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
@@ -95,7 +116,13 @@ def _gear_prisms(bodies: Compliance, gear: int) -> GearPrisms:
         np.linalg.norm(mesh.points[triangles], axis=2) > depth, axis=1
     )
     prisms = tuple(prism(over, Face.wave(float(k))) for k in waves)
-    return GearPrisms(mesh, prisms, triangles[shown], points)
+    ends = None
+    if free:
+        z = (layers_of(pair, setting.cells) - pair.face_offsets[gear]) / pair.module
+        apart = int(np.ptp(cycle.pair_offset[np.any(cycle.forces > 0.0, axis=0)])) + BESIDE
+        nodes = np.unique(triangles[shown])
+        ends = end_fields(meshed, over, pair.face_widths[gear] / pair.module, z, apart, nodes)
+    return GearPrisms(mesh, prisms, triangles[shown], points, ends)
 
 
 @record
@@ -123,7 +150,7 @@ class FaceWaves:
         m = np.arange(cells)
         cosines = np.cos(np.pi * m[:, None] * (np.arange(cells) + 0.5) / cells)
         modes = load @ cosines.T * np.where(m, 2.0, 1.0) / cells
-        layers = np.linspace(-0.5, 0.5, min(LAYERS, cells) + 1) * width
+        layers = layers_of(pair, cells)
         turn = np.pi * m * (layers[:, None] / width + 0.5)
         by_wave = between_waves(np.pi * m * pair.module / width)
         even, odd = (np.einsum("km,lm,mw->klw", modes, f(turn), by_wave) for f in (np.cos, np.sin))

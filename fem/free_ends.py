@@ -59,6 +59,15 @@ class HalfFace:
             self.mixed.T[psi, phi],
         )
 
+    def values(self, z: Array) -> Array:
+        """Every function (n, k) at places (k,) of the half with z >= 0 [m]."""
+        piece = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
+        start, stop = self.ends[piece], self.ends[piece + 1]
+        found = np.zeros((len(self.mass), len(z)))
+        rows = ORDER * piece[:, None] + np.arange(ORDER + 1)
+        found[rows, np.arange(len(z))[:, None]] = _values(2 * (z - start) / (stop - start) - 1)
+        return found
+
     def means(self, edges: Array) -> tuple[Array, Array]:
         """Means over cells of every function, and of its opposite on the other half.
 
