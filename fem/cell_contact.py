@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from fem.contact_candidates import ContactCandidates
     from fem.face_setting import FaceSetting
     from fem.setting import Setting
-    from gears import LoadShare
+    from gears import GearPair, LoadShare
 
-__all__ = ["CellContact", "CellShare"]
+__all__ = ["CellContact", "CellShare", "along_cells"]
 
 
 @record
@@ -38,11 +38,17 @@ class CellShare:
     bends, left : (torques, pitches, positions, pairs, cells) arrays
         How far bodies bend, and the gap that is so left under load [m]; where a cell bears, minus what the contact's
         own law yields.
+    strips : (torques,) array
+        Half-widths of strips of pressure over a cell's length (``fem.wide_contact``).
+    rise : (torques, pitches, positions, pairs, cells) array
+        By how much least gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
     """
 
     share: LoadShare
     bends: Array
     left: Array
+    strips: Array
+    rise: Array
 
     @property
     def forces(self) -> Array:
@@ -115,7 +121,8 @@ class CellContact:
         left = bends + apart - found.transmission_error[..., None]
         if film is not None:
             left = left - film.approach(np.zeros_like(found.forces))
-        return CellShare(found, _by_cells(bends, cells), _by_cells(left, cells))
+        bends, left = _by_cells(bends, cells), _by_cells(left, cells)
+        return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise)
 
     def rises(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the least gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
@@ -126,14 +133,12 @@ class CellContact:
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
-        along = face.gaps(self.given.pair, self._radius) - face.least_gap(self.given.pair)
-        apart = self.gaps[..., None] + np.maximum(along, 0.0)
+        apart = self.gaps[..., None] + along_cells(face, self.given.pair, self.where)
         return _flat(np.where(self.where.touchable[..., None], apart, np.inf))
 
     @property
     def _radius(self) -> Array:
-        rho1, rho2 = self.where.rho
-        return np.asarray(rho1 * rho2 / (rho1 + rho2))
+        return _radius(self.where)
 
     def _half_widths(self, line_load: Array) -> Array:
         """Greatest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
@@ -158,6 +163,16 @@ class CellContact:
             oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[one]),
             levers=None if self.levers is None else self.levers[one],
         )
+
+
+def along_cells(face: FaceSetting, pair: GearPair, where: ContactCandidates) -> Array:
+    """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
+    return np.maximum(face.gaps(pair, _radius(where)) - face.least_gap(pair), 0.0)
+
+
+def _radius(where: ContactCandidates) -> Array:
+    rho1, rho2 = where.rho
+    return np.asarray(rho1 * rho2 / (rho1 + rho2))
 
 
 def _by_cells(values: Array, cells: int) -> Array:

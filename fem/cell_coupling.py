@@ -9,7 +9,7 @@ import numpy as np
 from base import Array, Booleans, Integers
 from gears.load_coupling import Coupling
 
-__all__ = ["CellCoupling"]
+__all__ = ["CellCoupling", "solve_symmetric"]
 
 
 START = 0.1
@@ -84,11 +84,11 @@ class CellCoupling(Coupling):
             jacobian = block.take(bears, axis=0).take(bears, axis=1)
             jacobian.flat[:: len(bears) + 1] += slope[at][chosen]
             sides = np.stack([np.ones(len(bears)), residual[at][chosen]])
-            unit[at][chosen], response[at][chosen] = _solve(jacobian, sides)
+            unit[at][chosen], response[at][chosen] = solve_symmetric(jacobian, sides)
         return unit, response, 1.0
 
 
-def _solve(matrix: Array, sides: Array) -> Array:
+def solve_symmetric(matrix: Array, sides: Array) -> Array:
     """Solve for rows of sides by Cholesky's method; where cells are narrow the matrix may be indefinite."""
     from scipy.linalg.lapack import dposv
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, Booleans
 from fem.cell_coupling import CellCoupling
 from fem.face_compliance import pair_ends, pair_waves
 from fem.face_setting import FREE_ENDS, SLICES, FaceSetting
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from fem.bodies import Compliance
     from fem.contact_candidates import ContactCandidates
 
-__all__ = ["cell_coupling", "cell_matrix"]
+__all__ = ["cell_coupling", "cell_matrix", "in_blocks"]
 
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
@@ -34,17 +35,10 @@ def cell_coupling(
     size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
 
     def cut() -> CellCoupling:
-        own, (positions, pairs) = np.arange(face.cells), kappa.shape
-        cells = tuple((np.flatnonzero(row)[:, None] * face.cells + own).ravel() for row in where.touchable)
-        blocks: list[Array] = []
-        step = max(1, MOST_AT_ONCE // (pairs * face.cells) ** 2)
-        for first in range(0, positions, step):
-            some = slice(first, first + step)
-            whole = cell_matrix(face, bodies, where.rho[:, some], kappa[some], matrix[some])
-            blocks += (
-                one.take(at, axis=0).take(at, axis=1) for one, at in zip(whole, cells[some], strict=True)
-            )
-        return CellCoupling(cells, tuple(blocks), pairs * face.cells)
+        def some(of: slice) -> Array:
+            return cell_matrix(face, bodies, where.rho[:, of], kappa[of], matrix[of])
+
+        return in_blocks(some, where.touchable, face.cells)
 
     if size > MOST_KEPT:
         return cut()
@@ -54,6 +48,28 @@ def cell_coupling(
     size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
     key = (bodies.meshed, laws, size_of, face.coupled, *(one.tobytes() for one in arrays))
     return Gears().over_face("cells", key, cut)
+
+
+def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
+    """What stands between the cells of pairs that may touch.
+
+    Parameters
+    ----------
+    some : callable
+        Matrices (k, n, n) between the cells of all pairs at k of the positions, as a slice.
+    touchable : (positions, pairs) boolean array
+    cells : int
+    """
+    own, (positions, pairs) = np.arange(cells), touchable.shape
+    chosen = tuple((np.flatnonzero(row)[:, None] * cells + own).ravel() for row in touchable)
+    blocks: list[Array] = []
+    step = max(1, MOST_AT_ONCE // (pairs * cells) ** 2)
+    for first in range(0, positions, step):
+        of = slice(first, first + step)
+        blocks += (
+            one.take(at, axis=0).take(at, axis=1) for one, at in zip(some(of), chosen[of], strict=True)
+        )
+    return CellCoupling(chosen, tuple(blocks), pairs * cells)
 
 
 def cell_matrix(face: FaceSetting, bodies: Compliance, rho: Array, kappa: Array, matrix: Array) -> Array:

@@ -102,14 +102,22 @@ def cycle_of(
         reference=held,
         face=None if refusal else face_loads(given, contact, number, bodies.plane),
         loaded=None
-        if refusal or given.face is not None
-        else LoadedContacts(given, bodies, where, turned, approach, force),
+        if refusal
+        else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force),
         problem=None
         if refusal
         else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
     )
+
+
+def _on_faces(contact: Solution, number: int) -> Array:
+    """Forces kappa F of pairs (..., pairs), or of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
+    if contact.face is None:
+        return np.asarray(contact.share.forces[number])
+    forces = contact.face.forces[number]
+    return np.asarray(forces.shape[-1] * np.moveaxis(forces, -1, 0))
 
 
 def _large(given: Setting, contact: Solution, number: int, forces: Array, plane: str) -> list[str]:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 __all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
+SPREAD = 0.15
+"""Arc from the tip corner [modules] within which loads on cells count as there: the pressure of a contact beside a
+corner, or of the corner, spreads as far; a line at the corner would yield less than nothing in short waves."""
+
 DIGITS = 12
 """Of lengths over the module, by which what is solved of a face is known."""
 
@@ -78,7 +82,9 @@ def gear_waves(
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
     diagonal = np.arange(n)
-    unit, at = 1.0 / flexible.law.plane_modulus, rho / bodies.pair.module
+    module = bodies.pair.module
+    last = waves.rho_end**2 - 2.0 * SPREAD * flexible.base_radius / module
+    unit, at = 1.0 / flexible.law.plane_modulus, np.minimum(rho / module, np.sqrt(last))
     wide = beyond_logarithm(wavenumber * half_width) if half_width else 0.0
     found[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
     for apart in range(1, min(n, bodies.reach + 1)):

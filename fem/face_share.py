@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fem.setting import Setting
     from gears import LoadShare
 
-__all__ = ["FaceShare", "share_over_face", "yielding_over_face"]
+__all__ = ["FaceShare", "of_pairs", "settled_gaps", "share_over_face", "yielding_over_face"]
 
 
 @record
@@ -48,6 +48,12 @@ class FaceShare:
         Estimated relative error of mean stiffness and deflection by the cells.
     shafts : ShaftsUnderFace or None
         None where they are rigid.
+    strips, rise
+        As of ``fem.cell_contact.CellShare``.
+    least : float
+        Turn at which the first place of the face touches, from where straight, aligned gears do [m].
+    lost : two (2, torques, pitches, positions, pairs) arrays or None
+        Parts of both base radii by which levers of forces, and of further ones, are shorter where contacts move.
     """
 
     forces: Array
@@ -55,6 +61,10 @@ class FaceShare:
     factor_error: Array
     stiffness_error: Array
     shafts: ShaftsUnderFace | None
+    strips: Array
+    rise: Array
+    least: float
+    lost: tuple[Array, Array] | None = None
 
     @property
     def open(self) -> Array:
@@ -83,7 +93,7 @@ def share_over_face(
     FaceShare
         Of their cells.
     """
-    from gears.load_sharing import LoadShare, share_load
+    from gears.load_sharing import share_load
 
     assert given.face is not None
     over = CellContact(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
@@ -92,16 +102,40 @@ def share_over_face(
     coarse = over.shared(few, plane.forces[..., None])
     coarse = over.shared(few, coarse.forces, over.rises(few, coarse))
     fine = over.shared(given.face, coarse.forces, over.rises(given.face, coarse))
-    found, forces, left = fine.share, fine.forces, fine.left
-    pairs, slopes = forces.sum(axis=-1), found.pair_stiffness.reshape(forces.shape)
-    share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
     errors = cell_errors(over, given.face, fine, coarse)
     shafts = shafts_under_face(given.face, given.pair)
-    if shafts is not None:
-        loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
-        share = shafts.measured_between(share, loads, by_slope)
-    left = np.where(forces > 0.0, np.minimum(left, 0.0), left)
-    return share, FaceShare(forces, left, *errors, shafts)
+    share, left = of_pairs(fine.share, given.face.cells, kappa, shafts), settled_gaps(fine.left, fine.forces)
+    return share, FaceShare(
+        fine.forces, left, *errors, shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
+    )
+
+
+def of_pairs(found: LoadShare, cells: int, kappa: Array, shafts: ShaftsUnderFace | None) -> LoadShare:
+    """Share of pairs from that of their cells, the deflection measured between the mid-faces of gears on shafts.
+
+    Parameters
+    ----------
+    found : LoadShare
+        Of (..., pairs cells).
+    cells : int
+    kappa : (positions, pairs) array
+        Levers of the normals in whose forces it is.
+    shafts : ShaftsUnderFace or None
+    """
+    from gears.load_sharing import LoadShare
+
+    forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
+    pairs = forces.sum(axis=-1)
+    share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
+    if shafts is None:
+        return share
+    loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
+    return shafts.measured_between(share, loads, by_slope)
+
+
+def settled_gaps(left: Array, forces: Array) -> Array:
+    """Gaps that are left, of cells that bear over a part of their length none."""
+    return np.where(forces > 0.0, np.minimum(left, 0.0), left)
 
 
 def yielding_over_face(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:

@@ -31,8 +31,8 @@ class LoadedContacts:
     given : Setting
     bodies : Compliance
     where : ContactCandidates
-    force : (..., pairs) array
-        Forces times their levers over the base radius [N].
+    force : (..., pairs) array, or (cells, ..., pairs) array
+        Forces times their levers over the base radius [N]; of whole faces at the line loads of the cells.
     approach : (...) array
         Deflection [m].
     load : float

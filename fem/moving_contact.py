@@ -24,25 +24,26 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.flamant import hertz_half_width
+from fem.moving_newton import Linearised, moved_forces
 from fem.third_order import half_plane, large_strain
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
     from fem.contact_candidates import ContactCandidates
     from fem.elasticity import PlaneElasticity
-    from fem.local_law import PairLaws
+    from fem.local_law import FilmLaw, PairLaws
     from fem.moving_corners import MovedFlanks
     from gears import LoadShare
-    from gears.load_sharing import DeflectionLaw
 
-__all__ = ["ContactMoves", "contact_moves", "model_error", "moved_places", "moved_share"]
-
-ITERATIONS = 100
-CLOSE = 1e-11
-"""Change of forces, relative to the whole, at which Newton's method ends."""
-
-ROUNDING = 1e-13
-"""Overlap, relative to the deflection, that takes no pair in."""
+__all__ = [
+    "ContactMoves",
+    "MovingPairs",
+    "contact_moves",
+    "model_error",
+    "moved_places",
+    "moved_share",
+    "moving_pairs",
+]
 
 
 @record
@@ -132,20 +133,86 @@ def _energies(parts: Array, law: PlaneElasticity) -> Array:
     return np.stack([parts[0], large_strain(parts, law)])
 
 
-def moved_share(
-    share: LoadShare,
-    force: Array,
+@record
+class MovingPairs:
+    """Pairs whose contacts move (``fem.moving_newton``).
+
+    Attributes
+    ----------
+    bulk, laws, film, levers
+        As for ``share_load``.
+    clear : (..., pairs) array
+        Gaps, 0 where there is no contact [m].
+    touchable : (..., pairs) boolean array
+    moves : ContactMoves
+    own : MovedFlanks or None
+        What the pinion's own flanks and corners yield (``fem.moving_corners``).
+    start : float
+        Part of the whole force with which a pair is taken in.
+    """
+
+    bulk: Array
+    laws: PairLaws
+    film: FilmLaw | None
+    clear: Array
+    touchable: Booleans
+    levers: Array
+    moves: ContactMoves
+    own: MovedFlanks | None
+    start: float = 1e-2
+
+    def linearised(self, loads: Array, approach: Array) -> Linearised:
+        """As of ``MovingForces``."""
+        rolled, (thrust, stiffened) = self.moves.rolled(loads), self.moves.thrust(loads)
+        residual = (self.bulk @ loads[..., None])[..., 0] + self.laws.approach(loads) + self.clear - thrust
+        residual += approach[..., None] * (rolled - 1)
+        slope = self.laws.slope(loads) - stiffened
+        if self.film is not None:
+            residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
+        slope, reach = np.where(loads > 0, slope, 1.0), 1 - rolled
+        carried, stiff = np.sum((self.levers - 0.5 * rolled) * loads, axis=-1), np.zeros_like(approach)
+        if self.own is not None:
+            more = self.own.pushed(loads, approach[..., None])
+            residual, slope, reach = residual + more.approach, slope + more.slope, reach - more.less
+            carried = carried - np.sum(np.where(loads > 0, more.push, 0.0), axis=-1)
+            stiff = np.sum(np.where(loads > 0, more.stiff, 0.0), axis=-1)
+        return Linearised(residual, reach, self.levers - (1 - reach), carried, stiff, slope)
+
+    def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
+        """As of ``MovingForces``."""
+        jacobian = self.bulk + approach[..., None, None] * self.moves.roll
+        jacobian = jacobian + at.own[..., None] * np.eye(active.shape[-1])
+        both = active[..., :, None] & active[..., None, :]
+        scale = np.abs(jacobian).max()
+        matrix = np.where(both, jacobian / scale, np.eye(active.shape[-1]))
+        sides = np.stack([np.where(active, at.reach, 0.0), np.where(active, at.residual, 0.0)], axis=-1)
+        solved = np.linalg.solve(matrix, sides / scale)
+        return solved[..., 0], solved[..., 1]
+
+    def unloaded(self, loads: Array, approach: Array) -> Array:
+        """As of ``MovingForces``."""
+        clear = self.clear if self.film is None else self.clear - self.film.approach(np.zeros_like(loads))
+        found = (self.bulk @ loads[..., None])[..., 0] + clear
+        found += approach[..., None] * (self.moves.rolled(loads) - 1)
+        return np.asarray(found if self.own is None else found + self.own.opened(approach[..., None]))
+
+
+def moving_pairs(
     bulk: Array,
     laws: PairLaws,
+    film: FilmLaw | None,
     gaps: Array,
-    film: DeflectionLaw | None,
     levers: Array,
     moves: ContactMoves,
     own: MovedFlanks | None = None,
-) -> LoadShare | None:
-    """Solve with moving contacts, from the solution without; arguments as for ``share_load``.
+) -> MovingPairs:
+    """Put contacts that move together, arguments as for ``share_load``."""
+    touchable = np.isfinite(gaps)
+    return MovingPairs(bulk, laws, film, np.where(touchable, gaps, 0.0), touchable, levers, moves, own)
 
-    With what the pinion's own flanks and corners yield (``fem.moving_corners``).
+
+def moved_share(share: LoadShare, force: Array, pairs: MovingPairs) -> LoadShare | None:
+    """Solve with moving contacts, from the solution without.
 
     Returns
     -------
@@ -153,86 +220,8 @@ def moved_share(
         None where Newton's method does not settle: the deflection is far beyond the first order.
     """
     whole = force + np.zeros_like(share.transmission_error)
-    touchable = np.isfinite(gaps) & np.ones_like(share.forces, dtype=bool)
-    clear = np.where(touchable, gaps, 0.0)
-    at_zero = clear if film is None else clear - film.approach(np.zeros_like(share.forces))
-    active, loads, approach = share.forces > 0, share.forces, share.transmission_error
-    start = np.full(loads.shape, 1e-2)
-    for iteration in range(1, ITERATIONS + 1):
-        residual, jacobian, reach = _linearised(bulk, laws, film, clear, moves, loads, approach)
-        carried, stiff = np.sum((levers - 0.5 * (1 - reach)) * loads, axis=-1), 0.0
-        if own is not None:
-            more = own.pushed(loads, approach)
-            residual, reach = residual + more.approach, reach - more.less
-            jacobian = jacobian + more.slope[..., None] * np.eye(loads.shape[-1])
-            carried = carried - np.sum(np.where(active, more.push, 0.0), axis=-1)
-            stiff = np.sum(np.where(active, more.stiff, 0.0), axis=-1)
-        arms = levers - (1 - reach)
-        unit, response = _solved(jacobian, reach, residual, active)
-        tangent = np.sum(arms * unit, axis=-1) - stiff
-        lift = (whole - carried + np.sum(arms * response, axis=-1)) / tangent
-        step = np.where(active, unit * lift[..., None] - response, 0.0)
-        moved = loads + step
-        negative = active & (moved <= 0)
-        kept = np.where(negative, 0.0, moved)
-        approach = approach + lift
-        # as in ``share_load``: a pair is released if it stands clear without force, else it keeps a part of it; one
-        # that comes back is taken in with less
-        unloaded = (bulk @ kept[..., None])[..., 0] + at_zero
-        unloaded += approach[..., None] * (moves.rolled(kept) - 1)
-        if own is not None:
-            unloaded += own.opened(approach)
-        released = negative & (unloaded >= 0)
-        taken = touchable & ~active & (unloaded < -ROUNDING * np.abs(approach)[..., None])
-        settled = np.all(np.abs(step) <= CLOSE * whole[..., None])
-        loads = np.where(negative & ~released, 0.1 * loads, kept)
-        loads = np.where(taken, start * whole[..., None], loads)
-        start = np.where(taken, 0.1 * start, start)
-        active = (active & ~released) | taken
-        if not (np.all(np.isfinite(loads)) and np.all(tangent > 0)):
-            return None
-        if settled and not (np.any(negative) or np.any(taken)):
-            per_pair = np.where(active, unit, 0.0)
-            return replace(
-                share,
-                forces=loads,
-                transmission_error=approach,
-                stiffness=tangent,
-                pair_stiffness=per_pair,
-                iterations=share.iterations + iteration,
-            )
-    return None
-
-
-def _linearised(
-    bulk: Array,
-    laws: PairLaws,
-    film: DeflectionLaw | None,
-    clear: Array,
-    moves: ContactMoves,
-    loads: Array,
-    approach: Array,
-) -> tuple[Array, Array, Array]:
-    """Overlap wanting (..., n), its slopes by the forces (..., n, n) and, with the sign turned, by D (..., n)."""
-    rolled, (thrust, stiffened) = moves.rolled(loads), moves.thrust(loads)
-    residual = (bulk @ loads[..., None])[..., 0] + laws.approach(loads) + clear - thrust
-    residual += approach[..., None] * (rolled - 1)
-    slope = laws.slope(loads) - stiffened
-    if film is not None:
-        residual, slope = residual - film.approach(loads), slope - film.slope(loads)
-    slope = np.where(loads > 0, slope, 1.0)
-    jacobian = bulk + approach[..., None, None] * moves.roll + slope[..., None] * np.eye(loads.shape[-1])
-    return residual, jacobian, 1 - rolled
-
-
-def _solved(jacobian: Array, reach: Array, residual: Array, active: Booleans) -> tuple[Array, Array]:
-    """Answers of the forces in contact to the turn and to the residual."""
-    both = active[..., :, None] & active[..., None, :]
-    scale = np.abs(jacobian).max()
-    matrix = np.where(both, jacobian / scale, np.eye(active.shape[-1]))
-    sides = np.stack([np.where(active, reach, 0.0), np.where(active, residual, 0.0)], axis=-1) / scale
-    solved = np.linalg.solve(matrix, sides)
-    return solved[..., 0], solved[..., 1]
+    found = moved_forces(pairs, whole, share.forces, share.transmission_error)
+    return None if found is None else replace(found, iterations=share.iterations + found.iterations)
 
 
 def moved_places(moves: ContactMoves, force: Array, approach: Array) -> Array:
@@ -253,8 +242,8 @@ def model_error(
     Parameters
     ----------
     moves : ContactMoves
-    force : (..., pairs) array
-        [N]
+    force : (..., pairs) array, or (cells, ..., pairs) array
+        Of whole faces, at the line loads of the cells where there are any [N].
     approach : (...) array
         Deflection D [m].
     moving : bool
@@ -262,9 +251,10 @@ def model_error(
     changed : (...) array, optional
         Part of D by which solutions with and without motion differ, where that is known.
     """
-    part = force / force.sum(axis=-1, keepdims=True)
-    turn = np.sum(part * moves.rolled(force), axis=-1)
-    thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=-1) / approach for k in (0, 1))
+    every = (0, -1) if force.ndim > approach.ndim + 1 else -1
+    part = force / force.sum(axis=every, keepdims=True)
+    turn = np.sum(part * moves.rolled(force), axis=every)
+    thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=every) / approach for k in (0, 1))
     change = np.maximum(np.abs(1.5 * turn - thrust), changed)
     whole = np.abs(law) + change**2 + (0.0 if moving else change)
     return float(np.max(whole))

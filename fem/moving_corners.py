@@ -79,10 +79,10 @@ class MovedFlanks:
     share: Array
     flank: GearCompliance
 
-    def rolled(self, force: Array, approach: Array) -> Pushed:
-        """What the pinion's flanks yield to forces (..., pairs) [N] where they have rolled on by D (...) [m]."""
+    def rolled(self, force: Array, turn: Array) -> Pushed:
+        """What the pinion's flanks yield to forces (..., pairs) [N] where they have rolled on by D (..., pairs) [m]."""
         flank = self.flank
-        at, first, second = up_to(self.base + approach[..., None], flank.rho_range[1], flank.module)
+        at, first, second = up_to(self.base + turn, flank.rho_range[1], flank.module)
         slope = flank.own_slope(at) * self.share * (at > flank.rho_range[0])
         bend = flank.own_bend(at) * self.share * (at > flank.rho_range[0])
         own, square = (flank.own(at) - flank.hub_windup) * self.share, 0.5 * force**2
@@ -94,35 +94,35 @@ class MovedFlanks:
             (bend * first**2 + slope * second) * square,
         )
 
-    def _places(self, corner: int, approach: Array) -> Array:
+    def _places(self, corner: int, turn: Array) -> Array:
         """Places of the contacts beside a corner: those of the pinion roll on."""
-        turned = approach if corner == 0 else np.zeros_like(approach)
-        return np.asarray((self.beyond[corner] + turned[..., None])[..., self.beside[corner]])
+        turned = turn if corner == 0 else np.zeros_like(turn)
+        return np.asarray((self.beyond[corner] + turned)[..., self.beside[corner]])
 
-    def cornered(self, force: Array, approach: Array) -> Pushed:
-        """What the corners add."""
-        found = Pushed(*(np.zeros(np.broadcast(force, approach[..., None]).shape) for _ in range(5)))
+    def cornered(self, force: Array, turn: Array) -> Pushed:
+        """What the corners add to forces (..., pairs) [N] under turns D (..., pairs) [m]."""
+        found = Pushed(*(np.zeros(np.broadcast(force, turn).shape) for _ in range(5)))
         size = force + found.approach
         for corner, (surface, some) in enumerate(zip(self.surfaces, self.beside, strict=True)):
             if some.any():
-                at = surface.at(self._places(corner, approach), size[..., some])
+                at = surface.at(self._places(corner, turn), size[..., some])
                 for name in (
                     ("approach", "slope") if corner else ("approach", "slope", "push", "less", "stiff")
                 ):
                     getattr(found, name)[..., some] = getattr(at, name)
         return found
 
-    def opened(self, approach: Array) -> Array:
-        """Gaps of the corners without a force (..., pairs) under a deflection D (...) [m]."""
-        found = np.zeros((*approach.shape, self.base.shape[-1]))
+    def opened(self, turn: Array) -> Array:
+        """Gaps of the corners without a force (..., pairs) under turns D (..., pairs) [m]."""
+        found = np.zeros(np.broadcast(turn, self.base).shape)
         for corner, (surface, some) in enumerate(zip(self.surfaces, self.beside, strict=True)):
             if some.any():
-                found[..., some] = surface.gap(self._places(corner, approach))
+                found[..., some] = surface.gap(self._places(corner, turn))
         return found
 
-    def pushed(self, force: Array, approach: Array) -> Pushed:
+    def pushed(self, force: Array, turn: Array) -> Pushed:
         """Both together."""
-        one, two = self.rolled(force, approach), self.cornered(force, approach)
+        one, two = self.rolled(force, turn), self.cornered(force, turn)
         return Pushed(
             one.approach + two.approach,
             one.slope + two.slope,

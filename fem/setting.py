@@ -117,9 +117,6 @@ class Setting:
         found.number("friction", self.friction, FRICTION)
         if self.face is not None:
             self.face.check(found, self.pair, self.positions)
-            if self.moving_contact:
-                remedy = "leave moving_contact out"
-                found.add("moving_contact", True, "must be False where the face has cells", remedy)
         both = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
         if len(both) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in both):
             found.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")

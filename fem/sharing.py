@@ -16,8 +16,9 @@ from fem.edge_tables import EdgeTables
 from fem.face_share import FaceShare, share_over_face
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.local_law import Film
-from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share
+from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share, moving_pairs
 from fem.moving_corners import MovedFlanks, moved_flanks
+from fem.moving_face import moved_over_face
 from fem.opposite_flanks import OppositeShare, share_with_opposite
 from fem.setting import Setting
 
@@ -42,9 +43,12 @@ class MovedShare:
         """Places of tip edges (2, pitches, positions, pairs) [m]."""
         return self.own.edge_rho(self.flanks, self.given, approach)
 
-    def lever_losses(self, found: Solution, both: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Parts of the base radii (2, torques, ...) by which levers are shorter, with what the pinion's flanks add."""
-        half, whole = both
+    def turned(self, found: Solution) -> Array:
+        """Part of the pinion's base radius (positions, pairs) by which levers about the wheel's axis are longer."""
+        return np.asarray(found.where.lever[0, : self.given.positions] / found.kappa - 1.0)
+
+    def add_losses(self, found: Solution, half: Array, whole: Array) -> None:
+        """Add what the pinion's flanks take from the levers of forces, and of further ones (2, torques, ...)."""
         force, approach, slope = (
             found.share.forces,
             found.share.transmission_error,
@@ -52,15 +56,11 @@ class MovedShare:
         )
         bears = (force > 0.0) & (slope != 0.0)
         size, per_turn = np.where(bears, force, 1.0), np.where(bears, slope, 1.0)
-        turned = found.where.lever[0, : self.given.positions] / found.kappa - 1.0
-        parts = self.own.rolled(force, approach), self.own.cornered(force, approach)
+        parts = self.own.rolled(force, approach[..., None]), self.own.cornered(force, approach[..., None])
         for gears, one in zip(((0, 1), (0,)), parts, strict=True):
             for gear in gears:
                 half[gear] += np.where(bears, one.push / size, 0.0)
                 whole[gear] += np.where(bears, one.less + one.stiff / per_turn, 0.0)
-        half[0] += turned
-        whole[0] += turned
-        return half, whole
 
 
 @record
@@ -118,9 +118,18 @@ class Solution:
         force = self.share.forces
         if self.moves is None:
             return np.zeros((2, *force.shape)), np.zeros((2, *force.shape))
-        tilted = self.moves.rolled(force)
-        both = 0.5 * np.stack([tilted, tilted]), np.stack([tilted, tilted])
-        return both if self.moved is None else self.moved.lever_losses(self, both)
+        if self.face is None or self.face.lost is None:
+            tilted = self.moves.rolled(force)
+            half, whole = 0.5 * np.stack([tilted, tilted]), np.stack([tilted, tilted])
+            if self.moved is not None:
+                self.moved.add_losses(self, half, whole)
+        else:
+            half, whole = (one.copy() for one in self.face.lost)
+        if self.moved is not None:
+            turned = self.moved.turned(self)
+            half[0] += turned
+            whole[0] += turned
+        return half, whole
 
     def lever_loss(self, number: int) -> tuple[Array, Array]:
         """Parts of both base radii by which levers of forces, and of further ones, are shorter.
@@ -142,6 +151,7 @@ class Solution:
         if self.moves is None:
             return rho
         force, approach = share.forces[number], share.transmission_error[number]
+        approach = approach if self.face is None else approach + self.face.least
         rho = rho + np.where(self.where.edge, 0.0, moved_places(self.moves, force, approach))
         if self.moved is not None:
             rho = np.where(self.where.edge, self.moved.edge_rho(approach), rho)
@@ -237,16 +247,23 @@ def one_sided(
             own = moved_flanks(given, bodies, flanks, float(np.max(force)), tables)
             matrix, laws, gaps = own.matrix, own.laws, own.gaps
             levers, kappa = own.levers, np.ones_like(kappa) if own.surfaces else kappa
-        moved = moved_share(share, whole, matrix, laws, gaps, oil, levers, moves, own)
-        settled = moved is not None
-        share = share if moved is None else moved
-    propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
-    bent = (matrix @ share.forces[..., None])[..., 0] + gaps
-    left = bent - propped - share.transmission_error[..., None] if over is None else over.open
-    if moves is not None:
-        left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
-    if own is not None:
-        left = left + own.pushed(share.forces, share.transmission_error).approach
+        pairs = moving_pairs(matrix, laws, oil, gaps, levers, moves, own)
+        if over is None:
+            moved = moved_share(share, whole, pairs)
+            share, settled = share if moved is None else moved, moved is not None
+        else:
+            both = moved_over_face(given, bodies, whole, flanks, kappa, pairs, over)
+            (share, over), settled = (share, over) if both is None else both, both is not None
+    if over is None:
+        propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
+        bent = (matrix @ share.forces[..., None])[..., 0] + gaps
+        left = bent - propped - share.transmission_error[..., None]
+        if moves is not None:
+            left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
+        if own is not None:
+            left = left + own.pushed(share.forces, share.transmission_error[..., None]).approach
+    else:
+        left = over.open
     closing = share.transmission_error - bodies.turning * whole
     moved_by = None if own is None else MovedShare(own, flanks, given)
     levers = levers if own is None else flanks.levers * flanks.kappa / kappa

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, TypedDict
 
 import gears
 from base import Fault, Faults
-from flankfilm.coupling.flanks import contacts_move
 from flankfilm.coupling.loaded_teeth import POSITIONS
 from flankfilm.scene.alignment import LEAD_KEYS
 from flankfilm.scene.dynamics import BY_FILM
@@ -88,11 +87,6 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     if scene.stiffness.plane != "strain":
         remedy = f'Take stiffness.plane = "strain", {drop}'
         yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {where}', remedy)
-    if contacts_move(pair, scene.stiffness.moving_contact):
-        asked = scene.stiffness.moving_contact
-        value = "true, of plastics if left out" if asked is None else "true"
-        remedy = f"Give stiffness.moving_contact = false, {drop}"
-        yield Fault("stiffness.moving_contact", value, f"must be false {where}: contacts stay", remedy)
 
 
 def _of_films(scene: Scene, where: str, drop: str) -> Iterator[Fault]:

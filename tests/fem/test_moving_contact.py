@@ -13,7 +13,7 @@ from fem.contact_candidates import contact_candidates
 from fem.elasticity import PlaneElasticity
 from fem.flank_motion import flank_motion
 from fem.local_law import PairLaws
-from fem.moving_contact import contact_moves, model_error, moved_share
+from fem.moving_contact import contact_moves, model_error, moved_share, moving_pairs
 from fem.ring import ring_of
 from fem.setting import Setting
 from fem.third_order import densities, half_plane, hertz_rotation
@@ -41,7 +41,7 @@ def alone(bodies, position, torque, staying=False):
     stays = share_load(force, bulk, laws, gaps)
     if staying:
         return stays
-    moved = moved_share(stays, force, bulk, laws, gaps, None, np.ones((1, 1)), moves)
+    moved = moved_share(stays, force, moving_pairs(bulk, laws, None, gaps, np.ones((1, 1)), moves))
     return stays, moved, moves
 
 

@@ -364,10 +364,6 @@ WORDED = [
      lambda n: {"dynamics.damping_ratio": 0.05}),
     ({"alignment": {}, "stiffness.plane": "stress"}, "stiffness.plane", r'Take stiffness.plane = "(strain)"',
      lambda n: {"stiffness.plane": n}),
-    ({"alignment": {}, "stiffness.moving_contact": True}, "stiffness.moving_contact", r"moving_contact = (false)",
-     lambda n: {"stiffness.moving_contact": False}),
-    ({"alignment": {}, "material": {"name": "PA66 dry"}}, "stiffness.moving_contact", r"moving_contact = (false)",
-     lambda n: {"stiffness.moving_contact": False}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip

@@ -18,7 +18,7 @@ import pytest
 import fem
 from fem.contact_candidates import contact_candidates
 from fem.local_law import PairLaws
-from fem.moving_contact import contact_moves, model_error, moved_share
+from fem.moving_contact import contact_moves, model_error, moved_share, moving_pairs
 from fem.setting import Setting
 from gears import Gear, GearPair, Material, share_load
 
@@ -54,7 +54,7 @@ def alone(bodies, position, torque):
     moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]), no)
     force, bulk, gaps = np.array([torque / pair.base_radii[0]]), bodies.bulk(rho[0]), np.zeros((1, 1))
     stays = share_load(force, bulk, laws, gaps)
-    moved = moved_share(stays, force, bulk, laws, gaps, None, np.ones((1, 1)), moves)
+    moved = moved_share(stays, force, moving_pairs(bulk, laws, None, gaps, np.ones((1, 1)), moves))
     error = model_error(moves, moved.forces, moved.transmission_error, True)
     return float(stays.transmission_error[0]), float(moved.transmission_error[0]), error
 

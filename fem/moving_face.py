@@ -1,0 +1,146 @@
+"""Contacts that move over the face: solved over pairs and cells from contacts that stay."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Integers
+from fem.cell_contact import along_cells
+from fem.cell_laws import CellLaws
+from fem.cell_matrix import cell_coupling
+from fem.face_share import FaceShare, of_pairs, settled_gaps
+from fem.moving_cells import MovingCells, cell_roll, tooth_smoothing
+from fem.moving_newton import moved_forces
+from fem.part_cells import PartCells, part_cells
+
+if TYPE_CHECKING:
+    from fem.bodies import Compliance
+    from fem.loaded_flanks import LoadedFlanks
+    from fem.moving_contact import MovingPairs
+    from fem.setting import Setting
+    from gears import LoadShare
+
+__all__ = ["moved_over_face", "moving_cells"]
+
+
+def moved_over_face(
+    given: Setting,
+    bodies: Compliance,
+    whole: Array,
+    flanks: LoadedFlanks,
+    kappa: Array,
+    pairs: MovingPairs,
+    stays: FaceShare,
+) -> tuple[LoadShare, FaceShare] | None:
+    """Solve with moving contacts over pairs and cells.
+
+    Parameters
+    ----------
+    given : Setting
+    bodies : Compliance
+    whole : (torques, 1, 1) array
+        Torques over the base radius [N].
+    flanks : LoadedFlanks
+        Of contacts that stay.
+    kappa : (positions, pairs) array
+        Levers of the normals in whose forces the laws of ``pairs`` are.
+    pairs : MovingPairs
+    stays : FaceShare
+        Of contacts that stay: what is begun with, and whose errors are taken over.
+
+    Returns
+    -------
+    LoadShare and FaceShare, or None
+        Of the pairs and of their cells; None where Newton's method does not settle.
+    """
+    assert given.face is not None
+    shares: list[LoadShare] = []
+    shape, lost_shape = stays.forces.shape, (2, *stays.forces.shape[:-1])
+    forces, left, lost = np.zeros(shape), np.zeros(shape), (np.zeros(lost_shape), np.zeros(lost_shape))
+    order = []
+    for strip in np.unique(stays.strips):
+        some = np.flatnonzero(stays.strips == strip)
+        rise = stays.rise[some]
+        cells = moving_cells(given, bodies, flanks, kappa, pairs, rise, float(strip))
+        found = _found(cells, whole[some], stays.forces[some])
+        if found is None:
+            return None
+        forces[some] = cells.split(found.forces)
+        open_ = np.where(cells.touchable, cells.unloaded(found.forces, found.transmission_error), np.inf)
+        left[some] = settled_gaps(cells.split(open_) + rise, forces[some])
+        losses = cells.lever_losses(found.forces, found.pair_stiffness, found.transmission_error)
+        for every, one in zip(lost, losses, strict=True):
+            every[:, some] = one
+        shares.append(of_pairs(found, given.face.cells, kappa, stays.shafts))
+        order.append(some)
+    share = _in_order(shares, np.argsort(np.concatenate(order)))
+    return share, replace(stays, forces=forces, left=left, lost=lost)
+
+
+def _found(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:
+    """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly."""
+    even = np.repeat(near.mean(axis=-1, keepdims=True), near.shape[-1], axis=-1)
+    for start in (near, even):
+        begin = start.reshape(*near.shape[:-2], -1)
+        nothing = np.zeros(begin.shape[:-1])
+        deflection = cells.linearised(begin, nothing).residual
+        approach = np.mean(deflection, axis=-1, where=begin > 0.0)
+        found = moved_forces(cells, whole + nothing, begin, approach)
+        if found is not None:
+            return found
+    return None
+
+
+def moving_cells(
+    given: Setting,
+    bodies: Compliance,
+    flanks: LoadedFlanks,
+    kappa: Array,
+    pairs: MovingPairs,
+    rise: Array,
+    strip: float = 0.0,
+) -> MovingCells:
+    """Contacts that move on cells; cells that touch over a part of their length do as those that stay.
+
+    Parameters
+    ----------
+    given, bodies, flanks, kappa, pairs
+        As of ``moved_over_face``.
+    rise : (torques, pitches, positions, pairs, cells) array
+        By how much least gaps of cells fall short of their mean [m].
+    strip : float
+        Half-width of strips of pressure over a cell's length.
+    """
+    assert given.face is not None
+    face, where = replace(given.face, strip=strip), flanks.where
+    along = along_cells(face, given.pair, where)
+    touchable = np.repeat(where.touchable & np.isfinite(where.gap), face.cells, axis=-1)
+    flat, short = (*along.shape[:-2], -1), rise.reshape(*rise.shape[:-2], -1)
+    clear = (pairs.clear[..., None] + along).reshape(*pairs.clear.shape[:-1], -1) - short
+    stiff = cell_coupling(face, bodies, where, flanks.kappa, flanks.matrix)
+    stays = part_cells(CellLaws(flanks.laws, face.cells), stiff, short)
+    return MovingCells(
+        face.cells,
+        cell_coupling(face, bodies, where, kappa, pairs.bulk),
+        cell_roll(face, bodies, where, pairs.moves),
+        PartCells(CellLaws(pairs.laws, face.cells), short, stays.whole),
+        None if pairs.film is None else CellLaws(pairs.film, face.cells),
+        np.where(touchable, clear, 0.0),
+        along.reshape(flat),
+        face.least_gap(given.pair),
+        touchable,
+        pairs.levers,
+        pairs.moves,
+        tooth_smoothing(face, bodies, where),
+        pairs.own,
+    )
+
+
+def _in_order(shares: list[LoadShare], order: Integers) -> LoadShare:
+    """Shares of some torques each, as one of all."""
+    names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
+    every = {name: np.concatenate([getattr(one, name) for one in shares])[order] for name in names}
+    return replace(shares[0], **every, iterations=max(one.iterations for one in shares))
