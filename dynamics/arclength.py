@@ -5,19 +5,31 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from base import Array, Cost, InputError, Stopwatch
 from dynamics.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, UNBOUNDED, Branch, SpecialPoint
-from dynamics.branch_problem import BranchProblem, MapPoint, Steps
+from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Steps
 from dynamics.crossings import find_crossings
 from dynamics.meetings import meeting
-from dynamics.shooting import is_stable, motion_label
+from dynamics.shooting import floquet_multipliers, is_stable, motion_label
+from dynamics.step_rules import (
+    ASTRAY,
+    CORNER,
+    EASY,
+    FALLEN,
+    ITERATIONS,
+    JUMP,
+    LONGER,
+    PATIENT,
+    STRAIGHT,
+)
 from dynamics.tracing import Tracer, both_ways, joined
 
 MET = 1e-5  # of the size of the motion: distance of two halves of an orbit at which its branch meets that of the half
-FALLEN = 1e-3  # of the halves' distance at the last point: Newton's method has come to the orbit of half the period
 
 
 def follow(
@@ -55,6 +67,14 @@ class _Step:
     complete: bool  # whether the special points explain all that changes
 
 
+class _Passed(NamedTuple):
+    """What is kept of a point that was passed without a look."""
+
+    value: float
+    multipliers: npt.NDArray[np.complex128] | Array
+    counts: tuple[int, int]
+
+
 class _Walker(Tracer):
     """Steps along a branch, with the special points on it."""
 
@@ -73,6 +93,27 @@ class _Walker(Tracer):
         self.missed: list[float] = []
         self.iterations = 0
 
+    def stride(self, left: int) -> bool:
+        """Take steps that need no look many at a time, where the flow has a loop for that."""
+        heading = Heading(self.tangent, self.bend, self.half, self.step)
+        largest = min(LARGE, ENDLESS * self.size / self.problem.scale)
+        taken = self.problem.march(self.points[-1], heading, self.steps, self.phases, largest, left)
+        if taken is None:
+            return False
+        self.tangent, self.bend, self.half, self.step = taken.heading
+        values = taken.values.tolist()
+        pairs = map(floquet_multipliers, taken.traces.tolist(), taken.determinants.tolist())
+        counts = map(tuple, taken.counts.tolist())
+        self.points += list(map(_Passed, values, pairs, counts))
+        if values:
+            self.points[-1] = taken.last
+        self.states += list(taken.us[:, :-1] * self.problem.scale)
+        self.iterations += taken.iterations
+        if self.progress is not None:
+            for number, value in enumerate(values, len(self.points) - len(values) + 1):
+                self.progress(number, value)
+        return bool(taken.whole)
+
     def attempt(self, last: MapPoint) -> _Step | None:
         """Next point with what lies before it; at a bound, the point on it."""
         size = max(abs(x) for x in last.u[: last.size].tolist())
@@ -86,18 +127,18 @@ class _Walker(Tracer):
             return None
         self.refused = "Newton's method did not arrive"
         new = self.problem.correct(*aim)
-        if new is None or new.iterations > 8:
+        if new is None or new.iterations > ITERATIONS:
             return None
         chord = new.u - last.u
-        if math.sqrt(chord @ chord) > 2.0 * self.step and aim[1] is self.tangent:
+        if math.sqrt(chord @ chord) > ASTRAY * self.step and aim[1] is self.tangent:
             return None
         tangent = new.tangent(chord)
-        patient = self.step > 16.0 * self.steps.least
+        patient = self.step > PATIENT * self.steps.least
         self.refused = "the branch has a corner"
-        if tangent @ self.tangent < 0.9 and patient:
+        if tangent @ self.tangent < CORNER and patient:
             return None
         self.refused = "the multipliers jump"
-        if abs(new.trace - last.trace) > 0.3 * max(1.0, abs(last.trace)) and patient:
+        if abs(new.trace - last.trace) > JUMP * max(1.0, abs(last.trace)) and patient:
             return None
         return self._between(last, new, tangent, patient)
 
@@ -173,10 +214,12 @@ class _Walker(Tracer):
         self.states.append(new.u[: new.size] * self.problem.scale)
         self.iterations += new.iterations
         # half the curvature, for the predictor: none from so short a step that the difference is rounding
-        self.bend = 0.5 / length * (found.tangent - self.tangent) if length > 1e-5 else 0.0 * found.tangent
+        self.bend = (
+            0.5 / length * (found.tangent - self.tangent) if length > STRAIGHT else 0.0 * found.tangent
+        )
         self.tangent, self.half = found.tangent, found.half
-        if new.iterations <= 4:
-            self.step = min(1.4 * self.step, self.steps.most)
+        if new.iterations <= EASY:
+            self.step = min(LONGER * self.step, self.steps.most)
         if self.progress is not None:
             self.progress(len(self.points), new.value)
 

@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,8 @@ from base import Array, Faults
 from dynamics.branch import SpecialPoint
 from dynamics.limits import MAX_POINTS, STEP, ordered
 from dynamics.shooting import floquet_multipliers
+from dynamics.step_rules import NEAR
 
-NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 FEW = 64  # pairs of extrema that are compared sooner one by one than by arrays
 
 
@@ -210,6 +210,12 @@ class BranchProblem(ABC):
     def correct(self, guess: Array, across: Array) -> Any:
         """Orbit in the plane across . (u - guess) = 0; None if Newton's method does not arrive."""
 
+    def march(
+        self, last: Any, heading: Heading, steps: Steps, places: list[list[float]], largest: float, wanted: int
+    ) -> Any:  # fmt: skip
+        """Steps from a point on that need no look, as of `dynamics.marching`; None if the flow has no loop for that."""
+        return None
+
     @abstractmethod
     def states(self, point: Any) -> Array:
         """States over the scale after 1, 2, .. n periods, shape (n, size)."""
@@ -234,6 +240,25 @@ class BranchProblem(ABC):
     def magnified(self, factor: float) -> Self:
         """The same with a larger scale."""
         return replace(self, scale=factor * self.scale)
+
+
+class Heading(NamedTuple):
+    """Where a branch goes on from a point.
+
+    Attributes
+    ----------
+    tangent, bend : ndarray, shape (size + 1,)
+        Of unit length, and half the curvature.
+    half : ndarray, shape (size,)
+        Way from the state to that half the orbit's period later, over the scale; 0 if n is odd.
+    step : float
+        The next.
+    """
+
+    tangent: Array
+    bend: Array
+    half: Array
+    step: float
 
 
 @dataclass(frozen=True)

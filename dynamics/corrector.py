@@ -16,6 +16,7 @@ from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.protocol import EPS
 
 ROOM = 64  # extrema expected at most; more are asked for if there are more
+LIMIT = 12  # of Newton iterations
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,6 +79,11 @@ class OrbitProblem(BranchProblem):
         return {}
 
     @cached_property
+    def _reaches(self) -> dict[int, tuple[float, float]]:
+        """Ranges of the parameter for numbers of cells, see `reach`."""
+        return {}
+
+    @cached_property
     def even(self) -> bool:
         """Whether the damping in the dead zone changes as that in contact."""
         return np.array_equal(self.ways[:, 1], self.ways[:, 9])
@@ -86,7 +92,7 @@ class OrbitProblem(BranchProblem):
         """Image of the state and everything that `Point` holds; None if the parameters are not allowed there."""
         return self._corrected(u, np.zeros(3), refinement, 0)
 
-    def correct(self, guess: Array, across: Array, refinement: int = 1, limit: int = 12) -> Point | None:
+    def correct(self, guess: Array, across: Array, refinement: int = 1, limit: int = LIMIT) -> Point | None:
         """Periodic orbit in the plane across . (u - guess) = 0, or None if Newton's method does not arrive.
 
         For one parameter.
@@ -98,14 +104,47 @@ class OrbitProblem(BranchProblem):
         flow = tabulated(self._packed(point.u), self._cells(point.u, 1))
         return flow.follow(point.u[:2] * self.scale, self.periods, derivatives=False).states / self.scale
 
-    def _corrected(self, guess: Array, across: Array, refinement: int, limit: int) -> Point | None:
-        """Point after Newton iterations up to a limit; that of the guess itself if it is 0."""
-        from dynamics.kernels.correcting import correct, rooms_of
+    def reach(self, u: Array) -> tuple[float, float]:
+        """Range of the one parameter, around that of the unknowns, in which a period has as many cells.
 
-        cells, room, m = self._cells(guess, refinement), ROOM * self.periods, 2 + len(self.parameters)
+        They grow towards one end or both, so that between ends of one number none needs more.
+        """
+        cells, at = self._cells(u, 1), min(max(float(u[2]), 0.0), 1.0)
+        low, high = self._reaches.get(cells, (1.0, 0.0))
+        if not low <= at <= high:
+            low, high = self._reaches[cells] = (
+                self._last_of(cells, at, 0.0),
+                self._last_of(cells, at, 1.0),
+            )
+        return low, high
+
+    def _last_of(self, cells: int, inside: float, end: float) -> float:
+        """A place towards an end of the range with so many cells, near where their number changes."""
+        if self._cells(np.array([0.0, 0.0, end]), 1) == cells:
+            return end
+        for _ in range(10):
+            middle = 0.5 * (inside + end)
+            if self._cells(np.array([0.0, 0.0, middle]), 1) == cells:
+                inside = middle
+            else:
+                end = middle
+        return inside
+
+    def rooms(self, u: Array, refinement: int = 1) -> Any:
+        """Tables and room of the corrector for the unknowns; None if the parameters are not allowed there."""
+        from dynamics.kernels.correcting import rooms_of
+
+        cells = self._cells(u, refinement)
         if cells and cells not in self._rooms:
             self._rooms[cells] = rooms_of(len(self.parameters), len(self.origin), cells, DEGREE)
-        while cells:
+        return self._rooms.get(cells)
+
+    def _corrected(self, guess: Array, across: Array, refinement: int, limit: int) -> Point | None:
+        """Point after Newton iterations up to a limit; that of the guess itself if it is 0."""
+        from dynamics.kernels.correcting import correct
+
+        rooms, room, m = self.rooms(guess, refinement), ROOM * self.periods, 2 + len(self.parameters)
+        while rooms is not None:
             u, counts, clock = guess.copy(), np.empty(2, dtype=np.int64), np.empty(1)
             image, lin, bend, turns = (
                 np.empty(2),
@@ -115,13 +154,13 @@ class OrbitProblem(BranchProblem):
             )
             flag, turned, iterations, residual = correct(
                 self.origin, self.ways, u, across, self.scale, self.periods, limit, image, lin, bend, counts, turns,
-                clock, self._rooms[cells],
+                clock, rooms,
             )  # fmt: skip
             if flag != 0:
                 return None
             if turned <= room:
                 contact = float(clock[0])
-                return self._point(u, image, lin, bend, counts, contact, turns[:turned], iterations, residual)
+                return self.point(u, image, lin, bend, counts, contact, turns[:turned], iterations, residual)
             room = turned
         return None
 
@@ -137,17 +176,22 @@ class OrbitProblem(BranchProblem):
         cells = cells_per_period(packed)
         return math.ceil(cells) * refinement if cells <= MAX_CELLS else 0
 
-    def _point(
+    def determinant(self, packed: list[float], contact: float) -> float:
+        """Determinant of the map by the time in contact: log det = -4 pi zeta n/omega, and the difference there."""
+        damping, frequency, free = packed[1], packed[4], packed[9]
+        return math.exp(-4.0 * math.pi * self.periods / frequency * free - 2.0 * (damping - free) * contact)
+
+    def point(
         self, u: Array, image: Array, lin: Array, bend: Array, counts: Integers, contact: float, turns: Array,
         iterations: int, residual: float,
     ) -> Point:  # fmt: skip
+        """Point of what the kernel `correct` fills; its time in contact as a number."""
         packed = self._packed(u).tolist()
         damping, frequency, play, free = packed[1], packed[4], packed[6], packed[9]
-        # log det = -4 pi zeta n / omega, and the difference of the dampings in contact
-        decay = 4.0 * math.pi * self.periods / frequency
-        determinant = math.exp(-decay * free - 2.0 * (damping - free) * contact)
+        determinant = self.determinant(packed, contact)
         change = np.zeros(len(u))
         if self.even and damping == free:
+            decay = 4.0 * math.pi * self.periods / frequency
             change[2:] = -decay * determinant * (self.ways[:, 1] - damping / frequency * self.ways[:, 4])
         else:  # as exact as the entries of the Jacobian
             (a, b), (c, d) = lin[:, :2].tolist()

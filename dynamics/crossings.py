@@ -10,8 +10,9 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.branch import SpecialPoint
-from dynamics.branch_problem import BranchProblem, MapPoint, match_extrema
+from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Steps, match_extrema
 from dynamics.corrector import OrbitProblem, Point
+from dynamics.marching import March, march
 from dynamics.protocol import EPS
 from dynamics.roots import along_chord
 from dynamics.shooting import is_stable, motion_label
@@ -106,6 +107,12 @@ class ExactBranch(OrbitProblem):
             here = self.at(point.u)
             special = replace(special, stiffness=float(here.stiffness(here.frequency * special.tau)))
         return special, True
+
+    def march(
+        self, last: Point, heading: Heading, steps: Steps, places: list[list[float]], largest: float, wanted: int
+    ) -> March:  # fmt: skip
+        """Steps in a compiled loop."""
+        return march(self, last, heading, steps, places, largest, wanted)
 
     def _error(self, point: Point, condition: Condition) -> float:
         """Change of the parameter with tables of half the cell."""

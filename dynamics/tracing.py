@@ -41,9 +41,12 @@ class Tracer(ABC):
     def run(self) -> None:
         """Step until the curve ends."""
         while not self.ended:
-            if len(self.points) > self.steps.points:
+            left = self.steps.points + 1 - len(self.points)
+            if left < 1:
                 self.ended = f"{self.steps.points} points: raise max_points"
                 return
+            if self.stride(left):
+                continue
             found = self.attempt(self.points[-1])
             if found is None:
                 self.step *= 0.5
@@ -57,6 +60,10 @@ class Tracer(ABC):
                 self.ended = "closed"
             elif not {0.0, 1.0}.isdisjoint(new.u[new.size :].tolist()):
                 self.ended = "bound"
+
+    def stride(self, left: int) -> bool:
+        """Take steps between which nothing happens, so many at most; False if the next is to be an attempt."""
+        return False
 
     @abstractmethod
     def attempt(self, last: Any) -> Any:
