@@ -205,7 +205,16 @@ class _Search:
             used += side**2
             known = len(self.orbits)
             for k in range(side**2):
-                last, periods = hunt(self.table.arrays, starts[k : k + 1], n, PLAIN, self.scale, point, none)
+                last, periods = hunt(
+                    self.table.arrays,
+                    self.table.space(),
+                    starts[k : k + 1],
+                    n,
+                    PLAIN,
+                    self.scale,
+                    point,
+                    none,
+                )
                 self.periods += int(periods)
                 if last:
                     self._meet(point[0].copy(), n, met)
@@ -251,7 +260,9 @@ class _Search:
 
         found = np.empty((4096, 2))
         found[: len(deflated)] = deflated
-        last, used = hunt(self.table.arrays, starts, n, limit, self.scale, found, len(deflated))
+        last, used = hunt(
+            self.table.arrays, self.table.space(), starts, n, limit, self.scale, found, len(deflated)
+        )
         self.periods += int(used)
         for point in found[len(deflated) : last]:
             if not self._knows(point):

@@ -44,6 +44,12 @@ class Tables(Flow):
         """What the kernels take."""
         return self.packed, self.coef, self.edge
 
+    def space(self) -> tuple[Array, Array, Array, Integers]:
+        """Work space for the kernels, one for each motion at the same time."""
+        from dynamics.kernels.flow import space_of
+
+        return space_of(self.coef.shape[2] - 1)
+
     @property
     def cells(self) -> int:
         """Cells per period."""
@@ -60,7 +66,7 @@ class Tables(Flow):
         watch = Stopwatch()
         states, counts, frame = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(4, 2)
         at = np.array(state, dtype=np.float64)
-        flag = int(iterate(self.arrays, at, skip, int(derivatives), frame, states, counts))
+        flag = int(iterate(self.arrays, self.space(), at, skip, int(derivatives), frame, states, counts))
         jacobian = frame[:2]
         if flag:
             states[:], jacobian[:] = np.nan, np.nan
@@ -77,7 +83,7 @@ class Tables(Flow):
         from dynamics.kernels.flow import partial
 
         end, frame = np.array(state, dtype=np.float64), np.eye(4, 2)
-        if partial(self.arrays, first, number, end, frame, counts) != 0:
+        if partial(self.arrays, self.space(), first, number, end, frame, counts) != 0:
             end[:] = np.nan
         return end, frame[:2], self._time(frame[3, 0])
 
@@ -99,7 +105,9 @@ class Tables(Flow):
         while True:
             samples = np.empty((periods * points + 1 if points else 0, 2))
             turns, events = np.empty((room, 5)), np.empty((room, 4))
-            flag, turned, happened = walk(self.arrays, state.copy(), periods, points, samples, turns, events)
+            flag, turned, happened = walk(
+                self.arrays, self.space(), state.copy(), periods, points, samples, turns, events
+            )
             if flag:
                 raise lost_motion(state, REASONS[int(flag)])
             if turned <= room and happened <= room:
@@ -117,7 +125,9 @@ class Tables(Flow):
             frame[2:] = 0.0
             if size:
                 unseen = np.zeros((len(part), 2), dtype=np.int64)
-                flag = flag or int(iterate(self.arrays, at, size - len(part), 2, frame, part, unseen))
+                flag = flag or int(
+                    iterate(self.arrays, self.space(), at, size - len(part), 2, frame, part, unseen)
+                )
             row[:], damped[k] = frame[2], self.damped(self._time(frame[3, 0]), size)
             kept.append(part)
         return Stretches(logs, np.vstack(kept) if keep else at[None], damped, REASONS.get(flag, ""))
@@ -128,7 +138,7 @@ class Tables(Flow):
 
         room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
         at = np.array(state, dtype=np.float64)
-        waited = int(calm(self.arrays, at, limit, room, tallies, 1e-13))
+        waited = int(calm(self.arrays, self.space(), at, limit, room, tallies, 1e-13))
         return at, abs(waited), REASONS.get(-waited, "")
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
@@ -136,7 +146,11 @@ class Tables(Flow):
         from dynamics.kernels.searching import settle
 
         def some(first: int, last: int) -> int:
-            return int(settle(self.arrays, starts[first:last], homes, radius, limit, labels[first:last]))
+            return int(
+                settle(
+                    self.arrays, self.space(), starts[first:last], homes, radius, limit, labels[first:last]
+                )
+            )
 
         return in_blocks(len(starts), some, int(np.count_nonzero(labels == -1)))
 

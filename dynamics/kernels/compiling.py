@@ -30,6 +30,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 Table = tuple[FloatArray, FloatArray, FloatArray]  # par, coef, edge
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]  # see tables.room_of
+Space = tuple[FloatArray, FloatArray, FloatArray, IntArray]  # see flow.space_of
 F = TypeVar("F", bound=Callable[..., Any])
 
 TRIED = ("0.68.",)

@@ -19,7 +19,7 @@ from dynamics.kernels.compiling import (
     helper,
     kernel,
 )
-from dynamics.kernels.roots import binomials, copy, largest
+from dynamics.kernels.roots import choices, copy, largest
 from dynamics.kernels.sensitivity import probe
 from dynamics.kernels.tables import differentiate, fill_there, first_touched, room_of, slopes_of, tables_of
 
@@ -37,7 +37,7 @@ def rooms_of(ways: int, length: int, cells: int, degree: int) -> Rooms:
         room_of(cells, degree),
         (
             np.empty((5, degree + 1)),
-            getattr(binomials, "py_func", binomials)(degree),
+            choices(degree),
             np.empty((2, m)),
             np.empty((0, 2, 2)),
         ),

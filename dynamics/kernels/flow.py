@@ -18,14 +18,26 @@ from dynamics.kernels.compiling import (
     ZETA,
     FloatArray,
     IntArray,
+    Space,
     Table,
     called,
     helper,
-    kernel,
+    plain_kernel,
     shared,
 )
 from dynamics.kernels.regions import clear, drag_jump, enter, leave, start
-from dynamics.kernels.roots import binomials, poly, shift, sole_root
+from dynamics.kernels.roots import choices, poly, shift, sole_root
+
+TABLE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1]))"
+SPACE = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[:, ::1]))"
+
+
+def space_of(degree: int) -> Space:
+    """Work space of a motion: five rows, `binomials`, zeros for a derivative and an image, two rows of counts.
+
+    Made here because what allocates takes long to compile. Motions at the same time need one each.
+    """
+    return np.empty((5, degree + 1)), choices(degree), np.zeros((5, 2)), np.zeros((2, 2), dtype=np.int64)
 
 
 @helper
@@ -238,9 +250,10 @@ def some_cells(
     return region, y, w, FINE if abs(y) < 1e150 and abs(w) < 1e150 else DIVERGED
 
 
-@kernel
+@plain_kernel
 def iterate(
     table: Table,
+    space: Space,
     state: FloatArray,
     skip: int,
     want: int,
@@ -258,8 +271,8 @@ def iterate(
     par, coef, edge = table
     cells = len(edge) // 2
     h = 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
-    count = np.zeros(2, dtype=np.int64)
+    work, choose, _, tally = space
+    count = tally[0]
     region, y = start(state[0], state[1], par)
     w = state[1] * h
     if want > 0:
@@ -289,13 +302,13 @@ def iterate(
 
 iterate_there = called(
     iterate,
-    "i8(Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1])), f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
+    f"i8({TABLE}, {SPACE}, f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
 )
 
 
-@kernel
+@plain_kernel
 def partial(
-    table: Table, first: int, number: int, state: FloatArray, jac: FloatArray, counts: IntArray
+    table: Table, space: Space, first: int, number: int, state: FloatArray, jac: FloatArray, counts: IntArray
 ) -> int:
     """Carry `state` and the columns of `jac`, as of `iterate`, over some cells from cell `first`; adds to `counts` (2).
 
@@ -305,7 +318,7 @@ def partial(
     par, coef, edge = table
     cells = len(edge) // 2
     h = 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
+    work, choose, _, _ = space
     region, y = start(state[0], state[1], par)
     w = state[1] * h
     jac[1, 0] *= h

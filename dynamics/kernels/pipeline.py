@@ -105,6 +105,11 @@ class _Remembering:
             self._met[value] = _KNOWN.setdefault(function, _Operator(function))
         return self._met[value]
 
+    def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
+        if callable(func) and func in _OPERATORS:
+            return self.resolve_value_type(func).get_call_type(self, args, kws)
+        return self._context.resolve_function_type(func, args, kws)
+
     def resolve_setitem(self, target: Any, index: Any, value: Any) -> Any:
         return self.resolve_value_type(operator.setitem).get_call_type(self, (target, index, value), {})
 

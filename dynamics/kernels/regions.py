@@ -23,7 +23,7 @@ def push_at_start(par: FloatArray) -> float:
     for n in range(1, harmonics(par)[1] + 2):
         size, phase = error_places(par, n)
         push += n * n * par[size] * math.cos(par[phase])
-    return float(par[FORCE] + push * par[FREQUENCY] ** 2)
+    return float(par[FORCE] + push * par[FREQUENCY] * par[FREQUENCY])
 
 
 @helper

@@ -1,6 +1,8 @@
 """First instant at which a polynomial turns negative, certified by sign variations of Bernstein coefficients."""
 
 import math
+from functools import cache
+from typing import cast
 
 import numpy as np
 
@@ -37,7 +39,7 @@ def sole_root(
     t = rise * other * share * (other / w_low - share / w_high) + width * share * share * (1.0 + 2.0 * other)
     t = low + t if 0.0 < t < width else low + share * width
     slope = w_low
-    crude = 1e-17 * abs(rise) + 0.01 * abs(b[-1]) * 0.5 ** len(b)
+    crude = 1e-17 * abs(rise) + math.ldexp(0.01 * abs(b[-1]), -len(b))
     for _ in range(200):
         f = f1 = f2 = f3 = f4 = 0.0
         for k in range(len(b) - 1, -1, -1):
@@ -83,6 +85,12 @@ def largest(matrix: FloatArray, columns: int) -> float:
         for j in range(columns):
             size = max(size, abs(matrix[i, j]))
     return size
+
+
+@cache
+def choices(n: int) -> FloatArray:
+    """What `binomials` gives, for rooms made in Python; not to be written to."""
+    return cast(FloatArray, getattr(binomials, "py_func", binomials)(n))
 
 
 @maker

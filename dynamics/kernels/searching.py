@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from dynamics.kernels.compiling import (
     FINE,
     FREQUENCY,
@@ -12,17 +10,24 @@ from dynamics.kernels.compiling import (
     ZERO,
     FloatArray,
     IntArray,
+    Space,
     Table,
-    kernel,
+    plain_kernel,
 )
 from dynamics.kernels.flow import iterate_there, some_cells
 from dynamics.kernels.regions import start
-from dynamics.kernels.roots import binomials, largest
+from dynamics.kernels.roots import largest
 
 
-@kernel
+@plain_kernel
 def settle(
-    table: Table, starts: FloatArray, homes: FloatArray, radius: float, limit: int, labels: IntArray
+    table: Table,
+    space: Space,
+    starts: FloatArray,
+    homes: FloatArray,
+    radius: float,
+    limit: int,
+    labels: IntArray,
 ) -> int:
     """Follow every start with label -1 until it stays near a known attractor; `starts` become the last states.
 
@@ -33,8 +38,8 @@ def settle(
     par, coef, edge = table
     cells = len(edge) // 2
     h, d = 2.0 * math.pi / par[FREQUENCY] / cells, par[HALF_BACKLASH]
-    work, choose = np.empty((3, coef.shape[2])), binomials(coef.shape[2] - 1)
-    count, jac = np.zeros(2, dtype=np.int64), np.zeros((4, 2))
+    work, choose, jac, tally = space
+    count = tally[0]
     used = 0
     for i in range(len(starts)):
         region, y = start(starts[i, 0], starts[i, 1], par)
@@ -64,20 +69,26 @@ def settle(
     return used
 
 
-@kernel
+@plain_kernel
 def calm(
-    table: Table, state: FloatArray, limit: int, states: FloatArray, counts: IntArray, tolerance: float
+    table: Table,
+    space: Space,
+    state: FloatArray,
+    limit: int,
+    states: FloatArray,
+    counts: IntArray,
+    tolerance: float,
 ) -> int:
     """Follow `state` for `limit` periods, or until it repeats to rounding; returns flag < 0 or periods used.
 
     `states`, (2 n, 2), and `counts` are work space: the motion is looked at every 2 n periods and must repeat after
     n periods or fewer, within `tolerance` of its size.
     """
-    jac = np.zeros((4, 2))
+    jac = space[2]
     longest = len(states) // 2
     used = 0
     while used + len(states) <= limit:
-        flag = iterate_there(table, state, ZERO, ZERO, jac, states, counts)
+        flag = iterate_there(table, space, state, ZERO, ZERO, jac, states, counts)
         if flag != FINE:
             return -flag
         used += len(states)
@@ -93,14 +104,23 @@ def calm(
             if off <= tolerance * size:
                 return used
     flag = (
-        iterate_there(table, state, limit - used, ZERO, jac, states[:0], counts[:0]) if limit > used else FINE
+        iterate_there(table, space, state, limit - used, ZERO, jac, states[:0], counts[:0])
+        if limit > used
+        else FINE
     )
     return limit if flag == FINE else -flag
 
 
-@kernel
+@plain_kernel
 def hunt(
-    table: Table, starts: FloatArray, periods: int, limit: int, scale: float, found: FloatArray, known: int
+    table: Table,
+    space: Space,
+    starts: FloatArray,
+    periods: int,
+    limit: int,
+    scale: float,
+    found: FloatArray,
+    known: int,
 ) -> tuple[int, int]:
     """Fixed points of the map over `periods` from many starts by deflated Newton's method.
 
@@ -108,9 +128,8 @@ def hunt(
     pushes later searches away: the residual is multiplied by 1 + (scale/distance)^2 of each, which scales Newton's
     step by 1/(1 - step . grad log of that factor). Returns the number of points and of periods used.
     """
-    image, jac = np.empty((1, 2)), np.zeros((4, 2))
-    counts = np.zeros((1, 2), dtype=np.int64)
-    x = np.empty(2)
+    work, _, room, tally = space
+    x, image, jac, counts = work[3], room[4:5], room, tally[1:]  # the other rows are what following takes
     used = 0
     for i in range(len(starts)):
         at0, at1 = starts[i, 0], starts[i, 1]
@@ -120,7 +139,7 @@ def hunt(
             jac[0, 0] = jac[1, 1] = 1.0
             jac[0, 1] = jac[1, 0] = 0.0
             used += periods
-            if iterate_there(table, x, periods - 1, ONE, jac, image, counts) != FINE:
+            if iterate_there(table, space, x, periods - 1, ONE, jac, image, counts) != FINE:
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
@@ -161,6 +180,6 @@ def hunt(
             if not old:
                 found[known, 0], found[known, 1] = x[0], x[1]
                 known += 1
-            iterate_there(table, x, ZERO, ZERO, jac, image, counts)
+            iterate_there(table, space, x, ZERO, ZERO, jac, image, counts)
             used += 1
     return known, used

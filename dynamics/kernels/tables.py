@@ -147,7 +147,7 @@ def excite(par: FloatArray, way: FloatArray, derived: bool, series: FloatArray, 
         a, b = par[size], 0.0
         if derived:
             a, b = way[size] + (2.0 * stretch * par[size] if stiff else 0.0), par[size] * way[phase]
-        scale = h * h if stiff else (n * turn) ** 2
+        scale = h * h if stiff else n * turn * n * turn
         c, s = math.cos(par[phase]) * scale, math.sin(par[phase]) * scale
         add_harmonic(series[0 if stiff else 1], n, a * c - b * s, a * s + b * c, roots, waves)
 

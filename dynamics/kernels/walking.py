@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from dynamics.kernels.compiling import (
     CROWDED,
     DIVERGED,
@@ -13,17 +11,18 @@ from dynamics.kernels.compiling import (
     MAX_EVENTS,
     ZERO,
     FloatArray,
+    Space,
     Table,
-    kernel,
+    plain_kernel,
 )
 from dynamics.kernels.flow import expand
 from dynamics.kernels.regions import enter, leave, note_extremum, start
-from dynamics.kernels.roots import binomials, copy, find_turn, poly
+from dynamics.kernels.roots import copy, find_turn, poly
 
 
-@kernel
+@plain_kernel
 def walk(
-    table: Table, state: FloatArray, periods: int, points: int,
+    table: Table, space: Space, state: FloatArray, periods: int, points: int,
     samples: FloatArray, turns: FloatArray, events: FloatArray,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Follow the motion closely; returns flag, number of turns and number of events.
@@ -33,9 +32,9 @@ def walk(
     not fit in `turns` or `events` is counted, not stored.
     """
     par, coef, edge = table
-    cells, n = len(edge) // 2, coef.shape[2]
+    cells = len(edge) // 2
     d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose = np.empty((5, n)), binomials(n - 1)
+    work, choose, _, _ = space
     a, b, g, rest, spare = work[0], work[1], work[2], work[3], work[4]
     region, y = start(state[0], state[1], par)
     w = state[1] * h
