@@ -127,7 +127,7 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
 
     from flankfilm.progress import console_progress
     from flankfilm.verification.run import verify_scene
-    from flankfilm.verification.tables import costs, table, write_verification
+    from flankfilm.verification.tables import costs, face_table, table, write_verification
 
     wanted = _read(scene, options.tolerance)
     folder = options.out or Path(f"{scene.stem}-verify")
@@ -137,6 +137,10 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     screen = Console(width=None if sys.stdout.isatty() else 160)
     for reference in (found.references[0], found.like_for_like):
         screen.print(table(found, reference))
+    if found.over_face is not None:
+        screen.print(face_table(found.over_face))
+    elif found.message:
+        print(printable(found.message))
     print(f"verify.csv holds the rest: {', '.join(r.label for r in found.references[1:-1])}")
     print(costs(found))
     print(f"{len(files)} files in {folder}: {', '.join(path.name for path in files)}")

@@ -9,7 +9,7 @@ import numpy as np
 
 import fem
 import gears
-from base import Array, Cost, InputError, Stopwatch, part, quantity, record
+from base import Array, Cost, InputError, Stopwatch, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from fem.face_setting import FREE_ENDS, SLICES, WALLS
 from flankfilm.coupling.believed import believed
@@ -74,6 +74,11 @@ class FaceLoadModels:
         "", "what varies the load along this face and is not in the factor by ISO 6336-1"
     )
     cost: Cost
+
+    @described("1", "model", shown="%")
+    def factor_difference(self) -> Array:
+        """Face-load factor at the pitch point over that by the first model, less one."""
+        return np.asarray(self.pitch_point_factor / self.pitch_point_factor[0] - 1.0)
 
 
 def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:

@@ -11,6 +11,7 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Stopwatch, part, quantity, record
+from flankfilm.coupling.face_models import FaceLoadModels
 from flankfilm.coupling.flanks import Flanks
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.mesh_cycles import resolved
@@ -125,6 +126,10 @@ class Verification:
     cost: Cost
     converged: bool = True
     message: str = ""
+    over_face: FaceLoadModels | None = part(
+        "load over the face by walls, slices and ISO 6336-1 beside finite elements; None where it is even",
+        default=None,
+    )
 
     @property
     def like_for_like(self) -> Curves:

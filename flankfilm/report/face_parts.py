@@ -27,9 +27,16 @@ def face(found: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Datase
     tables, notes = [_bears(found)], [said("face")]
     if models is not None:
         drawn += pictures(results, "line_load_models")
-        tables.append(_models(models))
+        tables.append(models_table(models))
         notes += _failing(models)
     return Part("face", "Load over the face", (_made_of(found),), drawn, tuple(tables), tuple(notes))
+
+
+def beside(models: FaceLoadModels, results: xr.Dataset) -> Part:
+    """Other models of the load over the face alone, for a verification."""
+    drawn = pictures(results, "line_load_models")
+    tables, notes = (models_table(models),), tuple(_failing(models))
+    return Part("face", "Load over the face", figures=drawn, tables=tables, notes=notes)
 
 
 def headlines(found: fem.FaceLoads) -> list[Headline]:
@@ -80,13 +87,14 @@ def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     yield "contact pattern: part of the face that is touched", percent(found.contact_pattern, 3)
 
 
-def _models(models: FaceLoadModels) -> Table:
+def models_table(models: FaceLoadModels) -> Table:
     """Factors by every model, and how far its line load is from the first one's."""
     columns = zip(
         models.model,
         models.face_load_factor,
         models.face_load_factor_error,
         models.pitch_point_factor,
+        models.factor_difference,
         1e-3 * models.greatest_line_load,
         models.line_load_difference,
         strict=True,
@@ -96,15 +104,17 @@ def _models(models: FaceLoadModels) -> Table:
             label,
             f"{number(whole)} {plus_minus(error)}" if np.isfinite(error) else number(whole),
             number(at_c),
+            _signed(off) if label != models.model[0] else "-",
             number(load),
             percent(apart) if apart else "-",
         )
-        for label, whole, error, at_c, load, apart in columns
+        for label, whole, error, at_c, off, load, apart in columns
     )
     heads = (
         "model",
         "greatest face-load factor",
         "at the pitch point",
+        "differs from the first",
         "greatest line load [N/mm]",
         "line load differs from the first, root mean square",
     )
@@ -113,16 +123,17 @@ def _models(models: FaceLoadModels) -> Table:
 
 def _failing(models: FaceLoadModels) -> Iterator[str]:
     """Where slices and ISO 6336-1 fail, in numbers."""
-    at_c = dict(zip(models.model, models.pitch_point_factor, strict=True))
+    off = dict(zip(models.model, models.factor_difference, strict=True))
     first, (slices, iso) = models.model[0], (LABELS["slices"], models.model[-1])
     if first != slices:
-        yield said("face_slices", off=_signed(at_c[slices] / at_c[first] - 1.0), first=first)
+        yield said("face_slices", off=_signed(off[slices]), first=first)
     if models.iso_fault:
         yield f"ISO 6336-1 has no answer: {models.iso_fault}"
     else:
-        off = _signed(at_c[iso] / at_c[first] - 1.0)
         slope = number(1e6 * abs(models.misalignment), 3)
-        yield said("face_iso", off=off, first=first, misalignment=slope, left_out=models.iso_left_out)
+        yield said(
+            "face_iso", off=_signed(off[iso]), first=first, misalignment=slope, left_out=models.iso_left_out
+        )
 
 
 def _signed(part: float) -> str:

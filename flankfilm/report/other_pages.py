@@ -17,6 +17,7 @@ from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.optimisation.words import gained, tied
+from flankfilm.report import face_parts
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import counted, number, percent, plus_minus, seconds
@@ -183,9 +184,11 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
         Fact(f"pinion: {found.torque:g} N m"),
         Fact(f"{seconds(work)} of work", "costs"),
     ]
+    over = found.over_face
     parts = [
         Part("curves", "Curves", figures=pictures(data, "verification")),
-        Part("differences", "Differences", tables=tables),
+        Part("differences", "Differences", tables=tables, notes=(found.message,) if found.message else ()),
+        *([] if over is None else [face_parts.beside(over, data)]),
         Part("costs", "Cost", (shared,)),
         _inputs(data),
     ]

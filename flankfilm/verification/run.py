@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import gears
 from base import Fault, InputError
+from flankfilm.build_face import faults_of_face, varies_by
 from flankfilm.cache import results_cache
 from flankfilm.coupling import Verification
 from flankfilm.folder import claim
 from flankfilm.progress import Progress, in_steps, silent
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import VERIFICATION
+from flankfilm.stages.catalogue import PAIR, VERIFICATION
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.face import FACE_MODELS
+
+OF_OTHERS = ("wants", "film.meniscus_half_widths", "film.stiffness", "dynamics.damping_ratio")
+"""Where faults of a face stand that no verification is concerned with."""
 
 
 def verify_scene(
@@ -22,7 +29,7 @@ def verify_scene(
     Parameters
     ----------
     scene : Scene
-        Its sections pair, material and operating count, and stiffness.plane and contact_beyond_path.
+        Its sections pair, material, operating, alignment and shafts count, and stiffness.plane and contact_beyond_path.
     folder : Path or None
         Where the files will go, if anywhere; made, and seen to be writable, before anything is computed.
     use_cache : bool
@@ -48,5 +55,24 @@ def verify_scene(
         )
     if folder is not None:
         claim(folder, "verify.nc")
-    announce = in_steps(progress, 3)
-    return Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))[VERIFICATION]
+    announce, cache = in_steps(progress, 3), results_cache(use_cache)
+    engine = Engine(scene, cache, lambda stage: announce(stage.title))
+    found = engine[VERIFICATION]
+    if not varies_by(scene):
+        return found
+    unknown = unknown_over_face(scene, engine[PAIR])
+    if unknown:
+        return replace(found, message=f"Load over the face left out: {unknown}")
+    elements = scene.stiffness.model_copy(update={"model": "fem", "pairs": "coupled"})
+    by_elements = scene.model_copy(update={"stiffness": elements})
+    whole = Engine(by_elements, cache, lambda stage: announce(stage.title))
+    return replace(found, over_face=whole[FACE_MODELS])
+
+
+def unknown_over_face(scene: Scene, pair: gears.GearPair) -> str:
+    """What of the stiffness knows no load that varies along the face; raises other faults of such a face."""
+    faults = [fault for fault in faults_of_face(scene, pair) if fault.where not in OF_OTHERS]
+    unknown = [fault for fault in faults if fault.where.startswith("stiffness.")]
+    if len(unknown) < len(faults):
+        raise InputError(faults)
+    return "; ".join(str(fault) for fault in unknown)

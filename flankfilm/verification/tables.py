@@ -12,30 +12,44 @@ from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     import xarray as xr
     from rich.table import Table
 
+    from flankfilm.coupling import FaceLoadModels
     from flankfilm.scene import Scene
 
 
 def table(found: Verification, reference: Curves) -> Table:
     """Tabulate every model against one reference: a row for each figure."""
-    from rich import box
-    from rich.table import Table
-
     from flankfilm.report.other_pages import compared
 
     name = reference.label
-    shown = Table(
-        title=f"against finite elements, {name}" if reference.left_out else f"against {name}",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-    )
-    shown.add_column("figure", no_wrap=True)
-    shown.add_column("unit")
-    for label in ("finite elements", *(model.label for model in found.models)):
-        shown.add_column(label, justify="right")
-    for row in compared(found, name):
+    heads = "figure", "unit", "finite elements", *(model.label for model in found.models)
+    title = f"against finite elements, {name}" if reference.left_out else f"against {name}"
+    return _laid_out(title, heads, compared(found, name))
+
+
+def face_table(models: FaceLoadModels) -> Table:
+    """Tabulate the load over the face by every model: a row for each."""
+    from flankfilm.report.face_parts import models_table
+
+    laid = models_table(models)
+    return _laid_out("load over the face", laid.heads, laid.rows)
+
+
+def _laid_out(title: str, heads: Iterable[str], rows: Iterable[Sequence[str]]) -> Table:
+    """Table for the terminal; all but words to the right."""
+    from rich import box
+    from rich.table import Table
+
+    shown = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    first, *others = heads
+    shown.add_column(first, no_wrap=True)
+    for head in others:
+        shown.add_column(head, justify="left" if head == "unit" else "right")
+    for row in rows:
         shown.add_row(*row)
     return shown
 
@@ -69,6 +83,7 @@ def dataset(found: Verification, scene: Scene) -> xr.Dataset:
             "reference", {curves.label: curves for curves in found.references}, "reference", "reference"
         ),
         of_models("model", models, "model"),
+        *([] if found.over_face is None else [of_record("face_models", found.over_face)]),
         xr.Dataset({"like_for_like": ((), found.references.index(found.like_for_like), like)}),
     )
     return merged(parts, {"title": scene.title, **provenance(scene.model_dump_json())})
@@ -107,6 +122,22 @@ def _write_tables(found: Verification, folder: Path) -> list[Path]:
             **{f"{name}_transmission_error_um": 1e6 * one.transmission_error for name, one in curves.items()},
         },
     }
+    if (over := found.over_face) is not None:
+        files["verify_face"] = {
+            "model": list(over.model),
+            "face_load_factor": over.face_load_factor,
+            "face_load_factor_error_percent": 100 * over.face_load_factor_error,
+            "pitch_point_factor": over.pitch_point_factor,
+            "difference_percent": 100 * over.factor_difference,
+            "line_load_difference_percent": 100 * over.line_load_difference,
+        }
+        files["verify_line_load"] = {
+            "face_position_mm": 1e3 * over.face_position,
+            **{
+                f"{identifier(model)}_N_per_mm": 1e-3 * load
+                for model, load in zip(over.model, over.line_load, strict=True)
+            },
+        }
     paths = []
     for name, content in files.items():
         paths.append(folder / f"{name}.csv")

@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from base import InputError
 from flankfilm.build import gear_pair
 from flankfilm.coupling.verification import POINTS, UNITS, mesh_figures, single_figures, stations
-from flankfilm.scene import read_scene
+from flankfilm.scene import parse_scene, read_scene
+from flankfilm.verification.run import unknown_over_face, verify_scene
+from flankfilm.verification.tables import face_table, write_verification
+from gears import closed_form
 from gears.events import Sampled, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
 from tests.flankfilm.program import EXAMPLES, flankfilm
+from tests.flankfilm.test_face_scene import SCENE
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +106,54 @@ def test_the_command_writes_tables_curves_and_a_figure(tmp_path):
     for name in ("verify_one_pair.csv", "verify_mesh.csv"):
         assert np.isfinite(pd.read_csv(tmp_path / "out" / name).to_numpy()).all()
     assert "<svg" in (tmp_path / "out" / "verify.svg").read_text(encoding="utf-8")
+
+
+FACE = (
+    SCENE.replace("teeth = 36", "teeth = 20")
+    .replace("teeth = 40", "teeth = 30, lead_slope_um = -6")
+    .replace("width_mm = 40", "width_mm = 20")
+    .replace("Nm = 600", "Nm = 100")
+    + '[alignment]\nin_plane_um = 26\ncells = 8\nface_model = "walls"\n'
+)
+
+
+@pytest.mark.slow
+def test_the_load_over_the_face_stands_beside_slices_and_iso(tmp_path):
+    """Even loads of the closed forms as without it; factors, line loads and what they differ by in files and page."""
+    import pandas as pd
+
+    scene = parse_scene(FACE)
+    found = verify_scene(scene, None, use_cache=False)
+    over = found.over_face
+    assert over.model == ("between walls", "independent slices", "ISO 6336-1, method C")
+    first, slices, iso = over.pitch_point_factor
+    assert iso == closed_form.iso6336_face_load(gear_pair(scene), 100.0, 20e-6).K_Hbeta
+    np.testing.assert_allclose(over.factor_difference, [0.0, slices / first - 1.0, iso / first - 1.0])
+    assert over.factor_difference[1] < -0.01  # slices bear too evenly
+    files = {path.name for path in write_verification(found, scene, tmp_path)}
+    assert {"verify_face.csv", "verify_line_load.csv"} <= files
+    table = pd.read_csv(tmp_path / "verify_face.csv")
+    np.testing.assert_allclose(table.difference_percent, 100 * over.factor_difference, rtol=1e-6, atol=1e-12)
+    loads = pd.read_csv(tmp_path / "verify_line_load.csv")
+    assert loads.shape == (8, 4)
+    np.testing.assert_allclose(loads.max().iloc[1:3] / loads.mean().iloc[1:3], [first, slices], rtol=1e-6)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Load over the face" in page
+    assert f"{abs(100 * over.factor_difference[1]):.1f}" in page
+    assert [str(one.header) for one in face_table(over).columns][:4][-1] == "differs from the first"
+
+
+def test_what_knows_no_cells_is_left_out_of_a_verification_with_its_reason():
+    stress = FACE.replace("[stiffness]\n", '[stiffness]\nplane = "stress"\n')
+    assert stress != FACE
+    scene = parse_scene(stress)
+    assert "stiffness.plane" in unknown_over_face(scene, gear_pair(scene))
+    assert unknown_over_face(parse_scene(FACE), gear_pair(scene)) == ""
+    rooted = FACE.replace('["stiffness"]', '["stiffness", "root-stress"]')
+    assert rooted != FACE
+    assert unknown_over_face(parse_scene(rooted), gear_pair(scene)) == ""
+    with pytest.raises(InputError, match=r"alignment\.cells"):
+        unknown_over_face(parse_scene(FACE.replace("cells = 8", "cells = 7")), gear_pair(scene))
 
 
 def test_finite_elements_add_up_like_springs(tmp_path):

@@ -206,19 +206,28 @@ def _relative(cycle: LubricatedCycle) -> np.ndarray:
     return np.array([(one.value, one.error) for one in every] + list(zip(sizes, errors, strict=True)))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("torque", "speed", "viscosity"), [(100.0, 200.0, 0.05), (10.0, 1500.0, 0.05), (40.0, 600.0, 0.3)]
-)
-def test_figures_by_arcs_err_by_what_films_over_the_face_do(cycles, torque, speed, viscosity, monkeypatch):
-    """Against twice as many places and loads, and films solved ten times as sharply; 4 % and 5 % by films of two."""
+CASES = (100.0, 200.0, 0.05), (10.0, 1500.0, 0.05), (40.0, 600.0, 0.3)
+"""Torque [N m], speed [rad/s] and viscosity [Pa s]: films change the stiffness by 1, 4 and 5 %."""
+
+
+def _parts(cycles, torque: float, speed: float, viscosity: float) -> np.ndarray:
+    """Errors over their estimates, against twice as many places and loads, and films solved ten times as sharply."""
     given = {"film": FilmModel(), "torque": torque, "speed": speed, "oil": replace(OIL, viscosity=viscosity)}
     found = _relative(cycles(**given))
-    monkeypatch.setattr(film_table, "PLACES", 2 * film_table.PLACES - 1)
-    monkeypatch.setattr(film_table, "LOADS", 2 * film_table.LOADS - 1)
-    true = np.abs(found[:, 0] - _relative(cycles(**given, films=0.1))[:, 0])
-    assert np.all(true < 2.0 * found[:, 1])
-    assert np.median(found[:, 1] / true) < 60.0  # means are on the safe side: errors cancel in them
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(film_table, "PLACES", 2 * film_table.PLACES - 1)
+        patch.setattr(film_table, "LOADS", 2 * film_table.LOADS - 1)
+        finer = _relative(cycles(**given, films=0.1))
+    return np.abs(found[:, 0] - finer[:, 0]) / found[:, 1]
+
+
+@pytest.mark.slow
+def test_figures_by_arcs_err_by_what_films_over_the_face_do(cycles):
+    """95 % of figures are off by less than twice their estimates, and these do not lose touch with the errors."""
+    parts = np.concatenate([_parts(cycles, *case) for case in CASES])
+    assert np.mean(parts < 2.0) > 0.95
+    assert parts.max() < 5.0
+    assert 0.05 < np.median(parts) < 1.0
 
 
 def test_films_by_formula_err_by_their_interpolation_alone(cycles):
