@@ -28,8 +28,8 @@ ENDS_ERROR = 0.1
 
 def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:
     """The face with half as many cells, and which part of what that changes is error."""
-    few = 2 * (face.cells // 4)
-    return replace(face, cells=few), LEFT / (face.cells / few - 1)
+    few = max(2 * (face.cells // 4), 2)  # two cells have no half: nobody asks for their error
+    return replace(face, cells=few), LEFT / (max(face.cells / few, 2.0) - 1)
 
 
 def cell_errors(

@@ -27,8 +27,8 @@ from scipy.sparse.linalg import splu
 from fem import compliance
 from fem.cell_matrix import cell_matrix
 from fem.elasticity import PlaneElasticity, stiffness_matrix
+from fem.face_errors import ENDS_ERROR
 from fem.face_setting import FaceSetting
-from fem.face_share import ENDS_ERROR
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
 from meshes.abaqus import number
