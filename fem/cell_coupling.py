@@ -65,26 +65,32 @@ class CellCoupling(Coupling):
 
     def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
         """As of ``gears.load_coupling.Coupling``; 0 where cells cannot touch."""
-        found = known.copy()
-        for at in zip(*np.nonzero(wanted), strict=True):
-            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
-            found[at][cells] = block @ forces[at][cells]
+        found, positions = known.copy(), len(self.blocks)
+        flat, pressed = found.reshape(-1, self.unknowns), forces.reshape(-1, self.unknowns)
+        for at in np.flatnonzero(wanted).tolist():
+            cells, block = self.cells[at % positions], self.blocks[at % positions]
+            flat[at, cells] = block @ pressed[at].take(cells)
         return found
 
     def solved(
         self, slope: Array, residual: Array, active: Booleans, wanted: Booleans
     ) -> tuple[Array, Array, float]:
         """As of ``gears.load_coupling.Coupling``."""
-        unit, response = np.zeros_like(residual), np.zeros_like(residual)
-        for at in zip(*np.nonzero(wanted), strict=True):
-            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
-            bears = np.flatnonzero(active[at][cells])
+        unit, response = np.zeros((2, *residual.shape))
+        positions, size = len(self.blocks), self.unknowns
+        one, other, stiff, rest, bearing = (
+            whole.reshape(-1, size) for whole in (unit, response, slope, residual, active)
+        )
+        for at in np.flatnonzero(wanted).tolist():
+            cells, block = self.cells[at % positions], self.blocks[at % positions]
+            bears = bearing[at].take(cells).nonzero()[0]
             chosen = cells[bears]
             # rows and then columns are copied much faster than both at once
             jacobian = block.take(bears, axis=0).take(bears, axis=1)
-            jacobian.flat[:: len(bears) + 1] += slope[at][chosen]
-            sides = np.stack([np.ones(len(bears)), residual[at][chosen]])
-            unit[at][chosen], response[at][chosen] = solve_symmetric(jacobian, sides)
+            jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
+            sides = np.empty((2, len(bears)))
+            sides[0], sides[1] = 1.0, rest[at].take(chosen)
+            one[at, chosen], other[at, chosen] = solve_symmetric(jacobian, sides)
         return unit, response, 1.0
 
 

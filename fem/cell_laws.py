@@ -32,11 +32,12 @@ class CellLaws:
 
     def _together(self, force: Array) -> Array:
         """Forces of whole faces at the cells' line loads (cells, ..., positions, pairs)."""
-        return self.cells * np.moveaxis(force.reshape(*force.shape[:-1], -1, self.cells), -1, 0)
+        first = force.reshape(-1, self.cells).T
+        return self.cells * first.reshape(self.cells, *force.shape[:-1], -1)
 
     def _apart(self, found: Array) -> Array:
-        moved = np.moveaxis(found, 0, -1)
-        return np.asarray(moved.reshape(*moved.shape[:-2], -1))
+        last = found.reshape(self.cells, -1).T
+        return last.reshape(*found.shape[1:-1], -1)
 
 
 def between_middles(values: Array, cells: int) -> Array:

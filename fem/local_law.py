@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 
-from base import Array, Booleans, record
+from base import Array, Booleans, Integers, record
 
 __all__ = ["CutOff", "Film", "FilmLaw", "HertzApproach", "PairLaws", "Table", "film_yielding"]
 
@@ -84,8 +85,11 @@ class Table:
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Approach [m] and derivative [m/N] at forces (..., n) [N], one of each row."""
-        rows, last = np.arange(len(self.force)), self.force.shape[1] - 1
-        cell = np.clip((self.force <= force[..., None]).sum(axis=-1) - 1, 0, last - 1)
+        return _by_row(self._at, force)
+
+    def _at(self, rows: Integers, force: Array) -> tuple[Array, Array]:
+        last = self.force.shape[1] - 1
+        cell = np.clip((self.force[rows] <= force[:, None]).sum(axis=-1) - 1, 0, last - 1)
         f0, f1 = self.force[rows, cell], self.force[rows, cell + 1]
         d0, d1 = self.approach[rows, cell], self.approach[rows, cell + 1]
         s0, s1 = self.steepness[rows, cell], self.steepness[rows, cell + 1]
@@ -136,18 +140,33 @@ class CutOff:
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
-        log = np.log(np.maximum(force, LEAST_FORCE))
-        rows, last = np.arange(len(self.log_force)), self.log_force.shape[1] - 1
-        cell = np.clip((self.log_force <= log[..., None]).sum(axis=-1) - 1, 0, last - 1)
-        start, width = self.log_force[rows, cell], np.diff(self.log_force)[rows, cell]
+        return _by_row(self._at, force)
+
+    def _at(self, rows: Integers, force: Array) -> tuple[Array, Array]:
+        log, last = np.log(np.maximum(force, LEAST_FORCE)), self.log_force.shape[1] - 1
+        cell = np.clip((self.log_force[rows] <= log[:, None]).sum(axis=-1) - 1, 0, last - 1)
+        start = self.log_force[rows, cell]
+        width = self.log_force[rows, cell + 1] - start
         q0, q1 = self.quotient[rows, cell], self.quotient[rows, cell + 1]
         s0, s1 = self.slope[rows, cell] * width, self.slope[rows, cell + 1] * width
         t = np.clip((log - start) / width, 0.0, 1.0)
         quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
         quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t)
         slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
-        slope = np.where(log < self.log_force[:, -1], slope, 0.0)
-        return force * quotient, quotient + np.where(log > self.log_force[:, 0], slope, 0.0)
+        slope = np.where(log < self.log_force[rows, -1], slope, 0.0)
+        return force * quotient, quotient + np.where(log > self.log_force[rows, 0], slope, 0.0)
+
+
+def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) -> tuple[Array, Array]:
+    """Ask laws of rows at forces (m,) for forces (..., rows): those without a force once a row."""
+    bears, count = force != 0.0, force.shape[-1]
+    rows = np.nonzero(bears)[-1]
+    found = at(np.concatenate([np.arange(count), rows]), np.concatenate([np.zeros(count), force[bears]]))
+    value, slope = np.empty_like(force), np.empty_like(force)
+    for each, one in zip((value, slope), found, strict=True):
+        each[...] = one[:count]
+        each[bears] = one[count:]
+    return value, slope
 
 
 @record

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -13,8 +14,13 @@ from gears.load_coupling import Coupling, DenseCoupling
 
 _ITERATIONS = 200
 _STEP = 1e-11  # relative to the force; Newton's next step is of the order of its square
+_NEAR = 1e-7  # part of each force: a step so small is the last where the next will be below the bound
 _ROUNDING = 1e-14  # of deflections, relative to their size
 _BACKOFF = 0.1  # part of a pair's force that is kept when a step would make it negative
+
+
+Asked = Callable[[Array], tuple[Array, Array]]
+"""Deflection and slope by forces."""
 
 
 class DeflectionLaw(Protocol):
@@ -144,11 +150,13 @@ def share_load(
         active = loads > 0.0
     every = np.ones(clear.shape[:-1], dtype=bool)
     wanted, slopes, bent = every, nothing, stiff.applied(loads, every, nothing)
+    laws = _asked(hertz), None if film is None else _asked(film)
+    before = np.zeros(clear.shape[:-1])
     if near is not None:
-        deflection = _linearise(bent, hertz, film, clear, loads)[1]
+        deflection = _linearise(bent, *laws, clear, loads)[1]
         approach = np.mean(deflection, axis=-1, where=active)
     for iteration in range(1, _ITERATIONS + 1):
-        slope, deflection = _linearise(bent, hertz, film, clear, loads)
+        slope, deflection = _linearise(bent, *laws, clear, loads)
         overlap = deflection - approach[..., None]
         step, lift, new = _newton_step(stiff, slope, overlap, loads, active, wanted, whole, arms)
         slopes = np.where(wanted[..., None], new, slopes)
@@ -162,13 +170,18 @@ def share_load(
         size = np.abs(deflection).max(where=active, initial=0.0, axis=-1) + np.abs(approach)
         released = negative & (unloaded >= 0.0)
         taken = touchable & ~active & (unloaded < -_ROUNDING * size[..., None])
-        settled = np.abs(moved - loads).max(axis=-1) <= _STEP * whole + _ROUNDING * size * tangent
+        ways, least = np.abs(moved - loads), _STEP * whole + _ROUNDING * size * tangent
+        way = ways.max(axis=-1)
+        # the next step falls at least as this one did, in truth by the square of that
+        near = (ways <= _NEAR * moved).all(axis=-1)
+        settled = (way <= least) | (near & (way**2 <= least * before))
         loads = np.where(negative & ~released, _BACKOFF * loads, kept)
         loads = np.where(taken, start * each, loads)
         start = np.where(taken, _BACKOFF * start, start)
         active = (active & ~released) | taken
         changed = np.any(negative | taken, axis=-1)
         settled &= ~changed
+        before = np.where(changed, 0.0, way)
         if settled.all():
             return LoadShare(loads, approach, tangent, slopes, iteration)
         bent = stiff.applied(loads, changed, bent)
@@ -179,23 +192,25 @@ def share_load(
 
 
 def _linearise(
-    bent: Array, hertz: DeflectionLaw, film: DeflectionLaw | None, clear: Array, loads: Array
+    bent: Array, hertz: Asked, film: Asked | None, clear: Array, loads: Array
 ) -> tuple[Array, Array]:
     """Slopes of the laws, and deflections with clearance of all pairs (..., n) that are bent so far by all forces."""
-    yields, slope = _asked(hertz, loads)
+    yields, slope = hertz(loads)
     residual = bent + yields + clear
     if film is not None:
-        props, falls = _asked(film, loads)
+        props, falls = film(loads)
         slope, residual = slope - falls, residual - props
     # an idle pair may have an infinite slope; its row is replaced in the Newton step
     return np.where(loads > 0.0, slope, 1.0), residual
 
 
-def _asked(law: DeflectionLaw, loads: Array) -> tuple[Array, Array]:
-    """Deflection and slope of a law."""
-    if isinstance(law, JointLaw):
-        return law.value_and_slope(loads)
-    return law.approach(loads), law.slope(loads)
+def _asked(law: DeflectionLaw) -> Asked:
+    """What gives deflection and slope of a law."""
+    return (
+        law.value_and_slope
+        if isinstance(law, JointLaw)
+        else lambda loads: (law.approach(loads), law.slope(loads))
+    )
 
 
 def _newton_step(
