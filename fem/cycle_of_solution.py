@@ -54,7 +54,7 @@ def cycle_of(
     stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
-    by_cells = 0.0 if contact.face is None else float(contact.face.stiffness_error[number])
+    by_cells = 0.0 if contact.face is None else float(contact.face.errors.relative[number])
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
@@ -106,7 +106,15 @@ def cycle_of(
         else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force),
         problem=None
         if refusal
-        else ContactProblem(replace(given, both=both), bodies, force, film, tolerance, tables=tables),
+        else ContactProblem(
+            replace(given, both=both),
+            bodies,
+            force,
+            film,
+            tolerance,
+            tables=tables,
+            scatter=None if contact.face is None else contact.face.errors.of(number),
+        ),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,
     )

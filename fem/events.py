@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from fem.setting import Setting
 from fem.sharing import Solution, solve
 from gears.arcs import Arcs
 from gears.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
-from gears.mesh_figures import CURVES, MeshArcs
+from gears.mesh_figures import CURVES, FewerCells, MeshArcs
 
 __all__ = ["ContactProblem", "measured_less"]
 
@@ -54,6 +55,8 @@ class ContactProblem:
         Laws of the tip edges that are known already.
     varied : tuple of (Film, float)
         Other films, and how much of what they change is error.
+    scatter : mapping, optional
+        What cells of the face leave at positions, as of ``gears.mesh_figures.FewerCells``.
     """
 
     given: Setting
@@ -66,6 +69,7 @@ class ContactProblem:
     turn: Array | None = None
     tables: EdgeTables | None = None
     varied: tuple[tuple[Film, float], ...] = ()
+    scatter: Mapping[str, tuple[float, float]] | None = None
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -83,11 +87,13 @@ class ContactProblem:
         before = self.bodies.coarser  # with the tips that have been asked for
         coarse = None if before is None else self._alike(before, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
-        if self.given.face is not None:
-            few, share = half_as_many(self.given.face)
-            others.append((replace(self, given=replace(self.given, face=few)), share))
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
-        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied)
+        fewer = None
+        if self.given.face is not None and self.scatter is not None:
+            few, share = half_as_many(self.given.face)
+            problem = replace(self, given=replace(self.given, face=few))
+            fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
+        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied, fewer)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""
@@ -199,6 +205,7 @@ def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
         division=division,
         before=before,
         varied=tuple((less(arcs), share) for arcs, share in found.varied),
+        fewer=None if found.fewer is None else replace(found.fewer, arcs=less(found.fewer.arcs)),
     )
 
 

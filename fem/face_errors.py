@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, record
 from fem.face_setting import FREE_ENDS, WALLS
 
 if TYPE_CHECKING:
     from fem.cell_contact import CellContact, CellShare
     from fem.face_setting import FaceSetting
+    from gears import LoadShare
 
-__all__ = ["cell_errors", "face_load_factors", "half_as_many"]
+__all__ = ["CellErrors", "cell_errors", "face_load_factors", "half_as_many"]
 
-LEFT = 0.6
-"""Part of what twice as many cells changed that is left: all of it in the first order, a third in the second."""
+LEFT, LEFT_AT_END = 0.7, 1.0
+"""Part of what twice as many cells changed that is left: all of it in the first order, a third in the second.
+
+The greatest load is found in the first order where it is at an end of the face.
+"""
 
 FAR = 4.0
 """Times what neighbouring cells say of halving them that the change from half as many is believed."""
@@ -26,39 +31,78 @@ ENDS_ERROR = 0.1
 """Part of what free ends do that their coarse section leaves uncertain."""
 
 
+@record
+class CellErrors:
+    """Errors by the cells of every torque.
+
+    Attributes
+    ----------
+    factor : (torques,) array
+        Of the greatest face-load factor.
+    relative : (torques,) array
+        Of stiffness and deflection at a position, in the mean over positions.
+    scatter : dict of (2, torques) arrays
+        As of ``gears.mesh_figures.FewerCells``.
+    """
+
+    factor: Array
+    relative: Array
+    scatter: Mapping[str, Array]
+
+    def of(self, torque: int) -> dict[str, tuple[float, float]]:
+        """Scatter of a single torque."""
+        return {name: (float(both[0, torque]), float(both[1, torque])) for name, both in self.scatter.items()}
+
+
 def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:
     """The face with half as many cells, and which part of what that changes is error."""
     few = max(2 * (face.cells // 4), 2)  # two cells have no half: nobody asks for their error
     return replace(face, cells=few), LEFT / (max(face.cells / few, 2.0) - 1)
 
 
-def cell_errors(
-    over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare
-) -> tuple[Array, Array]:
-    """Errors of every torque: of the greatest face-load factor, and relative of stiffness and deflection."""
+def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare) -> CellErrors:
+    """Estimate errors of cycles with cells by those with half as many."""
+    _, rest = half_as_many(face)
+    scatter, relative = {}, np.zeros(len(over.whole))
+    both = [_curves(over.whole, one.share) for one in (fine, coarse)]
+    for name, curve in both[0].items():
+        change = rest * (both[1][name] - curve)
+        varying = change - change.mean(axis=(1, 2), keepdims=True)
+        scatter[name] = np.stack([np.abs(one).mean(axis=(1, 2)) for one in (change, varying)])
+        if name != "secant_stiffness":
+            relative = np.maximum(relative, np.abs(change / curve).mean(axis=(1, 2)))
+    factor = [_factor_error(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
+    return CellErrors(np.array(factor), relative, scatter)
+
+
+def _curves(whole: Array, share: LoadShare) -> dict[str, Array]:
+    """Curves of a cycle (torques, pitches, positions), deflection for transmission error."""
+    moved = share.transmission_error
+    return {"stiffness": share.stiffness, "transmission_error": moved, "secant_stiffness": whole / moved}
+
+
+def _factor_error(
+    over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
+) -> float:
+    """Error of the greatest face-load factor."""
     (few, rest), kappa = half_as_many(face), over.kappa[..., None]
-    loads, fewer = fine.forces / kappa, coarse.forces / kappa
+    loads, fewer = (one.forces[torque] / kappa for one in (fine, coarse))
     factors, half = face_load_factors(loads), face_load_factors(fewer)
-    stiffness = np.zeros(len(loads))
-    for name in ("stiffness", "transmission_error"):
-        many, some = getattr(fine.share, name), getattr(coarse.share, name)
-        stiffness = np.maximum(stiffness, rest * np.abs(some / many - 1.0).mean(axis=(1, 2)))
-    factor = np.zeros(len(loads))
-    for torque, found in enumerate(factors):
-        pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(found)), found.shape))
-        cells = loads[torque, pitch, position]
-        settled = rest * abs(float(np.max(found)) - float(np.max(half[torque])))
-        between = _between(cells[int(np.argmax(cells.sum(axis=-1)))])
-        factor[torque] = np.clip(settled, between, FAR * between)
-        if face.model == FREE_ENDS:
-            at = over.at(torque, pitch, position)
-            walls = at.shared(
-                replace(few, model=WALLS), coarse.forces[torque, pitch, position][None, None, None]
-            )
-            there = float(half[torque, pitch, position])
-            without = float(face_load_factors(walls.forces / at.kappa[..., None])[0, 0, 0])
-            factor[torque] += ENDS_ERROR * abs(there - without)
-    return factor, stiffness
+    pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(factors)), factors.shape))
+    cells = loads[pitch, position]
+    most = cells[int(np.argmax(cells.sum(axis=-1)))]
+    at_end = int(np.argmax(most)) in (0, len(most) - 1)
+    settled = (
+        rest * (LEFT_AT_END / LEFT if at_end else 1.0) * abs(float(np.max(factors)) - float(np.max(half)))
+    )
+    between = _between(most)
+    found = float(np.clip(settled, between, FAR * between))
+    if face.model == FREE_ENDS:
+        at = over.at(torque, pitch, position)
+        walls = at.shared(replace(few, model=WALLS), coarse.forces[torque, pitch, position][None, None, None])
+        without = float(face_load_factors(walls.forces / at.kappa[..., None])[0, 0, 0])
+        found += ENDS_ERROR * abs(float(half[pitch, position]) - without)
+    return found
 
 
 def face_load_factors(forces: Array) -> Array:

@@ -111,6 +111,6 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
         plane=plane,
         curvature_radius=np.tile(radius, (given.pitches, 1)),
         gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
-        error=float(over.factor_error[number] / np.max(factors)),
+        error=float(over.errors.factor[number] / np.max(factors)),
         shaft_misalignment=bent,
     )

@@ -18,7 +18,7 @@ import numpy as np
 
 from base import Array, record
 from fem.cell_contact import CellContact
-from fem.face_errors import cell_errors, half_as_many
+from fem.face_errors import CellErrors, cell_errors, half_as_many
 from fem.face_shafts import ShaftsUnderFace, shafts_under_face
 from fem.local_law import Film, FilmLaw, PairLaws, film_yielding
 
@@ -41,11 +41,8 @@ class FaceShare:
         [N]
     left : (torques, pitches, positions, pairs, cells) array
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
-    factor_error : (torques,) array
-        Estimated error of the greatest face-load factor: what more cells would change there, and a part of what free
-        ends do.
-    stiffness_error : (torques,) array
-        Estimated relative error of mean stiffness and deflection by the cells.
+    errors : CellErrors
+        By the cells, and of the face-load factor by free ends.
     shafts : ShaftsUnderFace or None
         None where they are rigid.
     strips, rise
@@ -58,8 +55,7 @@ class FaceShare:
 
     forces: Array
     left: Array
-    factor_error: Array
-    stiffness_error: Array
+    errors: CellErrors
     shafts: ShaftsUnderFace | None
     strips: Array
     rise: Array
@@ -106,7 +102,7 @@ def share_over_face(
     shafts = shafts_under_face(given.face, given.pair)
     share, left = of_pairs(fine.share, given.face.cells, kappa, shafts), settled_gaps(fine.left, fine.forces)
     return share, FaceShare(
-        fine.forces, left, *errors, shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
+        fine.forces, left, errors, shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
     )
 
 

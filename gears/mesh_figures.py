@@ -3,8 +3,9 @@
 All follow from the smooth arcs between the cycle's events. The error of a figure is that of its arcs' series and, by
 finite elements, that of the mesh and of fits along the flanks: the figure is computed once more from gears on the mesh
 before the last refinement whose fits are off by as much more, with events of its own. What films may err by changes it
-likewise: it is computed once more with films so changed. These parts have nothing to do with each other and are added
-as squares. A part of a harmonic's error is complex, with the phase of what causes it.
+likewise: it is computed once more with films so changed, and with half as many cells of the face. These parts have
+nothing to do with each other and are added as squares. A part of a harmonic's error is complex, with the phase of what
+causes it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from base import Array, Integers, described, part, quantity, record
 from gears.arcs import Arcs
 from gears.events import Division
 
-__all__ = ["CURVES", "Estimate", "MeshArcs", "MeshFigures"]
+__all__ = ["CURVES", "Estimate", "FewerCells", "MeshArcs", "MeshFigures"]
 
 CURVES = ("transmission_error", "stiffness", "secant_stiffness")
 """Curves of every mesh cycle on its arcs."""
@@ -57,6 +58,19 @@ class Estimate:
 
 
 @record
+class FewerCells:
+    """A cycle with half as many cells of the face."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    arcs: Arcs = part("curves with fewer cells")
+    share: float = quantity("1", "how much of what fewer cells change is error")
+    scatter: Mapping[str, tuple[float, float]] = part(
+        "mean size over positions of that part, of curves by their names, and of what is not alike at all positions"
+    )
+
+
+@record
 class MeshArcs:
     """Curves of a mesh cycle on smooth arcs, and the same on the mesh before for an estimate."""
 
@@ -71,6 +85,9 @@ class MeshArcs:
     varied: tuple[tuple[Arcs, float], ...] = part(
         "the same with a part of the model changed, such as its films, and how much of every change is error",
         default=(),
+    )
+    fewer: FewerCells | None = part(
+        "the same with half as many cells of the face; None where it has none", default=None
     )
 
     @property
@@ -90,12 +107,13 @@ class MeshArcs:
     def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
         """Mean of a curve, all over or between two ends of arcs in every base pitch."""
         value, error = self.arcs.mean(name, between)
-        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0])
+        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], self._scatter(name)[0])
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
         """Least or greatest value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
-        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0])
+        scatter, _ = self._scatter(name)
+        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter)
 
     def range(self, name: str) -> Estimate:
         """Greatest less least value of a curve."""
@@ -105,7 +123,7 @@ class MeshArcs:
             (low, _), (high, _) = arcs.extremes(name)
             return high - low
 
-        return self._estimate(most - least, hypot(off, more), apart)
+        return self._estimate(most - least, hypot(off, more), apart, self._scatter(name)[1])
 
     def greatest_share(self) -> Estimate:
         """Greatest share of the torque that a pair takes; nan where pairs are not told apart."""
@@ -165,17 +183,31 @@ class MeshArcs:
             return value, None
         parts.append(self.other * value[:, None])
         before = () if self.before is None else ((self.before, 1.0 / self.gain),)
-        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
+        fewer = () if self.fewer is None else ((self.fewer.arcs, self.fewer.share),)
+        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied, *fewer)]
         return value, np.concatenate(parts, axis=1)
 
+    def _scatter(self, name: str) -> tuple[float, float]:
+        """Mean size of what the cells leave of a curve, and of what of it is not alike at all positions."""
+        return (0.0, 0.0) if self.fewer is None else self.fewer.scatter.get(name, (0.0, 0.0))
+
     def _estimate(
-        self, value: float, sampling: float, figure: Callable[[Arcs], float], alike: bool = True
+        self,
+        value: float,
+        sampling: float,
+        figure: Callable[[Arcs], float],
+        least: float = 0.0,
+        alike: bool = True,
     ) -> Estimate:
+        """Estimate with the error of arcs, the mesh, cells (least: what these change at positions) and other models."""
         if self.other is None:
             return Estimate(value, None)
         other = self.other * value if alike else 0.0
         mesh = 0.0 if self.before is None else abs(value - figure(self.before)) / self.gain
-        varied = (share * abs(value - figure(arcs)) for arcs, share in self.varied)
+        varied = [share * abs(value - figure(arcs)) for arcs, share in self.varied]
+        if self.fewer is not None:
+            # the change of a figure may vanish by chance where cells change much at single positions
+            varied.append(max(self.fewer.share * abs(value - figure(self.fewer.arcs)), least))
         return Estimate(value, hypot(sampling, mesh, other, *varied))
 
 

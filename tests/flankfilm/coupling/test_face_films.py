@@ -197,8 +197,7 @@ def test_arcs_with_films_over_the_face_have_the_curves(cycles):
 
 def _relative(cycle: LubricatedCycle) -> np.ndarray:
     """Means, peak to peak, extremes and harmonics with what films err by, relative (10, 2)."""
-    by_films = cycle.arcs.varied[: len(cycle.over_face.table.varied())]  # half as many cells come behind
-    found = replace(cycle.arcs, other=0.0, before=None, varied=by_films)
+    found = replace(cycle.arcs, other=0.0, before=None, fewer=None)
     both = ("stiffness", "secant_stiffness")
     every = [found.mean(name) for name in both] + [found.range("transmission_error")]
     every += [found.extreme(name, greatest) for name in both for greatest in (False, True)]
