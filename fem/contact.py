@@ -12,7 +12,7 @@ from fem.bodies import Compliance
 from fem.contact_candidates import contact_candidates
 from fem.cycle import MeshCycle
 from fem.cycle_of_solution import cycle_of
-from fem.edge_tables import EdgeTables
+from fem.edge_tables import EdgeTables, edge_tables
 from fem.face_setting import FREE_ENDS, face_setting
 from fem.local_law import Film
 from fem.pair_compliance import compliance as _compliance
@@ -157,7 +157,7 @@ def mesh_cycle(
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
     )
     ready = watch.seconds
-    tables = EdgeTables(given, bodies)
+    tables = edge_tables(given, bodies)
     found: dict[int, tuple[Setting, Solution, int]] = {}
     for back, chosen in ((False, torque > 0.0), (True, torque < 0.0), (False, torque == 0.0)):
         numbers = np.flatnonzero(chosen)

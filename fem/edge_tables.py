@@ -10,6 +10,7 @@ import numpy as np
 
 from base import Array, Booleans, Integers, record
 from fem.local_law import Table
+from fem.memo import Memo
 from fem.place_surface import PlaceSurface, place_surface, slid
 from fem.tip_contact import edge_laws
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from fem.contact_candidates import ContactCandidates
     from fem.setting import Setting
 
-__all__ = ["EdgeTables"]
+__all__ = ["EdgeTables", "edge_tables"]
 
 APART = 1e-11
 """Base pitches within which two places are one: laws are continuous in the place."""
@@ -160,6 +161,23 @@ class EdgeTables:
         tips = bodies.tips[corner]
         law = edge_laws(given.pair, tips, corner, place[first], touched, given.rounds[corner], given.removed)
         return _Laws(key, law.force, law.approach - law.approach[:, :1], law.largest, law.smooth)
+
+
+_TABLES: Memo[EdgeTables] = Memo(4)
+
+
+def edge_tables(given: Setting, bodies: Compliance) -> EdgeTables:
+    """Tables of a face set up likewise, with what loads before have left in them; new ones of flanks with relief.
+
+    Parameters
+    ----------
+    given : Setting
+    bodies : Compliance
+        The very record: tables that are kept hold theirs, so that no other one can take its place.
+    """
+    if given.removed is not None or given.face is None:
+        return EdgeTables(given, bodies)
+    return _TABLES.obtain((id(bodies), given.rounds), lambda: EdgeTables(given, bodies))
 
 
 def _extended(values: Array, points: int) -> Array:

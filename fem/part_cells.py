@@ -27,8 +27,8 @@ __all__ = ["WITHIN", "PartCells", "part_cells", "rises"]
 WITHIN, MEAN = 4, np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
 """Parts of a cell by which the gaps in it are known, and Boole's weights of their mean."""
 
-STEPS = 4
-"""In which F* is found; laws are nearly linear."""
+TANGENTS = 2
+"""By which F* is found."""
 
 SHORT = 1e-9
 """Part of a cell below which it is taken to touch over that much."""
@@ -72,11 +72,16 @@ class PartCells:
 
 
 def part_cells(laws: CellLaws, coupling: CellCoupling, rise: Array) -> PartCells:
-    """Laws of cells whose least gap falls short of their mean by r (..., n) [m]."""
+    """Laws of cells whose least gap falls short of their mean by r (..., n) [m].
+
+    F* is found by the laws' secant, then by tangents, to about 1e-3.
+    """
     short = coupling.shortest
     whole = np.maximum(rise / short, LEAST)
-    for _ in range(STEPS):
-        whole = np.maximum(rise / (short + laws.approach(whole) / whole), LEAST)
+    whole = np.maximum(rise / (short + laws.approach(whole) / whole), LEAST)
+    for _ in range(TANGENTS):
+        value, slope = laws.value_and_slope(whole)
+        whole = np.maximum(whole - (short * whole + value - rise) / (short + slope), LEAST)
     return PartCells(laws, rise, whole)
 
 
