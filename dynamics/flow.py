@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,8 @@ class Tables(Flow):
         Parameters as of `GearOscillator.packed`.
     coef, edge : ndarray
         See `dynamics.kernels`.
+    made : callable, optional
+        Makes tables of packed parameters with other cells, and of a degree; `tabulated` unless it is given.
     """
 
     tolerance = EPS
@@ -38,6 +40,7 @@ class Tables(Flow):
     packed: Array
     coef: Array
     edge: Array
+    made: Callable[[Array, int, int], Tables] | None = None
 
     @property
     def arrays(self) -> tuple[Array, Array, Array]:
@@ -57,7 +60,7 @@ class Tables(Flow):
 
     def finer(self) -> Tables:
         """Tables with half the cell."""
-        return tabulated(self.packed, 2 * self.cells)
+        return (self.made or tabulated)(self.packed, 2 * self.cells, DEGREE)
 
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the Jacobian covers the periods skipped, too."""

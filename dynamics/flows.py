@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from base import Faults, InputError
 from dynamics.drives.flow import drive_flow
 from dynamics.drives.oscillator import DriveOscillator
@@ -9,6 +11,7 @@ from dynamics.flow import tables
 from dynamics.limits import POSITIVE
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, Oscillator
+from dynamics.retabling import Retabling
 from dynamics.stepwise.flow import StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
 
@@ -61,6 +64,35 @@ def flow_of(
     if isinstance(oscillator, GearOscillator):
         return tables(oscillator, tolerance=tolerance)
     return drive_flow(oscillator)
+
+
+def flows_along(
+    oscillator: Oscillator, parameter: str, tolerance: float | None = None
+) -> Callable[[Oscillator], Flow]:
+    """Flows of an oscillator with one value of a parameter after another, each good until the next is asked for.
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+        The oscillator; its own value of the parameter is not used.
+    parameter : str
+        One of its `parameters`.
+    tolerance : float, optional
+        As of `flow_of`.
+
+    Raises
+    ------
+    InputError
+        If the tolerance is out of range or there is no such parameter; or by the callable, as by `flow_of`.
+    """
+    if isinstance(oscillator, GearOscillator):
+        with Faults() as faults:
+            if tolerance is not None:
+                faults.number("tolerance", tolerance, POSITIVE)
+        line = Retabling(oscillator, parameter, tolerance)
+        if line.first > 0:  # else it is all made anew, and there is nothing to keep
+            return line.at
+    return lambda here: flow_of(here, tolerance)
 
 
 def unserved(oscillator: object) -> InputError:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.flows import flow_of
+from dynamics.flows import flow_of, flows_along
 from dynamics.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
 from dynamics.protocol import EPS, Flow, Oscillator
 from dynamics.shooting import find_orbit, motion_label
@@ -68,8 +68,13 @@ def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -
 
 
 def long_flow(oscillator: Oscillator, tolerance: float | None) -> Flow:
-    """Flow of a motion that is followed for long; no tolerance makes the exact one coarser unless it is given."""
-    return flow_of(oscillator, tolerance if tolerance is not None or not oscillator.has_steps else TOLERANCE)
+    """Flow of a motion that is followed for long."""
+    return flow_of(oscillator, long_tolerance(oscillator, tolerance))
+
+
+def long_tolerance(oscillator: Oscillator, tolerance: float | None) -> float | None:
+    """Tolerance of a motion that is followed for long: that given; without one the exact flow is no coarser."""
+    return tolerance if tolerance is not None or not oscillator.has_steps else TOLERANCE
 
 
 def sweep(
@@ -133,6 +138,7 @@ def sweep(
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
     state = first.rest_state() if initial is None else checked_state(initial, "initial", oscillator.dimension)
     restart = state.copy()
+    flow_at = flows_along(oscillator, parameter, long_tolerance(oscillator, tolerance))
     states = np.full((len(grid), kept, oscillator.dimension), np.nan)
     impacts = np.full((len(grid), 2), np.nan)
     labels, periods = [DIVERGED] * len(grid), np.zeros(len(grid), dtype=np.int64)
@@ -140,7 +146,7 @@ def sweep(
     for done, i in enumerate(order, start=1):
         here = oscillator.with_parameter(parameter, float(grid[i]))
         skip = settling_periods(here) if wait is None else wait
-        flow = long_flow(here, tolerance)
+        flow = flow_at(here)
         motion = _settle(here, flow, state, skip, kept, longest, patient=wait is None)
         total += motion.used
         if motion.found:

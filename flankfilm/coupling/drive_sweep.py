@@ -183,14 +183,14 @@ def drive_sweep(
     >>> [round(value) for value in swept.shaft_torque_mean["up"][0]]  # of both shafts, N m
     [600, 667]
     """
-    import dynamics
+    from dynamics.up_and_down import up_and_down
 
     watch = Stopwatch()
     values, speeds = frequencies_of(drive.rigid, speed, frequency)
     if speeds is None:
         speeds = np.array([drive.scales.speed(one) for one in values.tolist()])
     oscillator, outputs = drive.oscillator, drive.outputs
-    found = {way: dynamics.sweep(oscillator, "frequency", values, way) for way in ("up", "down")}
+    found = up_and_down(oscillator, "frequency", values)
     shaken = {
         way: vibrations(oscillator, result, load=drive.mean_force, outputs=outputs)
         for way, result in found.items()

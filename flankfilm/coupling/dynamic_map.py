@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-import dynamics
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.limits import NUMBER, checked_grid
+from dynamics.up_and_down import up_and_down
 from flankfilm.coupling.carried import greatest, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator
@@ -152,8 +152,7 @@ def dynamic_map(
         assert motion.scales is not None
         values = np.array([motion.scales.frequency(one) for one in at.tolist()])
         both = []
-        for way in ("up", "down"):
-            swept = dynamics.sweep(motion.oscillator, "frequency", values, way)
+        for way, swept in up_and_down(motion.oscillator, "frequency", values).items():
             shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
             rows[way].append(shaken.force)
             both.append(shaken)

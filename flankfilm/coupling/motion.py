@@ -189,14 +189,12 @@ def speed_sweep(
     (['1-0-0', '1-1-0', '1-1-1'], 0.6335)
     """
     with unclocked():
-        from dynamics import contact_grazing, sweep
+        from dynamics import contact_grazing
+        from dynamics.up_and_down import up_and_down
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator
-    found = {
-        direction: sweep(oscillator, parameter="frequency", values=values, direction=direction)
-        for direction in ("up", "down")
-    }
+    found = up_and_down(oscillator, "frequency", values)
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
     solved: list[Result] = [*found.values(), grazing]
     shaken = {direction: vibrations(oscillator, result) for direction, result in found.items()}
