@@ -19,6 +19,8 @@ GOOD_ENDS = ("bound", "closed", MEETS, UNBOUNDED)
 LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
 ENDLESS = 1e4  # times its first size: a motion that grows without bound
 KINDS = ("saddle-node", "period-doubling", "grazing")
+NEIMARK_SACKER = "neimark-sacker"
+"""Kind of special point that branches of several freedoms, or of damping by the motion, have besides."""
 
 
 @record
@@ -126,7 +128,7 @@ class Branch(AsArray):
         InputError
             If there is no such kind.
         """
-        return of_kind(self.points, kind, (*KINDS, "neimark-sacker"))
+        return of_kind(self.points, kind, (*KINDS, NEIMARK_SACKER))
 
     def columns(self) -> Array:
         """Columns parameter, then those of the state."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from dynamics.branch import MEETS, Branch
-from dynamics.continuation import continue_branch, doubled_orbit
-from dynamics.corrector import OrbitProblem
-from dynamics.oscillator import GearOscillator
+from dynamics.continuation import continue_branch, doubled_orbit, orbits_over
 from dynamics.shooting import Orbit
 from dynamics.states import apart
 
@@ -57,7 +56,7 @@ class BranchTree:
         Called with the number of branches and what is done next.
     """
 
-    oscillator: GearOscillator
+    oscillator: Any
     parameter: str
     bounds: tuple[float, float]
     longest: int
@@ -148,15 +147,14 @@ def lies_on(branch: Branch, orbit: Orbit, bounds: tuple[float, float]) -> bool:
     value, points = orbit.oscillator.get(branch.parameter), orbit.points
     off = branch.values - value
     scale = max(float(np.max(np.abs(branch.states))), 1e-300)
-    low, high = (np.array([b]) for b in bounds)
-    problem = OrbitProblem(orbit.oscillator, (branch.parameter,), branch.periods, low, high, scale)
+    problem = orbits_over(orbit.oscillator, branch.parameter, branch.periods, bounds, scale)
     for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0):
         share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.5
         chord = branch.states[i + 1] - branch.states[i]
         guess = branch.states[i] + share * chord
         if apart(guess, points) > 2.0 * float(np.max(np.abs(chord))) + 1e-3 * scale:
             continue
-        there = problem.correct(problem.unknowns(guess, value), np.array([0.0, 0.0, 1.0]))
-        if there is not None and apart(there.state, points) < 1e-7 * scale:
+        there = problem.correct(problem.unknowns(guess, value), problem.flat)
+        if there is not None and apart(there.u[: problem.size] * scale, points) < 1e-7 * scale:
             return True
     return False

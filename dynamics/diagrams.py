@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
-from dynamics.branch import KINDS, Branch, SpecialPoint, Stretch, of_kind, stretches
+from dynamics.branch import KINDS, NEIMARK_SACKER, Branch, SpecialPoint, Stretch, of_kind, stretches
 from dynamics.branch_tree import BranchTree, Origin
 from dynamics.finding import find_orbits
 from dynamics.limits import ordered
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import exact_only
+from dynamics.protocol import PeriodicOscillator, periodic_only
 from dynamics.shooting import find_orbit
 
 
@@ -24,7 +25,7 @@ class Diagram(AsArray):
 
     headline = ("parameter", "message")
 
-    oscillator: GearOscillator = quantity("", "what moves; its value of the parameter is not used")
+    oscillator: Any = quantity("", "what moves; its value of the parameter is not used")
     parameter: str = quantity("", "what is varied")
     bounds: tuple[float, float] = quantity("1", "range of the parameter", "bound")
     branches: tuple[Branch, ...] = quantity("", "branches in the order in which they were found")
@@ -46,14 +47,14 @@ class Diagram(AsArray):
         Parameters
         ----------
         kind : str
-            "saddle-node", "period-doubling" or "grazing".
+            "saddle-node", "period-doubling", "grazing", or "neimark-sacker", which a `GearOscillator` never meets.
 
         Raises
         ------
         InputError
             If there is no such kind.
         """
-        points = of_kind([p for b in self.branches for p in b.points], kind, KINDS)
+        points = of_kind([p for b in self.branches for p in b.points], kind, (*KINDS, NEIMARK_SACKER))
         return sorted(points, key=lambda p: p.parameter)
 
     def stretches(self, stable: bool | None = None) -> list[Stretch]:
@@ -70,7 +71,13 @@ class Diagram(AsArray):
     def table(self) -> list[tuple[int, str, float, str, float, float]]:
         """Rows branch, kind, parameter, label, X, V of every special point, branch by branch."""
         return [
-            (i, p.kind, p.parameter, p.label, float(p.state[0]), float(p.state[1]))
+            (
+                i,
+                p.kind,
+                p.parameter,
+                p.label,
+                *self._plane(np.array([p.parameter]), p.state[None])[0].tolist(),
+            )
             for i, branch in enumerate(self.branches)
             for p in branch.points
         ]
@@ -78,15 +85,25 @@ class Diagram(AsArray):
     def columns(self) -> Array:
         """Columns branch, parameter, X, V, stable (0 or 1) of all points: what a plot needs."""
         rows = [
-            np.column_stack([np.full(len(b.values), i), b.values, b.states, b.stable])
+            np.column_stack([np.full(len(b.values), i), b.values, self._plane(b.values, b.states), b.stable])
             for i, b in enumerate(self.branches)
         ]
         return np.concatenate(rows) if rows else np.empty((0, 5))
 
+    def _plane(self, values: Array, states: Array) -> Array:
+        """X and V at tau = 0 of states at values of the parameter."""
+        if self.oscillator.is_exact:
+            return states
+        rows = [
+            self.oscillator.with_parameter(self.parameter, value).contact_motion(np.zeros(1), state[None])
+            for value, state in zip(values.tolist(), states, strict=True)
+        ]
+        return np.array(rows).reshape(-1, 2)
 
-@exact_only
+
+@periodic_only
 def diagram(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     parameter: str = "frequency",
     bounds: tuple[float, float] = (0.1, 2.1),
     *,
@@ -106,9 +123,12 @@ def diagram(
     followed, and so on. A branch ends at a bound, where it closes, where it meets the branch of half its period, or
     where the motion grows without bound.
 
+    In several freedoms no index tells how many orbits there are, and none are searched for: branches are those of the
+    motions that sweeps from many starts meet, and what these lead to.
+
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator; its value of the parameter is not used.
     parameter : str
         As in `GearOscillator.with_parameter`.
@@ -161,16 +181,10 @@ def diagram(
         steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
         most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     builder = BranchTree(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
-    unsure = []
-    for k in range(number):
-        value = low + (k + 0.5) / number * (high - low)
-        found = find_orbits(oscillator.with_parameter(parameter, value), periods, batches=0)
-        builder.periods += found.cost.periods
-        if not found.converged and any(c.expected is not None for c in found.counts):
-            unsure.append(value)
-        for orbit in found.orbits:
-            if not builder.holds(orbit):
-                builder.follow(orbit, Origin(None, value))
+    at = [low + (k + 0.5) / number * (high - low) for k in range(number)]
+    unsure = (
+        _follow_searched(builder, oscillator, periods, at) if isinstance(oscillator, GearOscillator) else []
+    )
     for value, state, known in starts:
         if low <= value <= high:
             orbit = find_orbit(oscillator.with_parameter(parameter, value), state, periods=known)
@@ -182,6 +196,22 @@ def diagram(
         )
         _follow_met(builder, met)
     return _result(builder, tuple(unsure), watch)
+
+
+def _follow_searched(
+    builder: BranchTree, oscillator: GearOscillator, periods: Sequence[int], at: Sequence[float]
+) -> list[float]:
+    """Follow what searches find; values at which something may be missing."""
+    unsure = []
+    for value in at:
+        found = find_orbits(oscillator.with_parameter(builder.parameter, value), periods, batches=0)
+        builder.periods += found.cost.periods
+        if not found.converged and any(c.expected is not None for c in found.counts):
+            unsure.append(value)
+        for orbit in found.orbits:
+            if not builder.holds(orbit):
+                builder.follow(orbit, Origin(None, value))
+    return unsure
 
 
 def _follow_met(builder: BranchTree, met: MultiSweep) -> None:
@@ -198,7 +228,8 @@ def _result(gathered: BranchTree, unsure: tuple[float, ...], watch: Stopwatch) -
     """Assemble the record."""
     branches = tuple(gathered.branches)
     bad = [i for i, b in enumerate(branches) if not b.converged]
-    counts = {kind: sum(len(b.special(kind)) for b in branches) for kind in KINDS}
+    kinds = KINDS if gathered.oscillator.is_exact else (*KINDS, NEIMARK_SACKER)
+    counts = {kind: sum(len(b.special(kind)) for b in branches) for kind in kinds}
     tally = ", ".join(f"{count} {kind}{'' if count == 1 else 's'}" for kind, count in counts.items())
     message = f"{len(branches)} branch{'' if len(branches) == 1 else 'es'}; {tally}"
     if bad:

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow import Tables, tables
+from dynamics.flow import tables
+from dynamics.flows import flow_of
 from dynamics.index import index_at_infinity
 from dynamics.manifolds import carried
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import exact_only
+from dynamics.protocol import Flow, PeriodicOscillator, exact_only
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import Region, apart, checked_region
 from dynamics.sweeps import settling_periods
@@ -287,26 +288,30 @@ class _Search:
         return any(apart(state, orbit.points) < 1e-7 * self.scale for orbit in self.orbits)
 
 
-def reach(oscillator: GearOscillator) -> Region:
-    """Box of states somewhat larger than what long motions from three starts cover."""
-    return _around(np.max(np.abs(_long_motions(oscillator, tables(oscillator))[0]), axis=0, initial=1e-9))
+def reach(oscillator: PeriodicOscillator) -> Region:
+    """Box of X and V, from the middle of basins, somewhat larger than what long motions from three starts cover."""
+    centre = oscillator.start_plane()[1]
+    states = np.vstack([centre, _long_motions(oscillator, flow_of(oscillator))[0]])
+    plane = np.column_stack(oscillator.contact_motion(np.zeros(len(states)), states))
+    return _around(np.max(np.abs(plane[1:] - plane[0]), axis=0, initial=1e-9))
 
 
-def _long_motions(oscillator: GearOscillator, table: Tables) -> tuple[Array, int]:
+def _long_motions(oscillator: PeriodicOscillator, flow: Flow) -> tuple[Array, int]:
     """States of motions from three starts, the later ones at the end, and the periods that they took.
 
     What diverges is left out.
     """
-    rest = oscillator.rest_state()
-    push = np.array([0.0, 1.0 + float(np.max(np.abs(rest)))])
+    rest, (across, along) = oscillator.rest_state(), oscillator.start_plane()[0]
+    x = float(oscillator.contact_motion(np.zeros(1), rest[None])[0][0])
+    push = (1.0 + abs(x)) * along
     wait = min(settling_periods(oscillator, low=50), 400)
     parts, used = [], 0
-    for start in (rest, rest + push, -rest - push):
-        image = period_map(table, start, 80, skip=wait)
+    for start in (rest, rest + push, rest - 2.0 * x * across - push):
+        image = period_map(flow, start, 80, skip=wait)
         used += wait + 80
         if not image.message and float(np.max(np.abs(image.states))) < 1e6:
             parts.append(image.states)
-    return (np.stack(parts, axis=1).reshape(-1, 2) if parts else np.array([rest])), used
+    return (np.stack(parts, axis=1).reshape(-1, len(rest)) if parts else np.array([rest])), used
 
 
 def _around(size: Array) -> Region:

@@ -12,8 +12,7 @@ from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction import basins
 from dynamics.finding import reach
 from dynamics.limits import checked_grid
-from dynamics.oscillator import GearOscillator
-from dynamics.protocol import exact_only
+from dynamics.protocol import PeriodicOscillator, periodic_only
 from dynamics.states import apart, scale_of
 from dynamics.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
 
@@ -31,7 +30,7 @@ class Motion:
     value: float = quantity("1", "value of the parameter")
     label: str = quantity("", "n-p-q, aperiodic or diverged")
     periods: int = quantity("1", "n; 0 if aperiodic")
-    states: Array = quantity("1", "X and V at tau = 0 mod the excitation period", "kept state")
+    states: Array = quantity("1", "state at tau = 0 mod the excitation period", "kept state")
     directions: frozenset[str] = quantity("", "directions of the sweeps that met it: up, down")
 
 
@@ -68,9 +67,9 @@ class MultiSweep:
         return max(len(here) for here in self.motions)
 
 
-@exact_only
+@periodic_only
 def multi_sweep(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     parameter: str = "frequency",
     values: npt.ArrayLike = (),
     *,
@@ -87,7 +86,7 @@ def multi_sweep(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator; its own value of the parameter is not used.
     parameter : str
         As in `GearOscillator.with_parameter`.
@@ -149,14 +148,14 @@ def multi_sweep(
 class _Met:
     """Motions met so far."""
 
-    def __init__(self, oscillator: GearOscillator, parameter: str, grid: Array, max_period: int) -> None:
+    def __init__(self, oscillator: PeriodicOscillator, parameter: str, grid: Array, max_period: int) -> None:
         self.oscillator, self.parameter, self.grid, self.longest = oscillator, parameter, grid, max_period
         self.motions: list[list[Motion]] = [[] for _ in grid]
         self.size = scale_of(oscillator, self.at(0).rest_state())
         self.sweeps = self.periods = 0
         self.error, self.bounded = 0.0, True
 
-    def at(self, i: int) -> GearOscillator:
+    def at(self, i: int) -> PeriodicOscillator:
         """Oscillator at a value."""
         return self.oscillator.with_parameter(self.parameter, float(self.grid[i]))
 

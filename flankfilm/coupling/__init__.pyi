@@ -23,9 +23,9 @@ from .flanks import Flanks as Flanks
 from .hot_contacts import HeatScreen as HeatScreen
 from .hot_contacts import heat_screen as heat_screen
 from .hot_contacts import hottest_film as hottest_film
+from .jump_errors import Jump as Jump
 from .jump_order import OrderedJumps as OrderedJumps
 from .jump_order import jumps_to_tolerance as jumps_to_tolerance
-from .jumps import Jump as Jump
 from .jumps import SpeedDiagram as SpeedDiagram
 from .jumps import jump_speeds as jump_speeds
 from .loaded_teeth import LoadedTeeth as LoadedTeeth

@@ -17,7 +17,8 @@ import numpy as np
 import dynamics
 from base import Cost, Stopwatch, part, quantity, record
 from base.results import EXACT
-from flankfilm.coupling.jumps import Jump, SpeedDiagram, jump_points, jump_speeds
+from flankfilm.coupling.jump_errors import Jump
+from flankfilm.coupling.jumps import SpeedDiagram, jump_points, jump_speeds
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.series import MOST_HARMONICS, MeshSeries, mesh_series
 from flankfilm.coupling.truncation import SAME, Longer, longer_motion, with_order

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import dynamics
 from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
+from flankfilm.coupling.drive import PairDrive
+from flankfilm.coupling.jump_errors import Jump, alike, rises, stiffness_errors, train_jump
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.series import MEANS, OTHER, MeshSeries, arc_fit
+from flankfilm.coupling.series import OTHER, arc_fit
 from flankfilm.coupling.speed_ranges import (
     back_contact_ranges,
     changes,
@@ -25,38 +27,6 @@ from flankfilm.coupling.truncation import Longer, MissedJump, longer_branches, l
 
 if TYPE_CHECKING:
     from dynamics.branch import Stretch
-
-
-@dataclass(frozen=True)
-class Jump:
-    """End of a stable motion at a saddle node, where the motion jumps.
-
-    Attributes
-    ----------
-    frequency : float
-        Mesh frequency over the natural frequency.
-    rising : bool
-        Whether the motion ends as the speed rises.
-    label : str
-        The motion that ends.
-    budget : mapping
-        Source of error to relative error of the speed: ``"stiffness"`` of meshes, arcs and films, ``"truncation"`` of
-        what the order of its series leaves out, ``"flow"``; empty for a given series. The truncation is infinite,
-        that is unknown, where the longer series has no such jump.
-    longer : float or None
-        The same jump's frequency with the longer series; nan where it has none, None for a given series.
-    """
-
-    frequency: float
-    rising: bool
-    label: str
-    budget: Mapping[str, float]
-    longer: float | None
-
-    @property
-    def error(self) -> float:
-        """Sum of the budget; infinite where it is unknown."""
-        return math.fsum(self.budget.values())
 
 
 @record
@@ -129,7 +99,7 @@ class SpeedDiagram:
 
 
 def jump_speeds(
-    motion: PairOscillator,
+    motion: PairOscillator | PairDrive,
     speed: tuple[float, float] | None = None,
     *,
     frequency: tuple[float, float] | None = None,
@@ -140,7 +110,7 @@ def jump_speeds(
 
     Parameters
     ----------
-    motion : PairOscillator
+    motion : PairOscillator or PairDrive
         With the mesh cycle that its series is of, the errors of the jump speeds follow; with the pair K_v.
     speed : (float, float)
         Range of the pinion speed [rad/s].
@@ -164,18 +134,27 @@ def jump_speeds(
     with unclocked():
         from dynamics import diagram
     watch = Stopwatch()
-    low, high = frequencies_of(motion, speed, frequency)[0].tolist()
+    low, high = frequencies_of(motion.rigid, speed, frequency)[0].tolist()
     oscillator, scales, longer = motion.oscillator, motion.scales, longer_motion(motion, (low, high))
     found = diagram(oscillator, "frequency", (low, high), searches=searches, max_period=max_period)
     stable = tuple(found.stretches(stable=True))
-    forces = force_factors(oscillator, found)
-    carried = [
-        (stretch, point, None if longer is None else longer.carried(oscillator, point))
-        for stretch, point in jump_points(found)
-    ]
-    jumps = tuple(_jump(motion, longer, *one) for one in carried)
-    folds = [(point, there) for _, point, there in carried]
-    whole, missed, changed = _with_longer(found, forces, longer, folds)
+    forces = force_factors(oscillator, found, motion.mean_force)
+    ends = jump_points(found)
+    whole = None
+    if isinstance(motion, PairDrive):
+        whole = None if longer is None else longer_branches(longer, found, ())
+        there = alike(ends, [] if whole is None else jump_points(whole))
+        jumps = tuple(train_jump(motion, longer, *end, one) for end, one in zip(ends, there, strict=True))
+    else:
+        there = [None if longer is None else longer.carried(motion.oscillator, point) for _, point in ends]
+        jumps = tuple(_jump(motion, longer, *end, one) for end, one in zip(ends, there, strict=True))
+        if longer is not None:
+            whole = longer_branches(
+                longer, found, [(point, one) for (_, point), one in zip(ends, there, strict=True)]
+            )
+    missed, changed = _with_longer(
+        found, forces, longer, whole, [one for one in there if one is not None], motion.mean_force
+    )
     return SpeedDiagram(
         diagram=found,
         speed_of_one=None if scales is None else scales.speed(1.0),
@@ -183,10 +162,10 @@ def jump_speeds(
         separated=separated_ranges(stable),
         back_contact=back_contact_ranges(stable),
         jumps=jumps,
-        variants=_variants(motion, found, whole),
+        variants={} if isinstance(motion, PairDrive) else _variants(motion, found, whole),
         force_frequency=forces[:, 0],
         force_factor=forces[:, 1],
-        force_factor_iso6336=standard_factors(motion, forces[:, 0]),
+        force_factor_iso6336=standard_factors(motion.rigid, forces[:, 0]),
         half_backlash=oscillator.half_backlash,
         longer_order=None if longer is None else longer.order,
         with_longer=whole,
@@ -203,11 +182,6 @@ def jump_points(found: dynamics.Diagram) -> list[tuple[Stretch, dynamics.Special
     """Saddle nodes at which a stable stretch ends, by frequency."""
     ends = ((stretch, point) for stretch in found.stretches(stable=True) for point in stretch.limits)
     return sorted((e for e in ends if e[1].kind == "saddle-node"), key=lambda end: end[1].parameter)
-
-
-def rises(stretch: Stretch, point: dynamics.SpecialPoint) -> bool:
-    """Whether a stable motion ends at a point as the parameter rises."""
-    return stretch.high - point.parameter < point.parameter - stretch.low
 
 
 def _jump(
@@ -230,7 +204,7 @@ def _jump(
     slopes = dynamics.special_sensitivities(oscillator, "frequency", point, ["mean_force", *names])
     force = abs(0.5 - slopes["mean_force"] * oscillator.mean_force / here)
     steep = np.array([slopes[name] / here for name in names])
-    mean, off = _stiffness_errors(series)
+    mean, off = stiffness_errors(series)
     budget = {
         "stiffness": mean * force + float(np.abs(steep) @ off),
         "truncation": longer.truncation(point, carried),
@@ -239,34 +213,21 @@ def _jump(
     return Jump(here, rising, stretch.label, budget, math.nan if carried is None else carried.parameter)
 
 
-def _stiffness_errors(series: MeshSeries) -> tuple[float, Array]:
-    """Relative error of the mean, and errors of the amplitudes over the mean, by meshes, arcs and films.
-
-    Zero where a model's are unknown.
-    """
-    assert series.cycle is not None
-    mean = series.cycle.errors[MEANS[series.kind]]
-    amplitudes = np.zeros(series.order) if series.harmonic_error is None else series.harmonic_error
-    return mean or 0.0, amplitudes
-
-
 def _with_longer(
     found: dynamics.Diagram,
     forces: Array,
     longer: Longer | None,
-    folds: Sequence[tuple[dynamics.SpecialPoint, dynamics.SpecialPoint | None]],
-) -> tuple[dynamics.Diagram | None, tuple[MissedJump, ...], Mapping[str, float]]:
-    """Branches of period 1 with the longer series, jumps that it has alone, and what it changes of other figures."""
-    if longer is None:
-        return None, (), {}
-    whole = longer_branches(longer, found, folds)
+    whole: dynamics.Diagram | None,
+    known: Sequence[dynamics.SpecialPoint],
+    load: float,
+) -> tuple[tuple[MissedJump, ...], Mapping[str, float]]:
+    """Jumps that the longer series has alone, and what it changes of other figures."""
+    if longer is None or whole is None:
+        return (), {}
     own = ((point, stretch.label, rises(stretch, point)) for stretch, point in jump_points(whole))
-    missed = missed_jumps(whole, own, [there.parameter for _, there in folds if there is not None])
-    return (
-        whole,
-        missed,
-        changes((found, whole), (forces, force_factors(longer.oscillator, whole, longest=1))),
-    )
+    missed = missed_jumps(whole, own, [there.parameter for there in known])
+    others = force_factors(longer.oscillator, whole, load, longest=1)
+    return missed, changes((found, whole), (forces, others))
 
 
 def _variants(
@@ -284,8 +245,8 @@ def _variants(
     alike = dynamics.diagram(changed, "frequency", found.bounds, periods=(1,), searches=5, max_period=1)
     laws = ((series.kind, found), (series.kind, whole), (OTHER[series.kind], alike))
     return {
-        f"{law}, order {one.oscillator.stiffness.order}, mean {one.oscillator.stiffness.mean:.4f}": tuple(
+        f"{law}, order {fitted.order}, mean {fitted.mean:.4f}": tuple(
             point.parameter for stretch, point in jump_points(one) if stretch.periods == 1
         )
-        for law, one in laws
+        for law, one, fitted in ((*each, each[1].oscillator.contact_stiffness) for each in laws)
     }

@@ -15,6 +15,7 @@ from flankfilm.coupling.oscillator import PairOscillator
 
 if TYPE_CHECKING:
     from dynamics.branch import Stretch
+    from dynamics.protocol import PeriodicOscillator
 
 Ranges = tuple[tuple[float, float], ...]
 
@@ -29,8 +30,12 @@ def back_contact_ranges(stable: Iterable[Stretch]) -> Ranges:
     return _union([s for s in stable if _counts(s.label)[1] > 0])
 
 
-def force_factors(oscillator: dynamics.GearOscillator, found: dynamics.Diagram, longest: int = 2) -> Array:
+def force_factors(
+    oscillator: PeriodicOscillator, found: dynamics.Diagram, load: float, longest: int = 2
+) -> Array:
     """Frequency, greatest force over the mean force and period along stable branches of short period, by frequency.
+
+    `load` is the mean force of the mesh.
 
     Returns
     -------
@@ -42,9 +47,9 @@ def force_factors(oscillator: dynamics.GearOscillator, found: dynamics.Diagram, 
     rows = []
     for branch in found.branches:
         for value, state, stable in zip(branch.values, branch.states, branch.stable, strict=True):
-            if stable and branch.periods <= longest and oscillator.mean_force != 0.0:
+            if stable and branch.periods <= longest and load != 0.0:
                 here = oscillator.with_parameter("frequency", float(value))
-                greatest = force_range(here, state, branch.periods).greatest
+                greatest = force_range(here, state, branch.periods, load=load).greatest
                 rows.append((float(value), greatest, branch.periods))
     return np.array(sorted(rows)).reshape(-1, 3)
 

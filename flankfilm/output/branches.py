@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import SpeedDiagram
-    from flankfilm.coupling.jumps import Jump
+    from flankfilm.coupling.jump_errors import Jump
     from flankfilm.coupling.truncation import MissedJump
 
 SOURCES = ("stiffness", "truncation", "flow")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from dynamics.branch import Stretch
     from flankfilm.coupling import FilmDamping, MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
-    from flankfilm.coupling.jumps import Jump
+    from flankfilm.coupling.jump_errors import Jump
 
 LONGEST = 40
 """Stable ranges listed; the data files hold all."""

@@ -1,4 +1,4 @@
-"""Rules between [shafts] and other sections: what knows no drive train, and what would count a shaft twice."""
+"""Rules between [shafts] and other sections: what a drive train excludes, and what would count a shaft twice."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from base import Fault
-
-WITHOUT_DRIVES = ("diagram",)
-"""Wants of motions that are of the pair on rigid shafts alone."""
 
 MOVING = ("sweep", "diagram", "spectrum", "run-up", "dynamic-map")
 """Wants of motions, which need masses and springs in physical units beside shafts."""
@@ -25,10 +22,6 @@ def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault
         return
     shafts, dynamics = _table(raw, "shafts"), _table(raw, "dynamics")
     moving = any(want in listed for want in MOVING)
-    for want in WITHOUT_DRIVES:
-        if want in listed:
-            allowed = "knows no [shafts]: of a drive train there are sweep, run-up, spectrum and dynamic-map"
-            yield Fault("wants", f"'{want}'", allowed, f"Drop {want}, or leave [shafts] out")
     if moving and "mean_force" in dynamics:
         allowed = "excludes the dimensionless form, which has no gears"
         yield Fault("[shafts]", "", allowed, "Give [dynamics] in physical units, or leave [shafts] out")

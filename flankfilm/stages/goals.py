@@ -15,7 +15,7 @@ from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.face import FACE_MODELS
-from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP, SPECTRUM
+from flankfilm.stages.speeds import DIAGRAM, DYNAMIC_MAP, RUN_UP, SPECTRUM
 
 
 def goals(scene: Scene) -> tuple[Stage[Any], ...]:
@@ -57,7 +57,7 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if scene.shafts is not None and wants & {*needs.MOTIONS}:
         yield from (motion.SCALING, DRIVE, *((DRIVE_SWEEP,) if "sweep" in wants else ()))
         wants = wants - {"sweep"}
-    for wanted in (motion.SWEEP, motion.DIAGRAM, SPECTRUM, RUN_UP, DYNAMIC_MAP):
+    for wanted in (motion.SWEEP, DIAGRAM, SPECTRUM, RUN_UP, DYNAMIC_MAP):
         if wanted.name in wants:
             yield from (motion.SCALING, wanted)
     if "vtk" in wants:

@@ -56,13 +56,13 @@ def _series(run: Engine) -> coupling.MeshSeries:
     EXCITATION,
     FILM_DAMPING,
     kept="dynamics flankfilm gears",
-    settings=lambda run: {"tolerance": run.scene.tolerance} if _by_jumps(run) else {},
+    settings=lambda run: {"tolerance": run.scene.tolerance} if by_jumps(run) else {},
 )
 def BRANCHES(run: Engine) -> coupling.OrderedJumps:
     """Branches with the least order of the series that the jump speeds allow, for an order to be found."""
-    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
+    asked = required(dynamics_of(run).diagram, "dynamics.diagram", "the diagram", "add the range")
     return coupling.jumps_to_tolerance(
-        lambda series: _oscillator(run, series), run[CURVE_SERIES], run.scene.tolerance, **_ranged(asked)
+        lambda series: _oscillator(run, series), run[CURVE_SERIES], run.scene.tolerance, **ranged(asked)
     )
 
 
@@ -78,7 +78,7 @@ def BRANCHES(run: Engine) -> coupling.OrderedJumps:
 )
 def FOURIER(run: Engine) -> coupling.MeshSeries:
     """Series of the mesh stiffness, or the given one; with a wanted diagram of the order that its jumps need."""
-    if not _by_jumps(run):
+    if not by_jumps(run):
         return _series(run)  # no stage of its own, which a run would list beside this one
     series, found = run[CURVE_SERIES], run[BRANCHES]
     if found.order == series.order or series.cycle is None:
@@ -87,10 +87,15 @@ def FOURIER(run: Engine) -> coupling.MeshSeries:
     return replace(more, left_out=series.left_out, share=series.share, tried=found.tried)
 
 
-def _by_jumps(run: Engine) -> bool:
-    """Whether an order is to be found for a diagram."""
+def by_jumps(run: Engine) -> bool:
+    """Whether an order is to be found for a diagram; not for one of a drive train, whose jumps take long to carry."""
     scene, section = run.scene, run.scene.dynamics
-    if scene.stiffness.model == "given" or section is None or section.diagram is None:
+    if (
+        scene.stiffness.model == "given"
+        or section is None
+        or section.diagram is None
+        or scene.shafts is not None
+    ):
         return False
     return section.fourier_order == "auto" and "diagram" in scene.wants
 
@@ -110,7 +115,7 @@ def SCALING(run: Engine) -> coupling.PairOscillator:
 
 def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscillator:
     """Oscillator of the scene with a series of its stiffness."""
-    section = _dynamics(run)
+    section = dynamics_of(run)
     if section.dimensionless:
         ranged, given = section.sweep or section.diagram, _given(run)
         start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
@@ -124,7 +129,7 @@ def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscill
 
 def of_the_pair(run: Engine, series: coupling.MeshSeries) -> tuple[float, dict[str, Any]]:
     """Speed of the pinion [rad/s] and what the scene says of its pair's oscillator, as arguments."""
-    section, given = _dynamics(run), _given(run)
+    section, given = dynamics_of(run), _given(run)
     rpm = followed_speed(run.scene, run[PAIR], series)
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
         given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
@@ -135,21 +140,22 @@ def of_the_pair(run: Engine, series: coupling.MeshSeries) -> tuple[float, dict[s
 
 def _given(run: Engine) -> dict[str, Any]:
     """What the oscillator takes of the section as it is."""
-    given = _dynamics(run).si(*OSCILLATOR)
+    given = dynamics_of(run).si(*OSCILLATOR)
     given["damping_ratio"] = damping_ratio(run)
     if given["error_phase"] == (0.0,):
         given["error_phase"] = 0.0  # of all harmonics
     return given
 
 
-def _dynamics(run: Engine) -> DynamicsSection:
+def dynamics_of(run: Engine) -> DynamicsSection:
+    """The scene's [dynamics]."""
     return required(run.scene.dynamics, "[dynamics]", "the motion")
 
 
 @stage("sweep", "sweep up and down", "dynamics", FOURIER, SCALING, kept="dynamics flankfilm")
 def SWEEP(run: Engine) -> coupling.SpeedSweep:
     """Sweep of the speed up and down over the scene's range."""
-    section, motion = _dynamics(run), run[SCALING]
+    section, motion = dynamics_of(run), run[SCALING]
     asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
     wanted = list(section.portraits_frequency)
     if motion.scales is not None:
@@ -160,24 +166,7 @@ def SWEEP(run: Engine) -> coupling.SpeedSweep:
     return coupling.speed_sweep(motion, values * math.pi / 30.0, portraits=wanted)
 
 
-@stage(
-    "diagram",
-    "every branch of motions",
-    "dynamics",
-    FOURIER,
-    SCALING,
-    BRANCHES,
-    kept="dynamics flankfilm gears",
-)
-def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
-    """Every branch of motions over the scene's range, with the jumps."""
-    if _by_jumps(run):
-        return run[BRANCHES].diagram
-    asked = required(_dynamics(run).diagram, "dynamics.diagram", "the diagram", "add the range")
-    return coupling.jump_speeds(run[SCALING], **_ranged(asked))
-
-
-def _ranged(asked: DiagramSection) -> dict[str, Any]:
+def ranged(asked: DiagramSection) -> dict[str, Any]:
     """Range of a diagram with its searches, as arguments."""
     speed = asked.speed_rpm and (asked.speed_rpm[0] * math.pi / 30.0, asked.speed_rpm[1] * math.pi / 30.0)
     return {

@@ -1,4 +1,4 @@
-"""The stages of the motion as a test rig sees it: orders, run-up and coast-down, and a map over speed and torque."""
+"""The stages of the motion as a test rig sees it: orders, branches, run-up, and a map over speed and torque."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
-from flankfilm.stages.motion import FOURIER, SCALING
+from flankfilm.stages.motion import BRANCHES, FOURIER, SCALING, by_jumps, dynamics_of, ranged
 
 
 @stage(
@@ -41,6 +41,24 @@ def SPECTRUM(run: Engine) -> coupling.MotionSpectrum:
             "operating.pinion_torque_Nm", "negative", allowed, "leave spectrum out, or the pitches"
         )
     return coupling.mesh_spectrum(motion, error)
+
+
+@stage(
+    "diagram",
+    "every branch of motions",
+    "dynamics",
+    FOURIER,
+    SCALING,
+    BRANCHES,
+    DRIVE,
+    kept="dynamics flankfilm gears",
+)
+def DIAGRAM(run: Engine) -> coupling.SpeedDiagram:
+    """Every branch of motions over the scene's range, with the jumps."""
+    if by_jumps(run):
+        return run[BRANCHES].diagram
+    asked = required(dynamics_of(run).diagram, "dynamics.diagram", "the diagram", "add the range")
+    return coupling.jump_speeds(moving(run), **ranged(asked))
 
 
 @stage("run-up", "run-up and coast-down", "dynamics", SCALING, DRIVE, kept="dynamics flankfilm gears")

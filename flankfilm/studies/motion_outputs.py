@@ -20,8 +20,8 @@ from flankfilm.coupling.series import MEANS
 from flankfilm.coupling.sidebands import MotionSpectrum
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
-from flankfilm.stages.speeds import DYNAMIC_MAP, RUN_UP, SPECTRUM
+from flankfilm.stages.motion import SCALING, SWEEP
+from flankfilm.stages.speeds import DIAGRAM, DYNAMIC_MAP, RUN_UP, SPECTRUM
 from flankfilm.studies.output import Named, in_result, output_of, outputs_from
 
 if TYPE_CHECKING:

@@ -145,15 +145,28 @@ def _refuse(faults: Sequence[Fault]) -> None:
 
 
 def put(raw: dict[str, Any], key: str, value: Value) -> None:
-    """Set a dotted key of a scene."""
+    """Set a dotted key of a scene; tables of a list are named by their place from 0, as in faults."""
     *sections, last = key.split(".")
-    here = raw
+    here: dict[str, Any] | list[Any] = raw
     for section in sections:
-        inner = here.setdefault(section, {})
-        if not isinstance(inner, dict):
+        inner = here[_place(here, section, key)] if isinstance(here, list) else here.setdefault(section, {})
+        if not isinstance(inner, dict | list):
             raise InputError.at(key, "", f"{section} is a value, not a section", "Name a key of the scene")
         here = inner
-    here[last] = value
+    if isinstance(here, list):
+        here[_place(here, last, key)] = value
+    else:
+        here[last] = value
+
+
+def _place(values: list[Any], written: str, key: str) -> int:
+    """Place in a list of the scene that a key names."""
+    if not (written.isascii() and written.isdecimal() and len(written) < 6) or int(written) >= len(values):
+        allowed = f"{written[:20]} is no place in a list of {len(values)}"
+        raise InputError.at(
+            key, "", allowed, f"Count from 0 to {len(values) - 1}" if values else "Fill the list first"
+        )
+    return int(written)
 
 
 def _check_rows(plan: Plan, vary: Mapping[str, object]) -> None:

@@ -25,6 +25,8 @@ TAKEN = {
     "lyapunov_exponents": lambda: dynamics.lyapunov_exponents(DRIVE, 20, transient=0),
     "lyapunov_scan": lambda: dynamics.lyapunov_scan(DRIVE, "frequency", [0.9], 20, transient=0),
     "motion_spectrum": lambda: dynamics.motion_spectrum(DRIVE, find_orbit(DRIVE, STATE, transient=100).state),
+    "diagram": lambda: dynamics.diagram(DRIVE, "frequency", (0.89, 0.91), searches=1, swept=2),
+    "multi_sweep": lambda: dynamics.multi_sweep(DRIVE, "frequency", [0.89, 0.91], seeds=1, starts=2, limit=100),
     "run_up": lambda: dynamics.run_up(DRIVE, (0.89, 0.91), 64),
     "basins": lambda: dynamics.basins(DRIVE, (-0.1, 0.1, 2), (-0.1, 0.1, 2), limit=40),
 }  # fmt: skip
@@ -35,11 +37,9 @@ REFUSED = {
     "chaos_end": ("frequency", (0.1, 0.2), (0.5, 0.6)),
     "contact_grazing": (),
     "continue_locus": (None, ("frequency", "mean_force")),
-    "diagram": (),
     "edge_saddles": (None,),
     "find_orbits": (),
     "manifold": (),
-    "multi_sweep": ("frequency", [0.5]),
     "restoring_force": (0.0, 0.1),
     "special_sensitivities": ("frequency", None),
 }

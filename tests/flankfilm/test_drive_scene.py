@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,11 +22,14 @@ from flankfilm.coupling.truncation import with_order
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene
-from flankfilm.scene import parse_scene
+from flankfilm.scene import Scene, parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM
 from flankfilm.stages.catalogue import PAIR as PAIR_STAGE
+from flankfilm.stages.drives import DRIVE
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.plan import plan_of
+from flankfilm.studies.study_file import StudyFile
 from gears import Gear, GearPair
 from tests.flankfilm.scenes import ISHIKAWA
 
@@ -275,3 +280,31 @@ def test_the_face_bears_on_the_shafts_of_the_scene():
     assert np.abs(wet.shaft_misalignment[0]).min() > 1e-6
     assert over.least_film_place == wet.face_position[np.argmax(wet.line_load.sum(axis=(0, 1)))]
     refuse(parse_scene(whole.replace('"sweep"', '"losses"')))
+
+
+def test_a_study_varies_a_diameter_by_its_place_in_the_list():
+    """A thicker shaft is stiffer in bending and torsion; a place that is none is refused."""
+    raw = {
+        "scene": tomllib.loads(TRAIN),
+        "vary": {
+            "shafts.pinion.segments.0.diameter_mm": [30.0, 50.0],
+            "dynamics.free_damping_ratio": [0.01, 0.02],
+        },
+        "design": "list",
+        "outputs": ["lowest_drive_frequency_Hz", "greatest_run_up_shaft_torque_Nm", "run_up_error"],
+    }
+    plan = plan_of(StudyFile.model_validate(raw), Path())
+    found = []
+    for row in range(2):
+        engine = Engine(Scene.model_validate(plan.raw_scene(row)), Cache(None))
+        assert engine[DRIVE].oscillator.dampings == (0.1, (0.02, 0.04)[row])
+        found.append([OUTPUTS[name].value(engine) for name in plan.outputs])
+    thin, thick = found
+    assert thick[0] > 1.05 * thin[0]  # the coupling yields too
+    assert thick[1] > 600.0
+    assert max(thin[2], thick[2]) < 0.05
+    with pytest.raises(InputError, match=r"1 is no place in a list of 1"):
+        plan_of(
+            StudyFile.model_validate({**raw, "vary": {"shafts.pinion.segments.1.diameter_mm": [30.0]}}),
+            Path(),
+        )

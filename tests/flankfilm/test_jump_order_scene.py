@@ -12,7 +12,8 @@ from flankfilm.plan.decisions import decisions
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.motion import BRANCHES, DIAGRAM, FOURIER, SCALING
+from flankfilm.stages.motion import BRANCHES, FOURIER, SCALING
+from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 
 SCENE = f"""

@@ -110,7 +110,6 @@ def test_what_does_not_go_together_is_refused(shafts, where, says):
 @pytest.mark.parametrize(
     ("wants", "changes", "where", "says"),
     [
-        ('"diagram", "sweep"', (), "wants", "knows no [shafts]"),
         ('"sweep"', (("# portraits_rpm =", "portraits_rpm ="),), "dynamics.portraits_rpm", "rigid shafts"),
         (
             '"sweep"',

@@ -19,7 +19,8 @@ from flankfilm.cache import Cache
 from flankfilm.coupling import Flanks, LubricatedCycle, MeshCycle
 from flankfilm.stages.catalogue import DRY_CYCLE, FILM, VERIFICATION
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.motion import DIAGRAM, SCALING, SWEEP
+from flankfilm.stages.motion import SCALING, SWEEP
+from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import ARTICLE
 
 HEAD = """

@@ -23,7 +23,8 @@ from flankfilm.cache import Cache, keep_compiled_code
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import FILM, MESH, PLAN
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.motion import DIAGRAM, FOURIER
+from flankfilm.stages.motion import FOURIER
+from flankfilm.stages.speeds import DIAGRAM
 
 TOLERANCES = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
 
