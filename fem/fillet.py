@@ -24,7 +24,15 @@ if TYPE_CHECKING:
 
     from gears import ToothProfile
 
-__all__ = ["FilletLine", "edge_strain_matrix", "fillet_line", "fillet_stress_matrix", "local_cubic"]
+__all__ = [
+    "FilletEdges",
+    "FilletLine",
+    "edge_strain_matrix",
+    "fillet_edges",
+    "fillet_line",
+    "fillet_stress_matrix",
+    "local_cubic",
+]
 
 SAMPLES = 81
 """Points on a fillet and its half of the root land; the stress between them is a parabola."""
@@ -140,6 +148,57 @@ def local_cubic(known: Array, wanted: Array, points: int = 6, degree: int = 3) -
     return weights
 
 
+@record
+class FilletEdges:
+    """Edges of the elements along half of the root land and a fillet.
+
+    Attributes
+    ----------
+    nodes : (k, 3) array
+        First node, last node, middle.
+    outward : (k,) array
+        1 where an edge runs away from the gap as the fillet's samples do, else -1.
+    weights : (samples, 2k) array
+        From values at the edges' Gauss points to such at the samples.
+    """
+
+    nodes: Integers
+    outward: Array
+    weights: Array
+
+
+def fillet_edges(mesh: SectorMesh, profile: ToothProfile, line: FilletLine, side: str) -> FilletEdges:
+    """Find the edges of a fillet and interpolate between their Gauss points.
+
+    Parameters
+    ----------
+    mesh : meshes.SectorMesh
+    profile : gears.ToothProfile
+    line : FilletLine
+    side : {"left", "right"}
+    """
+    t, along = _arc_of_fillet(profile)
+    edges, arcs = [], []
+    for name in (f"root_{side}", f"fillet_{side}"):
+        if name not in mesh.facets:
+            continue
+        ends = mesh.parameters[name]
+        # as the element's own coordinate runs, through the parameter of its middle
+        bend = 4 * mesh.curves[name].middles(ends)[:, None] - 2 * ends.sum(axis=1, keepdims=True)
+        place = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * GAUSS + bend * GAUSS * (1 - GAUSS)
+        if name.startswith("root"):
+            arcs.append(profile.root_radius * (0.5 * profile.pitch_angle - place))
+        else:
+            arcs.append(line.foot + np.interp(place, t, along))
+        edges.append(mesh.facets[name])
+    both = np.concatenate(arcs)
+    arc = both.ravel()
+    order = np.argsort(arc)
+    weights = np.zeros((len(line.arc), len(arc)))
+    weights[:, order] = local_cubic(arc[order], line.arc)
+    return FilletEdges(np.concatenate(edges), np.sign(both[:, 1] - both[:, 0]), weights)
+
+
 def fillet_stress_matrix(
     mesh: SectorMesh, profile: ToothProfile, line: FilletLine, law: PlaneElasticity, side: str
 ) -> csr_array:
@@ -155,22 +214,6 @@ def fillet_stress_matrix(
     """
     from scipy.sparse import csr_array
 
-    t, along = _arc_of_fillet(profile)
-    edges, arcs = [], []
-    for name in (f"root_{side}", f"fillet_{side}"):
-        if name not in mesh.facets:
-            continue
-        ends = mesh.parameters[name]
-        # as the element's own coordinate runs, through the parameter of its middle
-        bend = 4 * mesh.curves[name].middles(ends)[:, None] - 2 * ends.sum(axis=1, keepdims=True)
-        place = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * GAUSS + bend * GAUSS * (1 - GAUSS)
-        if name.startswith("root"):
-            arcs.append(profile.root_radius * (0.5 * profile.pitch_angle - place))
-        else:
-            arcs.append(line.foot + np.interp(place, t, along))
-        edges.append(mesh.facets[name])
-    arc = np.concatenate(arcs).ravel()
-    order = np.argsort(arc)
-    strain = edge_strain_matrix(mesh.points, np.concatenate(edges))[order]
-    weights = local_cubic(arc[order], line.arc)
-    return csr_array(law.plane_modulus * (csr_array(weights) @ strain))
+    edges = fillet_edges(mesh, profile, line, side)
+    strain = edge_strain_matrix(mesh.points, edges.nodes)
+    return csr_array(law.plane_modulus * (csr_array(edges.weights) @ strain))
