@@ -147,12 +147,19 @@ class ContactProblem:
         return self.given.seen(np.concatenate([self.given.corners, more, film]))
 
     def _pairs(self, found: Solution) -> Array | None:
-        """Share, normal force and places of every pair (positions, pairs, 4); None without a torque to share."""
+        """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of `gears.arcs.Arc`.
+
+        None without a torque to share.
+        """
         if not self.force:
             return None
         forces = found.share.forces[0, 0] / found.kappa
         rho = found.flank_rho(self.given.pair, 0)[:, 0]
-        return np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+        whole = np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+        if found.face is None:
+            return whole
+        cells = found.face.forces[0, 0] / found.kappa[..., None]
+        return np.concatenate([whole, cells * cells.shape[-1] / self.given.pair.face_width], axis=-1)
 
     def _curves(self, found: Solution) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""

@@ -61,11 +61,21 @@ class HalfFace:
 
     def values(self, z: Array) -> Array:
         """Every function (n, k) at places (k,) of the half with z >= 0 [m]."""
+        return self._on_pieces(z)[0]
+
+    def slopes(self, z: Array) -> Array:
+        """Their derivatives (n, k) [1/m]."""
+        return self._on_pieces(z)[1]
+
+    def _on_pieces(self, z: Array) -> Array:
+        """Values and derivatives (2, n, k)."""
         piece = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
-        start, stop = self.ends[piece], self.ends[piece + 1]
-        found = np.zeros((len(self.mass), len(z)))
-        rows = ORDER * piece[:, None] + np.arange(ORDER + 1)
-        found[rows, np.arange(len(z))[:, None]] = _values(2 * (z - start) / (stop - start) - 1)
+        start, long = self.ends[piece], np.diff(self.ends)[piece]
+        local = 2 * (z - start) / long - 1
+        found = np.zeros((2, len(self.mass), len(z)))
+        rows, columns = ORDER * piece[:, None] + np.arange(ORDER + 1), np.arange(len(z))[:, None]
+        found[0, rows, columns] = _values(local)
+        found[1, rows, columns] = _slopes(local) * (2 / long)[:, None]
         return found
 
     def means(self, edges: Array) -> tuple[Array, Array]:
@@ -112,33 +122,40 @@ def _values(s: Array) -> Array:
     return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
 
 
-def _lengths(half_width: float, module: float) -> list[float]:
+def _lengths(half_width: float, module: float, last: float, growth: float) -> list[float]:
     """Lengths of pieces from the end to mid-face, all together half the face or more [m]."""
-    lengths = [LAST * module]
+    lengths = [last * module]
     while sum(lengths) < half_width:
-        lengths.append(lengths[-1] * GROWTH)
+        lengths.append(lengths[-1] * growth)
     return lengths
 
 
 def unknowns_along(width: float) -> int:
     """Unknowns of a node of the section on half a face of some width in modules, all three directions."""
-    return 3 * (ORDER * len(_lengths(0.5 * width, 1.0)) + 1)
+    return 3 * (ORDER * len(_lengths(0.5 * width, 1.0, LAST, GROWTH)) + 1)
 
 
-def half_face(half_width: float, module: float) -> HalfFace:
+def _slopes(s: Array) -> Array:
+    """Derivatives (k, ORDER + 1) of a piece's functions at places (k,)."""
+    rises = np.array([legendre.legval(s, legendre.legder(row)) for row in np.eye(ORDER + 1)]).T
+    return np.asarray(rises @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
+
+
+def half_face(half_width: float, module: float, last: float = LAST, growth: float = GROWTH) -> HalfFace:
     """Divide half a face into pieces that shorten towards the end.
 
     Parameters
     ----------
     half_width, module : float
         [m]
+    last, growth : float
+        Length of the piece at the end [modules], and of each piece over the one nearer to the end.
     """
-    lengths = _lengths(half_width, module)
+    lengths = _lengths(half_width, module, last, growth)
     ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
     n = ORDER * len(lengths) + 1
     s, weight = legendre.leggauss(ORDER + 1)
-    values, back = _values(s), np.linalg.inv(legendre.legvander(_nodes(), ORDER))
-    slopes = np.array([legendre.legval(s, legendre.legder(row)) for row in np.eye(ORDER + 1)]).T @ back
+    values, slopes = _values(s), _slopes(s)
     mass, stiffness, mixed = np.zeros((3, n, n))
     for piece, length in enumerate(np.diff(ends)):
         at = slice(ORDER * piece, ORDER * piece + ORDER + 1)

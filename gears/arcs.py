@@ -19,10 +19,10 @@ from numpy.polynomial import chebyshev
 from base import Array, Integers, part, quantity, record
 from gears.arc_series import ceiling, gauss, greatest_of, left_out, lobatto, to_series
 
-__all__ = ["FORCE", "SHARE", "Arc", "Arcs", "graded"]
+__all__ = ["CELLS", "FORCE", "SHARE", "Arc", "Arcs", "graded"]
 
-SHARE, FORCE = 0, 1
-"""Kinds of `Arc.pairs`; the curvature radii follow them."""
+SHARE, FORCE, CELLS = 0, 1, 4
+"""Kinds of `Arc.pairs`: the curvature radii follow the force, and them the cells of the face."""
 
 
 def graded(unit: Array, towards: int) -> tuple[Array, Array]:
@@ -55,7 +55,8 @@ class Arc:
     pairs: Array | None = quantity(
         "",
         "at the same points of every pair: share of the torque, normal force [N], curvature radius of the pinion's "
-        "and of the wheel's flank [m]; None where pairs are not told apart",
+        "and of the wheel's flank [m], and where the face has cells the line load on each [N/m]; None where pairs are "
+        "not told apart",
         "node pair kind",
         default=None,
     )
