@@ -3,9 +3,12 @@ from .contact import mesh_cycle as mesh_cycle
 from .contact_candidates import unloaded_transmission_error as unloaded_transmission_error
 from .cycle import MeshCycle as MeshCycle
 from .export import write_mesh as write_mesh
+from .face_fillets import FaceFillets as FaceFillets
+from .face_fillets import face_fillets as face_fillets
 from .face_gears import FaceGears as FaceGears
 from .face_gears import face_gears as face_gears
 from .face_loads import FaceLoads as FaceLoads
+from .face_root import FaceRootStress as FaceRootStress
 from .local_law import Film as Film
 from .pair_compliance import compliance as compliance
 from .pair_fillets import Fillets as Fillets

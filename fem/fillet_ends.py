@@ -59,7 +59,9 @@ class FilletEnds:
     even: tuple[Array, Array]
     odd: tuple[Array, Array]
 
-    def add(self, tooth: int, rho: Array, force: Array, edges: Array, z: Array, samples: int) -> tuple[Array, Array]:
+    def add(
+        self, tooth: int, rho: Array, force: Array, edges: Array, z: Array, samples: int
+    ) -> tuple[Array, Array]:
         """E* eps_t and E* eps_z that free ends add at places z (loads, places, 2, samples).
 
         Parameters
@@ -80,6 +82,9 @@ class FilletEnds:
         low, high = self.rho_range
         by_place = chebyshev.chebvander((2 * np.clip(rho, low, high) - low - high) / (high - low), DEGREE)
         finer = local_cubic(np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, samples), 4)
+        # the face that was solved ends where cells and places do, to the last bit
+        most = float(self.half.ends[-1])
+        edges, z = (np.clip(some, -most, most) for some in (edges, z))
         values, slopes = self.half.values(np.abs(z)), self.half.slopes(np.abs(z))
         total = np.zeros((2, len(rho), len(z), 2, SAMPLES))
         for means, series, sign, skipped in zip(
@@ -90,7 +95,9 @@ class FilletEnds:
                 by_function = np.einsum(
                     "la,lp,apqsn->lqsn", by_place, unit, series[kind][TEETH.index(tooth)], optimize=True
                 )
-                total[kind] += 0.5 * np.einsum("lqsn,qz->lzsn", by_function, some[first:] * sign, optimize=True)
+                total[kind] += 0.5 * np.einsum(
+                    "lqsn,qz->lzsn", by_function, some[first:] * sign, optimize=True
+                )
         along, across = total @ finer.T
         return along, across
 

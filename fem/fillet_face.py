@@ -11,20 +11,16 @@ are solved leave the root without stress. A gear that is wider than the face in 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from base import Array, record
-from fem.face_setting import FREE_ENDS, FaceSetting
 from fem.fillet_ends import TEETH, FilletEnds
 from fem.fillet_influence import FilletInfluence
 from fem.fillet_strain import von_mises
 from fem.fillet_waves import ACROSS, ALONG, SHEAR, FilletWaves
 from fem.gear_face import SHORTEST, between_waves
-
-if TYPE_CHECKING:
-    from gears import GearPair
 
 __all__ = ["FilletFace", "places_on_face"]
 
@@ -55,7 +51,7 @@ class FilletFace:
 
     @property
     def module(self) -> float:
-        """[m]"""
+        """Of the gear [m]."""
         return self.influence.profile.module
 
     @property
@@ -92,7 +88,9 @@ class FilletFace:
         by_wave[:, :, ALONG] += self.influence.stress(tooth, rho)[:, None]
         turn = wave[:, None] * (z + 0.5 * self.width)
         weights = between_waves(wave * self.module)
-        even, odd = (np.einsum("lm,mw,mz->lwz", modes, weights, f(turn), optimize=True) for f in (np.cos, np.sin))
+        even, odd = (
+            np.einsum("lm,mw,mz->lwz", modes, weights, f(turn), optimize=True) for f in (np.cos, np.sin)
+        )
         along, across, shear = (
             np.einsum("lwz,lwsn->lzsn", shape, by_wave[:, :, kind], optimize=True)
             for kind, shape in ((ALONG, even), (ACROSS, even), (SHEAR, odd))
@@ -104,9 +102,9 @@ class FilletFace:
             along, across = along + more[0], across + more[1]
         return along, across, shear
 
-    def von_mises(self, tooth: int, rho: Array, load: Array, z: Array) -> Array:
-        """Von Mises stress of the loads together (places, 2, samples) [Pa], arguments as of ``tangential``."""
-        along, across, shear = (one.sum(axis=0) for one in self.components(tooth, rho, load, z))
+    def von_mises(self, parts: Sequence[tuple[Array, Array, Array]]) -> Array:
+        """Von Mises stress (places, 2, samples) [Pa] of loads that act together, of ``components`` of each."""
+        along, across, shear = (sum(one[kind].sum(axis=0) for one in parts) for kind in range(3))
         return von_mises(along + self.nu * across, across + self.nu * along, shear)
 
     def _waves(self) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, record
+from base import Array, Integers, record
 from fem.fillet import GAUSS, FilletLine, edge_strain_matrix, fillet_edges
 from meshes import SectorMesh
 
@@ -66,7 +66,9 @@ def _of_side(mesh: SectorMesh, profile: ToothProfile, line: FilletLine, side: st
 
     edges, count = fillet_edges(mesh, profile, line, side), len(mesh.points)
     weights = csr_array(edges.weights)
-    values = np.stack([(1 - GAUSS) * (1 - 2 * GAUSS), GAUSS * (2 * GAUSS - 1), 4 * GAUSS * (1 - GAUSS)], axis=-1)
+    values = np.stack(
+        [(1 - GAUSS) * (1 - 2 * GAUSS), GAUSS * (2 * GAUSS - 1), 4 * GAUSS * (1 - GAUSS)], axis=-1
+    )
     rises = np.stack([4 * GAUSS - 3, 4 * GAUSS - 1, 4 - 8 * GAUSS], axis=-1)
     speed = np.linalg.norm(np.einsum("qk,eka->eqa", rises, mesh.points[edges.nodes]), axis=2)
     slopes = rises * (edges.outward[:, None] / speed)[..., None]
@@ -82,7 +84,7 @@ def _of_side(mesh: SectorMesh, profile: ToothProfile, line: FilletLine, side: st
     return FilletStrain(along, csr_array(moved), value, slope)
 
 
-def _scattered(nodes: Array, values: Array, count: int) -> csr_array:
+def _scattered(nodes: Integers, values: Array, count: int) -> csr_array:
     """Matrix (2 edges, nodes) of values (edges, 2, 3) at the Gauss points of edges."""
     from scipy.sparse import coo_array
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fem.prism import Prism
     from meshes import SectorMesh
 
-__all__ = ["ALONG", "ACROSS", "FilletWaves", "SHEAR", "fillet_waves", "solid_of"]
+__all__ = ["ACROSS", "ALONG", "SHEAR", "FilletWaves", "fillet_waves", "solid_of"]
 
 ALONG, ACROSS, SHEAR = 0, 1, 2
 """E* eps_t, E* eps_z and tau."""
@@ -51,8 +51,8 @@ class FilletWaves:
     rho_range : (float, float)
         Curvature radii of loads.
     series : mapping of int to (degree + 1, waves, 3, 2, samples) array
-        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of E* eps_t,
-        E* eps_z and tau [1/module] for the solved waves, on the left (index 0) and the right fillet.
+        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
+        E* eps_t, E* eps_z and tau [1/module] for the solved waves, on the left (index 0) and the right fillet.
     lack : float
         Greatest part of the greatest even stress that nodal forces on this mesh miss.
     """
@@ -122,4 +122,4 @@ def _stress(
                 found[number, :, ACROSS, side] = wavenumber * (one.value @ w).T
                 turned = one.slope @ w - wavenumber * (one.moved @ plane)
                 found[number, :, SHEAR, side] = law.shear_modulus * turned.T
-    return found * np.array([law.plane_modulus, law.plane_modulus, 1.0])[:, None, None]
+    return np.asarray(found * np.array([law.plane_modulus, law.plane_modulus, 1.0])[:, None, None])

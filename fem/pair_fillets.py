@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass
 from functools import partial
 from math import floor
 from typing import TYPE_CHECKING
@@ -20,9 +21,9 @@ from gears.closed_form.root_stress import THIN_RIM, rim_factor
 
 if TYPE_CHECKING:
     from gears import GearPair
-    from meshes import Sizes
+    from meshes import SectorMesh, Sizes
 
-__all__ = ["Fillets", "fillets"]
+__all__ = ["Fillets", "LoadedShape", "SolvedFillets", "fillets"]
 
 COARSEST, HALVINGS = 0.16, 3
 """Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
@@ -54,6 +55,7 @@ class Fillets:
         "estimated relative error of the greatest stress on a gear's fillet, from two nested meshes",
         "gear",
     )
+    shapes: tuple[LoadedShape, LoadedShape] = part("pinion and wheel as they were solved, in modules")
     cost: Cost
     converged: bool
     message: str
@@ -65,13 +67,49 @@ class Fillets:
 
 
 @record
-class _SolvedFillets:
-    """Influence of one gear in modules, with its error and the size of what was solved."""
+class SolvedFillets:
+    """Influence of one gear in modules, with its error and the size of what was solved.
+
+    Attributes
+    ----------
+    influence : FilletInfluence
+    error : float
+    unknowns, annulus_unknowns : int
+    """
 
     influence: FilletInfluence
     error: float
     unknowns: int
     annulus_unknowns: int
+
+
+@dataclass(frozen=True)
+class LoadedShape:
+    """A gear's shape, and the least curvature radius of loads on it.
+
+    Attributes
+    ----------
+    shape : GearShape
+    low : float
+        [modules]
+    """
+
+    shape: GearShape
+    low: float
+
+    def solved(self, gears: Gears, edge: float = COARSEST) -> SolvedFillets:
+        """Influence on a mesh with edges on the fillets, and on its refinement, solved where it is kept nowhere."""
+        key = (self.shape, edge, self.low)
+        found: SolvedFillets = gears.record(
+            "fillets", key, partial(_two_meshes, gears, self.shape, edge, self.low)
+        )
+        return found
+
+    def mesh(self, edge: float = COARSEST) -> SectorMesh:
+        """Finer one of the two meshes."""
+        from meshes import mesh_sector, refined
+
+        return refined(mesh_sector(self.shape.profile, _sizes(edge)))
 
 
 def fillets(
@@ -133,12 +171,14 @@ def fillets(
     gears, results = Gears(kept), []
     profiles = pair.teeth_profiles
     starts = pair.points.A, pair.line_of_action - pair.points.E
-    for shape, start in zip(shapes(pair, profiles, plane), starts, strict=True):
-        gear_edge, low = edge, START * floor(start / (START * pair.module))
+    first, second = (
+        LoadedShape(shape, START * floor(start / (START * pair.module)))
+        for shape, start in zip(shapes(pair, profiles, plane), starts, strict=True)
+    )
+    for loaded in (first, second):
+        gear_edge = edge
         while True:
-            solved = gears.record(
-                "fillets", (shape, gear_edge, low), partial(_two_meshes, gears, shape, gear_edge, low)
-            )
+            solved = loaded.solved(gears, gear_edge)
             if solved.error <= tolerance or gear_edge <= smallest:
                 break
             gear_edge *= 0.5
@@ -160,7 +200,9 @@ def fillets(
         parts=sum(gears.costs, Cost(0.0)).parts,
         counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
     )
-    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, errors, cost, converged, message)
+    return Fillets(
+        pair, plane, pinion, wheel, 0.5 * finest, errors, (first, second), cost, converged, message
+    )
 
 
 def _warn_of_held_rims(pair: GearPair) -> None:
@@ -177,7 +219,7 @@ def _warn_of_held_rims(pair: GearPair) -> None:
         warnings.warn(f"{message}. Give the gear its rim and web (blank)", RangeWarning, stacklevel=3)
 
 
-def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> _SolvedFillets:
+def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> SolvedFillets:
     """Influence of loads from a curvature radius on, on a refined mesh, and its error against the mesh it refines."""
     from meshes import mesh_sector, refined
 
@@ -190,7 +232,7 @@ def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> _Sol
     greatest, other = (np.max(np.abs(found.stress(0, rho)), axis=2) for found in (fine, coarse))
     error = 0.5 * float(np.max(np.abs(other / greatest - 1))) + fine.noise / float(np.max(greatest))
     gears.costs.append(ring.cost)
-    return _SolvedFillets(fine, error, ring.cost.unknowns, ring.unknowns)
+    return SolvedFillets(fine, error, ring.cost.unknowns, ring.unknowns)
 
 
 def _sizes(edge: float) -> Sizes:

@@ -57,6 +57,12 @@ class RootPeak:
         "estimated relative error by the forces, from those of the mesh before the last refinement",
         no_error=ITSELF,
     )
+    face_position: float = quantity(
+        "m",
+        "place along the face, 0 at the middle of the face in contact; nan of loads that are even along it",
+        shown="mm",
+        default=float("nan"),
+    )
 
 
 @record

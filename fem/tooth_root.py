@@ -10,127 +10,30 @@ nu sigma_t.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
-from base.results import ITSELF
 from fem.contact import MeshCycle
-from fem.elasticity import PlaneElasticity
-from fem.fillet import FilletLine
+from fem.face_fillets import face_fillets, over_face
+from fem.face_root import StressOverFace, root_over_face
 from fem.fillet_influence import FilletInfluence
+from fem.gear_root import GearRootStress
 from fem.pair_fillets import Fillets
 from fem.pair_fillets import fillets as _fillets
-from fem.root_peaks import LOADED, OTHER, RootNodes, RootPeak, extreme, peak_of
+from fem.root_peaks import LOADED, OTHER, RootNodes, peak_of
 from fem.setting import Setting
 from gears.arcs import FORCE, Arcs
 from gears.mesh_figures import MeshArcs
 
 if TYPE_CHECKING:
+    from fem.face_loads import FaceLoads
+    from fem.fillet_face import FilletFace
     from gears import GearPair
 
-__all__ = ["GearRootStress", "RootStress", "root_stress"]
-
-
-@record
-class GearRootStress:
-    """Stress along the fillets of one gear's teeth, at the sample points of ``line``."""
-
-    no_error = "not estimated at single instants; the greatest stresses have errors"
-
-    headline = ("greatest_tension_Pa", "greatest_compression_Pa")
-
-    line: FilletLine
-    law: PlaneElasticity
-    position: Array = quantity("1", "base pitches from A, of the pair that entered last", "position")
-    tooth: Integers = quantity(
-        "1", "base pitches ahead of that pair; beside the loaded teeth one more at either end", "tooth"
-    )
-    tangential_Pa: Array = quantity(
-        "Pa",
-        "principal stress along the fillet, under the loaded flank first, along the other one second",
-        "position tooth fillet sample",
-        shown="MPa",
-    )
-    greatest_tension: RootPeak = part("greatest tension of all teeth and instants, and where it acts")
-    greatest_compression: RootPeak = part("greatest compression of all teeth and instants, and where it acts")
-    passage_range_Pa: Array = quantity(
-        "Pa",
-        "least and greatest stress of a tooth's passage at every sample, of all instants",
-        "bound fillet sample",
-        shown="MPa",
-    )
-    fillets_error: float = quantity(
-        "1", "estimated relative error of the greatest stresses by the fillets' mesh", no_error=ITSELF
-    )
-
-    @property
-    def errors(self) -> Mapping[str, float]:
-        """Estimated relative errors of the greatest stresses by their names."""
-        peaks = {
-            "greatest_tension_Pa": self.greatest_tension,
-            "greatest_compression_Pa": self.greatest_compression,
-        }
-        return {name: self.fillets_error + one.forces + one.sampling for name, one in peaks.items()}
-
-    @described("1", "position tooth")
-    def tooth_position(self) -> Array:
-        """Base pitches since each tooth's pair passed A."""
-        return np.asarray(self.position[:, None] + self.tooth)
-
-    @described("Pa", "position tooth", shown="MPa")
-    def tension_Pa(self) -> Array:
-        """Greatest principal stress along the fillet under the loaded flank."""
-        return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
-
-    @described("m", "position tooth", shown="mm")
-    def tension_arc(self) -> Array:
-        """Place of the greatest stress: arc length from the middle of the gap."""
-        return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
-
-    @described("Pa", "position tooth", shown="MPa")
-    def compression_Pa(self) -> Array:
-        """Least principal stress along the other fillet, negative in compression."""
-        return -extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
-
-    @described("m", "position tooth", shown="mm")
-    def compression_arc(self) -> Array:
-        """Place of the least stress: arc length from the middle of the gap."""
-        return extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
-
-    @described("Pa", shown="MPa", error="errors")
-    def greatest_tension_Pa(self) -> float:
-        """Greatest tension under a loaded flank, of all teeth and positions."""
-        return self.greatest_tension.stress_Pa
-
-    @described("Pa", shown="MPa", error="errors")
-    def greatest_compression_Pa(self) -> float:
-        """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
-        return self.greatest_compression.stress_Pa
-
-    def passage(self) -> tuple[Array, Array]:
-        """Follow one tooth through its mesh: every position and tooth is one instant of it.
-
-        Returns
-        -------
-        position : (n teeth,) array
-            Base pitches since its pair passed A, growing.
-        tangential_Pa : (n teeth, 2, samples) array
-        """
-        order = np.argsort(self.tooth_position, axis=None, kind="stable")
-        flat = self.tangential_Pa.reshape(-1, *self.tangential_Pa.shape[2:])
-        return self.tooth_position.ravel()[order], flat[order]
-
-    def fatigue(self) -> tuple[Array, Array]:
-        """Amplitude and mean over one tooth's passage at every sample, each (2, samples) [Pa].
-
-        A tooth's root is drawn when it bears and pressed when the tooth before it bears.
-        """
-        low, high = self.passage_range_Pa
-        # far from its mesh the tooth is unloaded
-        high, low = np.maximum(high, 0.0), np.minimum(low, 0.0)
-        return 0.5 * (high - low), 0.5 * (high + low)
+__all__ = ["RootStress", "root_stress"]
 
 
 @record
@@ -224,7 +127,10 @@ def root_stress(
     watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = watch.seconds
-    pinion, wheel = (_gear_stress(pair, cycle, arcs, roots, gear) for gear in (0, 1))
+    if cycle.face is None:
+        pinion, wheel = (_gear_stress(pair, cycle, arcs, roots, gear) for gear in (0, 1))
+    else:
+        pinion, wheel = _over_face(pair, cycle, cycle.face, arcs, roots)
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
     cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
@@ -266,6 +172,35 @@ def _gear_stress(
         np.stack([low, high]),
         fillets_error,
     )
+
+
+def _over_face(
+    pair: GearPair, cycle: MeshCycle, face: FaceLoads, found: MeshArcs, roots: Fillets
+) -> tuple[GearRootStress, GearRootStress]:
+    """Stress of both gears under loads on cells of the face."""
+    solved = face_fillets(roots, pair, face.setting.model)
+    offsets = cycle.pair_offset
+    teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
+
+    def of(gear: int, fillets: FilletFace) -> GearRootStress:
+        stress = StressOverFace(fillets, offsets, teeth, 1 if gear == 0 else -1, pair.face_offsets[gear])
+        positions, mesh_error = partial(_positions, cycle), solved.mesh_errors[gear]
+        over = root_over_face(stress, face, cycle.flank_rho[gear], found, positions, gear, mesh_error)
+        return GearRootStress(
+            fillets.influence.line,
+            fillets.influence.law,
+            cycle.loaded_position,
+            teeth,
+            over.tangential,
+            over.tension,
+            over.compression,
+            over.passage,
+            float(roots.errors[gear]),
+            over.face,
+        )
+
+    pinion, wheel = over_face(roots, solved, pair, face.setting)
+    return of(0, pinion), of(1, wheel)
 
 
 @record
