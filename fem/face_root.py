@@ -48,6 +48,9 @@ class FaceRootStress:
         shown="mm",
         no_error=EXACT,
     )
+    travel: Array = quantity(
+        "1", "base pitches since each tooth's pair passed A", "position tooth", no_error=EXACT
+    )
     tension_Pa: Array = quantity(
         "Pa",
         "greatest principal stress along the fillet under the loaded flank",
@@ -218,6 +221,7 @@ def root_over_face(
     positions: Callable[[Arcs], Array],
     gear: int,
     mesh_error: float,
+    loaded_position: Array,
 ) -> RootOverFace:
     """Greatest stresses of a gear over its face, its fillets, all teeth and instants.
 
@@ -236,6 +240,8 @@ def root_over_face(
         0 is the pinion, 1 the wheel.
     mesh_error : float
         Relative, of the mesh that the waves were solved on.
+    loaded_position : (positions,) array
+        Base pitches from A, of the pair that entered last.
     """
     width, cells = face.pair.face_width, len(face.face_position)
     z = places_on_face(stress.fillets.width, width / cells) + stress.offset
@@ -275,6 +281,7 @@ def root_over_face(
         passage,
         FaceRootStress(
             z,
+            loaded_position[:, None] + stress.teeth,
             sampled[0],
             -sampled[1],
             over_cycle[0],

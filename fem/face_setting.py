@@ -57,6 +57,11 @@ class FaceSetting:
         """What decides how cells are coupled, whatever stands between the flanks."""
         return self.cells, self.model, self.strip, self.shafts
 
+    @property
+    def slope(self) -> float:
+        """Slopes of leads and alignment in the plane of action together, over the face [m]."""
+        return sum(lead.slope for lead in self.leads) + self.alignment.in_plane
+
     def edges(self, pair: GearPair) -> Array:
         """Edges of the cells (cells + 1,) [m], 0 at mid-face."""
         return np.asarray(np.linspace(-0.5, 0.5, self.cells + 1) * pair.face_width)

@@ -90,6 +90,8 @@ def root_stress(
     Returns
     -------
     RootStress
+        With cells of the face also over the face; what else is told of all teeth and samples is then at the place of
+        the greatest tension along the face.
 
     Raises
     ------
@@ -185,7 +187,9 @@ def _over_face(
     def of(gear: int, fillets: FilletFace) -> GearRootStress:
         stress = StressOverFace(fillets, offsets, teeth, 1 if gear == 0 else -1, pair.face_offsets[gear])
         positions, mesh_error = partial(_positions, cycle), solved.mesh_errors[gear]
-        over = root_over_face(stress, face, cycle.flank_rho[gear], found, positions, gear, mesh_error)
+        over = root_over_face(
+            stress, face, cycle.flank_rho[gear], found, positions, gear, mesh_error, cycle.loaded_position
+        )
         return GearRootStress(
             fillets.influence.line,
             fillets.influence.law,

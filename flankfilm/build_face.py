@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["even_along_face", "face", "faults_of_face", "varies_by"]
 
-EVEN = {
-    "root-stress": "root stresses are of loads that are even along it",
-}
-"""Wants that know no load that varies along the face."""
-
 
 class FaceOptions(TypedDict, total=False):
     """Fields of `coupling.Flanks` that say how the face is looked at."""
@@ -79,10 +74,6 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
         return
     yield from _of_setting(scene, pair)
     where, drop = f"where the load varies along the face, by {by}", f"or drop {by}"
-    for want in scene.wants:
-        if want in EVEN:
-            allowed = f"must not be wanted {where}: {EVEN[want]}"
-            yield Fault("wants", f'"{want}"', allowed, f"Leave {want} out of wants, {drop}")
     yield from _of_films(scene, where, drop)
     if scene.stiffness.plane != "strain":
         remedy = f'Take stiffness.plane = "strain", {drop}'

@@ -14,6 +14,7 @@ PICTURES: Mapping[str, str] = {
     "fem.cycle:MeshCycle": "loaded_contact",
     "fem.face_loads:FaceLoads": "face_loads",
     "fem.tooth_root:RootStress": "root_stress",
+    "fem.face_root:FaceRootStress": "face_root_stress",
     "ehl.film:Film": "curves",
     "ehl.mixed_film:MixedFilm": "mixed_film",
     "ehl.mixed_thermal:MixedThermalFilm": "mixed_film",
@@ -66,6 +67,7 @@ MODULES: Mapping[str, tuple[str, ...]] = {
     ),
     "of_drives": ("pair_drive", "drive_sweep"),
     "face": ("loaded_contact", "face_loads", "face_films", "face_models"),
+    "face_roots": ("face_root_stress",),
 }
 """Module of `flankfilm.figures` to the functions in it; all others are in `of_records`, of runs in `of_runs`."""
 

@@ -59,6 +59,7 @@ from .resolution import resolution_of as resolution_of
 from .roots import LoadedFields as LoadedFields
 from .roots import RootStresses as RootStresses
 from .roots import fillets_of as fillets_of
+from .roots import fillets_over_face as fillets_over_face
 from .roots import pitch_point_fields as pitch_point_fields
 from .roots import root_stresses as root_stresses
 from .run_ups import SpeedRunUp as SpeedRunUp

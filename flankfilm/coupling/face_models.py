@@ -119,7 +119,7 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
     faces = [own, *(one.face for one in others if one.face is not None)]
     at = _at_pitch_point(cycle.contact)
     loads = [face.line_load[at] for face in faces]
-    slope = sum(lead.slope for lead in own.setting.leads) + own.setting.alignment.in_plane
+    slope = own.setting.slope
     factor, fault = _iso(teeth, abs(slope))
     loads.append(_linear(loads[0].mean(), factor, -np.sign(slope), own.face_position / teeth.pair.face_width))
     first = loads[0]

@@ -28,6 +28,9 @@ class RootStresses:
         "nominal stress by ISO 6336-3; None where it has no answer"
     )
     iso_fault: str = quantity("", "why ISO 6336-3 has no answer")
+    iso_face: gears.closed_form.Iso6336FaceLoad | None = part(
+        "face-load factors by ISO 6336-1, method C; None of loads that are even along the face"
+    )
     error: float | None
     cost: Cost
     converged: bool = True
@@ -71,7 +74,7 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
     with unclocked():
         import fem
         from gears import GeometryError
-        from gears.closed_form import iso6336_3
+        from gears.closed_form import iso6336_3, iso6336_face_load
     watch = Stopwatch()
     found = fem.root_stress(pair, cycle, replace(fillets, pair=pair))
     iso, fault = None, ""
@@ -79,7 +82,40 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
         iso = iso6336_3(pair, abs(pair.normal_force(cycle.torque)))
     except GeometryError as error:
         fault = str(error)
-    return RootStresses(found, iso, fault, found.error, Cost(watch.seconds))
+    face, over = cycle.face, None
+    if face is not None:
+        try:
+            over = iso6336_face_load(pair, abs(cycle.torque), abs(face.setting.slope))
+        except GeometryError as error:
+            fault = "; ".join(one for one in (fault, str(error)) if one)
+    return RootStresses(found, iso, fault, over, found.error, Cost(watch.seconds))
+
+
+def fillets_over_face(
+    fillets: fem.Fillets, pair: gears.GearPair, model: str, kept: Kept | None = None
+) -> fem.FaceFillets:
+    """Fillets of both gears under loads that vary along the face; `root_stresses` finds them in the process.
+
+    Parameters
+    ----------
+    fillets : fem.Fillets
+        Of the same gears with plain flanks.
+    pair : gears.GearPair
+    model : str
+        ``"free-ends"``, ``"walls"`` or ``"slices"``.
+    kept : callable, optional
+        As of `fem.fillets`.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> fillets_over_face(fillets_of(pair, tolerance=0.05), pair, "walls").ends is None
+    True
+    """
+    with unclocked():
+        import fem
+    return fem.face_fillets(fillets, pair, model, kept)
 
 
 def fillets_of(

@@ -16,7 +16,7 @@ STAGES: Mapping[str, str] = {
     "revolution": "revolution",
     "other": "other cycles",
     **dict.fromkeys(("lubricated", "film", "held"), "film"),
-    **dict.fromkeys(("root", "fillet", "iso6336_3"), "root stress"),
+    **dict.fromkeys(("root", "fillet", "iso6336_3", "iso6336_face"), "root stress"),
     "iso6336_2": "closed forms",
     "oscillator": "scaling",
     "fourier": "fourier",

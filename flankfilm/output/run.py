@@ -110,6 +110,14 @@ TABLES: Mapping[str, Table] = {
         ("travel", "face_position", "line_load", "hertz_pressure", "face_load_factor"),
     ),
     "face_models": Table("face_models", "line_load", ("face_position", "model", "line_load")),
+    **{
+        f"root_face_{gear}": Table(
+            f"root_face_{gear}",
+            "cycle_tension_Pa",
+            ("face_position", "cycle_tension_Pa", "cycle_compression_Pa"),
+        )
+        for gear in GEARS
+    },
     "torques": Table("torque", "torque", axis="torque"),
     "revolution": Table(
         "revolution",
@@ -339,6 +347,10 @@ def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
         for prefix, found_there in ((f"root_{name}", passage(gear)), (f"fillet_{name}", fillet_stress(gear))):
             stresses = [one.name for one in found_there if one.figure.unit == "Pa"]
             yield of_quantities(prefix, found_there, dict.fromkeys(stresses, found.stress.error))
+        if gear.face is not None:
+            yield of_record(f"root_face_{name}", gear.face)
+    if found.iso_face is not None:
+        yield of_record("iso6336_face", found.iso_face)
     if found.iso is not None:
         yield of_record("iso6336_3", found.iso)
         yield of_list("iso6336_3", "gear", found.iso.sections)

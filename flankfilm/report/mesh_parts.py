@@ -211,14 +211,34 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
         "at [base pitches after A]": lambda row: f"{row[1].position:.3f}",
         "tangent of the fillet [deg]": lambda row: f"{math.degrees(row[1].tangent_angle):.1f}",
     }
+    over_face = stage.stress.pinion.face is not None
+    if over_face:
+        columns["place on the face [mm]"] = lambda row: number(1e3 * row[1].face_position, 3)
     tables = [Table.of(peaks, columns)]
+    if over_face:
+        tables.append(_over_face(stage))
     note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))
         both = "at D for the pinion and at B for the wheel"
         note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else both)
-    drawn = pictures(results, "root_stress")
-    return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=(note,))
+    drawn = pictures(results, "root_stress", *(("root_face_map",) if over_face else ()))
+    notes = (note, *((said("root_over_face"),) if over_face else ()))
+    return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
+
+
+def _over_face(stage: RootStresses) -> Table:
+    """Stress face-load factors of both gears, beside those of the load by ISO 6336-1."""
+    rows = []
+    for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel)):
+        if gear.face is not None:
+            factor = f"{number(gear.face.face_factor)} {plus_minus(gear.face.tension_error)}"
+            rows.append((f"{name}: greatest tension over its mean over the face", factor))
+    if stage.iso_face is not None:
+        iso = stage.iso_face
+        rows.append(("ISO 6336-1, method C: K_Hbeta of the load", number(iso.K_Hbeta)))
+        rows.append((f"K_Fbeta = K_Hbeta^N_F of the root, N_F = {number(iso.N_F, 3)}", number(iso.K_Fbeta)))
+    return Table(("root stress over the face", "value"), tuple(rows))
 
 
 def root_headlines(stage: RootStresses) -> list[Headline]:

@@ -262,9 +262,26 @@ def FILLETS(run: Engine) -> fem.Fillets:
     )
 
 
-@stage("root stress", "root stress over the mesh cycle", "", MESH, FILLETS, PAIR)
+@stage(
+    "fillets along the face",
+    "root stress per load along the face",
+    "alignment",
+    FILLETS,
+    PAIR,
+    kept="gears meshes fem",
+    by_parts=True,
+)
+def FACE_FILLETS(run: Engine) -> fem.FaceFillets:
+    """What loads that vary along the face do to the fillets."""
+    model = face(run.scene).get("face_model", FREE_ENDS)
+    return coupling.fillets_over_face(run[FILLETS], run[PAIR], model, run.parts)
+
+
+@stage("root stress", "root stress over the mesh cycle", "", MESH, FILLETS, PAIR, FACE_FILLETS)
 def ROOT_STRESS(run: Engine) -> coupling.RootStresses:
     """Stress at the fillets with the forces of the mesh cycle, with the film where there is one."""
+    if varies_by(run.scene):
+        _ = run[FACE_FILLETS]  # root stresses find them in the process
     return coupling.root_stresses(run[PAIR], loaded_contact(run), run[FILLETS])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -9,13 +11,16 @@ import numpy as np
 import fem
 from base import Figure
 from base.results import figures
+from fem.root_peaks import RootPeak
 from flankfilm.build_face import varies_by
 from flankfilm.coupling.face_models import LABELS, FaceLoadModels
 from flankfilm.coupling.face_tolerance import FaceTolerance
-from flankfilm.stages.catalogue import DRY_CYCLE
+from flankfilm.figures.reading import GEARS
+from flankfilm.stages.catalogue import DRY_CYCLE, ROOT_STRESS
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS, FACE_TOLERANCE
 from flankfilm.studies.output import Named, Take, output_of
+from gears.closed_form import Iso6336FaceLoad
 
 EVEN = "{}; nan where the load is even along the face"
 
@@ -52,6 +57,34 @@ def _over_tolerance(name: str, about: Figure, figure: str) -> Named:
         return getattr(engine[FACE_TOLERANCE], figure) if varies_by(engine.scene) else None
 
     return output_of(name, about, "stiffness", of, EVEN)
+
+
+def _of_root(name: str, about: Figure, value: Take, said: str = EVEN) -> Named:
+    """Figure of the root stress over the face."""
+
+    def of(engine: Engine) -> Any:
+        return value(engine[ROOT_STRESS]) if varies_by(engine.scene) else None
+
+    return output_of(name, about, "root-stress", of, said)
+
+
+def _of_roots() -> Iterator[Named]:
+    """Place of the greatest tension along the face, and the stress face-load factor, of both gears."""
+    for gear in GEARS:
+        yield _of_root(
+            f"root_face_position_{gear}",
+            figures(RootPeak)["face_position"],
+            attrgetter(f"stress.{gear}.greatest_tension.face_position"),
+            f"place along the face of the greatest tension at the root of the {gear}; nan where even",
+        )
+        yield _of_root(
+            f"root_face_factor_{gear}",
+            figures(fem.FaceRootStress)["face_factor"],
+            attrgetter(f"stress.{gear}.face.face_factor"),
+            f"greatest tension at the root of the {gear} over its mean over the face; nan where even",
+        )
+    about = figures(Iso6336FaceLoad)["K_Fbeta"]
+    yield _of_root("iso_root_face_factor", about, lambda found: found.iso_face and found.iso_face.K_Fbeta)
 
 
 _AT_C = figures(FaceLoadModels)["pitch_point_factor"].meaning
@@ -92,5 +125,6 @@ FACE_OUTPUTS: tuple[Named, ...] = (
         Figure("1", "face-load factor by ISO 6336-1, method C, nan where even"),
         lambda found: found.pitch_point_factor[-1],
     ),
+    *_of_roots(),
 )
 """Outputs by name."""

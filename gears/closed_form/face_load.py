@@ -14,6 +14,9 @@ from gears.pair import GearPair
 FACE_STIFFNESS = 0.85
 """c_gamma_beta over c_gamma_alpha."""
 
+LEAST_DEPTHS = 3.0
+"""Least face width over tooth depth that enters the exponent of the root stress."""
+
 _LIMITS = {
     "torque": Limit.above(0.0, 1e9, "N m", "give the pinion's torque, dynamic factors in it"),
     "misalignment": Limit(0.0, 5e-3, "m", "give the deviation over the face width in metres"),
@@ -25,6 +28,8 @@ class Iso6336FaceLoad:
     """Face-load factor for pitting after ISO 6336-1."""
 
     K_Hbeta: float = quantity("1", "face-load factor: greatest over mean line load")
+    K_Fbeta: float = quantity("1", "face-load factor of the root stress: K_Hbeta to the power N_F")
+    N_F: float = quantity("1", "its exponent, by the face width over the tooth depth")
     b_cal: float = quantity(
         "1", "calculated face width that bears, over the face width; above 1 where all of it does"
     )
@@ -47,6 +52,11 @@ def iso6336_face_load(pair: GearPair, torque: float, misalignment: float) -> Iso
 
     F_by is given here: the standard's ways to it from deflections and tolerances, F_bx = 1.33 B_1 f_sh + B_2 f_ma with
     factors for modified leads, guide values of crowning and end relief (Annex B) and running in, are left out.
+
+    A root feels the load of its surroundings: its factor is K_Fbeta = K_Hbeta^N_F, with the face width b over the tooth
+    depth h, the smaller of both gears' and at least 3,
+
+        N_F = 1/(1 + h/b + (h/b)^2) .
 
     Parameters
     ----------
@@ -85,4 +95,13 @@ def iso6336_face_load(pair: GearPair, torque: float, misalignment: float) -> Iso
     opened = misalignment * stiffness * factor("N/(mm um)") / line_load
     K = 1.0 + 0.5 * opened if opened <= 2.0 else math.sqrt(2.0 * opened)
     bears = math.inf if opened == 0.0 else 0.5 + 1.0 / opened if opened <= 2.0 else math.sqrt(2.0 / opened)
-    return Iso6336FaceLoad(K, bears, stiffness)
+    exponent = _bending_exponent(pair)
+    return Iso6336FaceLoad(K, K**exponent, exponent, bears, stiffness)
+
+
+def _bending_exponent(pair: GearPair) -> float:
+    """N_F = 1/(1 + h/b + (h/b)^2), of the gear whose face is narrower in tooth depths h, and of no less than three."""
+    depths = (profile.tip_radius - profile.root_radius for profile in pair.teeth_profiles)
+    narrow = min(width / depth for width, depth in zip(pair.face_widths, depths, strict=True))
+    over = 1.0 / max(narrow, LEAST_DEPTHS)
+    return 1.0 / (1.0 + over + over**2)

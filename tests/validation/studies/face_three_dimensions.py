@@ -138,13 +138,15 @@ def means(ends, edges):
 class Solid:
     """One gear; loads along the left flank of tooth 0 at C, unknowns (component, node, node along the face)."""
 
-    def __init__(self, profile, rho, half_width):
+    def __init__(self, profile, rho, half_width, foci=()):
         plain, width = sector(profile, PLAIN), 1.2 * half_width
         focus = Focus(profile.involute(rho) * MIRROR, EDGE, width)
-        fine = sector(profile, FINE, [focus], growth=GROWTH)
+        fine = sector(profile, FINE, [focus, *foci], growth=GROWTH)
         z = profile.teeth
-        whole = gear_mesh(plain, range(-(z // 2), z - z // 2), {0: fine})
+        self.whole, self.fine = gear_mesh(plain, range(-(z // 2), z - z // 2), {0: fine}), fine
+        whole = self.whole
         self.mesh, unknown = second_order(whole.points, whole.triangles)
+        self.unknown = unknown
         self.S, basis = integrals(self.mesh)
         held = unknown[np.unique(whole.facets["bore"])]
         self.free = np.setdiff1d(np.arange(basis.N), held)
@@ -187,6 +189,16 @@ class Solid:
 
     def along(self, ends, even, free):
         """Displacements (n, n) of the strip's places by strips, of nodal loads along half the face [m/N]."""
+        n = 2 * len(ends) - 1
+        some = slice(0 if even else 1, n)
+        moved = self.moved(ends, even, free, np.eye(n)[:, some])
+        answer = sum(np.einsum("i,ipq->pq", self.load[a], moved[a]) for a in range(2))[some]
+        found = np.zeros((n, n))
+        found[some, some] = 0.5 * (answer + answer.T)
+        return found
+
+    def moved(self, ends, even, free, loads):
+        """Displacements (3, free nodes, n, loads) by strips, of nodal loads along half the face (n, loads)."""
         mass, stiff, mixed = along_face(ends)
         n = len(mass)
         kept = [np.arange(0 if even else 1, n)] * 2 + [np.arange(1 if even else 0, n if free else n - 1)]
@@ -201,15 +213,13 @@ class Solid:
                         if part:
                             over = products[int(j == 2), int(k == 2)][np.ix_(kept[a], kept[c])]
                             terms.append((a, c, part * self.S[j, k], over))
-        solvers = self._nearly(mass, stiff, kept)
-        loads = len(kept[0])
-        right = [np.zeros((len(self.free), len(k), loads)) for k in kept]
+        right = [np.zeros((len(self.free), len(k), loads.shape[1])) for k in kept]
         for a in range(2):
-            right[a][:, np.arange(loads), np.arange(loads)] = self.load[a][:, None]
-        moved = conjugate_gradients(lambda u: applied(terms, u), solvers, right)
-        answer = sum(np.einsum("i,ipq->pq", self.load[a], moved[a]) for a in range(2))
-        found = np.zeros((n, n))
-        found[np.ix_(kept[0], kept[0])] = 0.5 * (answer + answer.T)
+            right[a][:] = self.load[a][:, None, None] * loads[kept[a]]
+        solved = conjugate_gradients(lambda u: applied(terms, u), self._nearly(mass, stiff, kept), right)
+        found = np.zeros((3, len(self.free), n, loads.shape[1]))
+        for own, one, some in zip(found, solved, kept, strict=True):
+            own[:, some] = one
         return found
 
     def _nearly(self, mass, stiff, kept):

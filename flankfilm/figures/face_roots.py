@@ -1,0 +1,59 @@
+"""Root stress over the face: greatest tension of a passing tooth over its way and the face, and over a whole cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flankfilm.figures.face import FlankMap
+from flankfilm.figures.reading import GEARS, Reading, need, read, read_figure
+from flankfilm.figures.style import Style, colours, from_zero, sheet
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from fem.face_root import FaceRootStress
+
+NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
+
+SHOWN = ("travel", "face_position", "tension_Pa", "cycle_tension_Pa")
+
+
+def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the greatest tension at the roots over the way of a tooth and the face, and that of a cycle over the face.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``root-stress`` and whose pair has a lead or an alignment.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
+    names = {gear: [f"root_face_{gear}_{name}" for name in SHOWN] for gear in GEARS}
+    need(results, NEEDED, *(name for some in names.values() for name in some))
+    with sheet(style, 3, height=6.8, legend=2, sharex=False) as (drawn, panels):
+        for axes, gear, colour in zip(panels, GEARS, colours(2), strict=False):
+            travel, face, tension, most = (read(results, name) for name in names[gear])
+            _paint(axes, gear, travel, face, tension)
+            panels[2].plot(face.values, most.values, color=colour, label=f"{gear}, {most.meaning}")
+        panels[2].set(xlabel="place on the face [mm]", ylabel=f"tension [{most.unit}]")
+        from_zero(panels[2])
+    return drawn
+
+
+def face_root_stress(found: FaceRootStress) -> Figure:
+    """Draw one gear's greatest tension over the way of a tooth and the face, and that of a cycle over the face."""
+    travel, face, tension, most = (read_figure(found, name) for name in SHOWN)
+    with sheet(None, 2, height=4.6, legend=0, sharex=False) as (drawn, panels):
+        _paint(panels[0], "root", travel, face, tension)
+        panels[1].plot(face.values, most.values, color=colours(1)[0])
+        panels[1].set(xlabel="place on the face [mm]", ylabel=f"{most.meaning}\n[{most.unit}]")
+        from_zero(panels[1])
+    return drawn
+
+
+def _paint(axes: Axes, what: str, travel: Reading, face: Reading, tension: Reading) -> None:
+    """Paint a map with its scale of colours."""
+    FlankMap.of(travel, face, Reading(tension.values, f"tension, {what}", tension.unit)).paint(axes)
+    axes.set_xlabel("base pitches since the tooth's pair passed A [-]")
