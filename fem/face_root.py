@@ -51,25 +51,23 @@ class FaceRootStress:
     travel: Array = quantity(
         "1", "base pitches since each tooth's pair passed A", "position tooth", no_error=EXACT
     )
-    tension_Pa: Array = quantity(
+    tension: Array = quantity(
         "Pa",
         "greatest principal stress along the fillet under the loaded flank",
         "position tooth place",
         shown="MPa",
     )
-    compression_Pa: Array = quantity(
+    compression: Array = quantity(
         "Pa",
         "least stress along the other fillet, negative in compression",
         "position tooth place",
         shown="MPa",
     )
-    cycle_tension_Pa: Array = quantity(
-        "Pa", "greatest tension of all teeth and instants", "place", shown="MPa"
-    )
-    cycle_compression_Pa: Array = quantity(
+    cycle_tension: Array = quantity("Pa", "greatest tension of all teeth and instants", "place", shown="MPa")
+    cycle_compression: Array = quantity(
         "Pa", "greatest compression of all teeth and instants, negative", "place", shown="MPa"
     )
-    tangential_Pa: Array = quantity(
+    tangential: Array = quantity(
         "Pa",
         "stress along the fillet under the loaded flank at the instant of the greatest tension",
         "place sample",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
 
-SHOWN = ("travel", "face_position", "tension_Pa", "cycle_tension_Pa")
+SHOWN = ("travel", "face_position", "tension", "cycle_tension")
 
 
 def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:

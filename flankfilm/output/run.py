@@ -113,8 +113,8 @@ TABLES: Mapping[str, Table] = {
     **{
         f"root_face_{gear}": Table(
             f"root_face_{gear}",
-            "cycle_tension_Pa",
-            ("face_position", "cycle_tension_Pa", "cycle_compression_Pa"),
+            "cycle_tension",
+            ("face_position", "cycle_tension", "cycle_compression"),
         )
         for gear in GEARS
     },

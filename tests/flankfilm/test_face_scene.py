@@ -249,13 +249,13 @@ def test_root_stress_over_the_face_from_scene_to_page(rooted):
     assert found.iso_face.K_Fbeta == pytest.approx(iso.K_Hbeta**iso.N_F)
     values: Mapping[str, Any] = {stage.name: rooted[stage] for stage in (PAIR, DRY_CYCLE, ROOT_STRESS)}
     data = results_dataset(rooted.scene, values)
-    np.testing.assert_array_equal(data["root_face_wheel_cycle_tension_Pa"], gear.face.cycle_tension_Pa)
+    np.testing.assert_array_equal(data["root_face_wheel_cycle_tension"], gear.face.cycle_tension)
     assert float(data["iso6336_face_K_Fbeta"]) == found.iso_face.K_Fbeta
     rows = results_tables(data)["root_face_pinion"]
     assert rows["cycle_tension_MPa"].size == len(found.stress.pinion.face.face_position)
     axes = figures.root_face_map(data).axes
     assert len(axes[2].lines) == 2
-    np.testing.assert_allclose(axes[2].lines[1].get_ydata(), 1e-6 * gear.face.cycle_tension_Pa)
+    np.testing.assert_allclose(axes[2].lines[1].get_ydata(), 1e-6 * gear.face.cycle_tension)
     part = mesh_parts.root_stress(found, data)
     assert [len(table.rows) for table in part.tables][:2] == [4, 4]
     assert "N_F" in part.tables[1].rows[3][0]
