@@ -13,17 +13,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Integers, quantity, record
+from base import Array, quantity, record
 from base.results import EXACT, ITSELF
-from fem.fillet_face import FilletFace, places_on_face
+from fem.fillet_face import places_on_face
 from fem.root_peaks import LOADED, OTHER, RootNodes, RootPeak, extreme, peak_of
+from fem.stress_over_face import CellLoads, StressOverFace
 from gears.arcs import CELLS, FORCE, Arcs
 
 if TYPE_CHECKING:
     from fem.face_loads import FaceLoads
     from gears.mesh_figures import MeshArcs
 
-__all__ = ["CellLoads", "FaceRootStress", "RootOverFace", "StressOverFace", "root_over_face"]
+__all__ = ["FaceRootStress", "RootOnArcs", "RootOverFace", "root_over_face"]
 
 ENDS_ERROR = 0.1
 """Part of what free ends do to the greatest stress that their coarse section leaves uncertain."""
@@ -89,108 +90,6 @@ class FaceRootStress:
 
 
 @record
-class CellLoads:
-    """Line loads on the cells of all pairs at some instants.
-
-    Attributes
-    ----------
-    load : (n, pairs, cells) array
-        [N/m]
-    rho : (n, pairs) array
-        Curvature radius at which the gear's flank is touched [m].
-    """
-
-    load: Array
-    rho: Array
-
-    @classmethod
-    def at_nodes(cls, arcs: Arcs, gear: int) -> CellLoads:
-        """Loads at all nodes of arcs, one after the other."""
-        nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
-        every = np.concatenate(nodes)
-        return cls(every[..., CELLS:], every[..., FORCE + 1 + gear])
-
-    def part(self, row: int) -> CellLoads:
-        """Loads at a single instant."""
-        return CellLoads(self.load[row : row + 1], self.rho[row : row + 1])
-
-    @property
-    def even(self) -> CellLoads:
-        """The same forces spread evenly."""
-        return CellLoads(np.zeros_like(self.load) + self.load.mean(axis=-1, keepdims=True), self.rho)
-
-
-@record
-class StressOverFace:
-    """Stress on the fillets of one gear under loads on cells; columns of loads are pairs, so many base pitches ahead.
-
-    Attributes
-    ----------
-    fillets : FilletFace
-    offsets : (pairs,) array of int
-    teeth : (teeth,) array of int
-        On which the stress is wanted, base pitches ahead.
-    turn : int
-        1 on the pinion, where the pair ahead is the next tooth anticlockwise; -1 on the wheel.
-    offset : float
-        Middle of the gear's own face from that of the face in contact [m].
-    """
-
-    fillets: FilletFace
-    offsets: Integers
-    teeth: Integers
-    turn: int
-    offset: float
-
-    def along(self, loads: CellLoads, tooth: int, z: Array) -> Array:
-        """Stress along the fillets of a tooth (n, places, 2, samples) [Pa] at places of the face in contact."""
-        total = np.zeros((len(loads.load), len(z), 2, len(self.fillets.influence.line.arc)))
-        for rows, away, rho, load in self._loaded(loads, tooth):
-            total[rows] += self.fillets.tangential(away, rho, load, z - self.offset)
-        return total
-
-    def von_mises(self, loads: CellLoads, tooth: int, z: Array) -> Array:
-        """Von Mises stress at a single instant (places, 2, samples) [Pa]."""
-        parts = [
-            self.fillets.components(away, rho, load, z - self.offset)
-            for _, away, rho, load in self._loaded(loads, tooth)
-        ]
-        return self.fillets.von_mises(parts)
-
-    def _loaded(self, loads: CellLoads, tooth: int) -> list[tuple[Integers, int, Array, Array]]:
-        """Instants, tooth counted from the loaded one, places and loads of every pair that bears."""
-        found = []
-        for column, offset in enumerate(self.offsets):
-            rows = np.flatnonzero(loads.load[:, column].max(axis=-1) > 0.0)
-            away = self.turn * int(tooth - offset)
-            found.append((rows, away, loads.rho[rows, column], loads.load[rows, column]))
-        return found
-
-    def greatest(self, loads: CellLoads, z: Array) -> tuple[Array, Array]:
-        """Greatest tension, and greatest compression as a positive number (n, teeth, places) [Pa]."""
-        arc = self.fillets.influence.line.arc
-        by_tooth = [self.along(loads, int(tooth), z) for tooth in self.teeth]
-        tension = np.stack([extreme(arc, one[:, :, LOADED])[0] for one in by_tooth], axis=1)
-        compression = np.stack([extreme(arc, -one[:, :, OTHER])[0] for one in by_tooth], axis=1)
-        return tension, compression
-
-    def at_place(self, loads: CellLoads, z: float) -> Array:
-        """Stress (n, teeth, 2, samples) [Pa] at one place of the face."""
-        return np.stack([self.along(loads, int(tooth), np.array([z]))[:, 0] for tooth in self.teeth], axis=1)
-
-    def beside(self, peak: RootPeak, loads: CellLoads, side: int) -> tuple[float, float, float, float]:
-        """Stress at a peak's place by loads at one instant [Pa]: itself, with even loads, between walls, von Mises."""
-        z = np.array([peak.face_position])
-        sample = int(np.argmin(np.abs(self.fillets.influence.line.arc - peak.arc)))
-        walls = replace(self, fillets=replace(self.fillets, ends=None))
-        true, even, held = (
-            float(of.along(by, peak.tooth, z)[0, 0, side, sample])
-            for of, by in ((self, loads), (self, loads.even), (walls, loads))
-        )
-        return true, even, held, float(self.von_mises(loads, peak.tooth, z)[0, side, sample])
-
-
-@record
 class RootOverFace:
     """What the root stress of one gear is made of where its load varies along the face.
 
@@ -211,25 +110,69 @@ class RootOverFace:
     face: FaceRootStress
 
 
-def root_over_face(
-    stress: StressOverFace,
-    face: FaceLoads,
-    rho: Array,
-    found: MeshArcs,
-    positions: Callable[[Arcs], Array],
-    gear: int,
-    mesh_error: float,
-    loaded_position: Array,
-) -> RootOverFace:
+def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_position: Array) -> RootOverFace:
     """Greatest stresses of a gear over its face, its fillets, all teeth and instants.
 
     Parameters
     ----------
-    stress : StressOverFace
+    on_arcs : RootOnArcs
     face : FaceLoads
         At the cycle's positions.
     rho : (positions, pairs) array
         Curvature radii on the gear [m].
+    loaded_position : (positions,) array
+        Base pitches from A, of the pair that entered last.
+    """
+    stress, width = on_arcs.stress, face.pair.face_width
+    z = places_on_face(stress.fillets.width, width / len(face.face_position)) + stress.offset
+    nodes, here = on_arcs.loads(on_arcs.found.arcs), CellLoads(face.line_load, rho)
+    both, sampled = stress.greatest(nodes, z), stress.greatest(here, z)
+    over_cycle = [one.max(axis=(0, 1)) for one in both]
+    tension, compression = (
+        on_arcs.peak(side, float(extreme(z, one)[1]))
+        for side, one in zip((LOADED, OTHER), over_cycle, strict=True)
+    )
+    peak, row = tension.peak, int(np.argmax(stress.teeth == tension.peak.tooth))
+    then = both[LOADED][tension.instant, row]
+    bears = np.abs(z) <= 0.5 * width * (1.0 + 1e-9)
+    mean = float(np.trapezoid(then[bears], z[bears]) / np.ptp(z[bears]))
+    return RootOverFace(
+        stress.at_place(here, peak.face_position),
+        peak,
+        compression.peak,
+        tension.passage,
+        FaceRootStress(
+            z,
+            loaded_position[:, None] + stress.teeth,
+            sampled[0],
+            -sampled[1],
+            over_cycle[0],
+            -over_cycle[1],
+            stress.along(nodes.part(tension.instant), peak.tooth, z)[0, :, LOADED],
+            float(then.max()) / mean,
+            tension.error,
+            compression.error,
+        ),
+    )
+
+
+@record
+class _Found:
+    """A greatest stress, its error by what varies along the face, the node nearest to it, and extremes of all nodes."""
+
+    peak: RootPeak
+    error: float
+    instant: int
+    passage: Array
+
+
+@record
+class RootOnArcs:
+    """Stress of one gear on a cycle's arcs.
+
+    Attributes
+    ----------
+    stress : StressOverFace
     found : MeshArcs
         With cells.
     positions : callable
@@ -238,66 +181,37 @@ def root_over_face(
         0 is the pinion, 1 the wheel.
     mesh_error : float
         Relative, of the mesh that the waves were solved on.
-    loaded_position : (positions,) array
-        Base pitches from A, of the pair that entered last.
     """
-    width, cells = face.pair.face_width, len(face.face_position)
-    z = places_on_face(stress.fillets.width, width / cells) + stress.offset
-    nodes, here = CellLoads.at_nodes(found.arcs, gear), CellLoads(face.line_load, rho)
-    both, sampled = stress.greatest(nodes, z), stress.greatest(here, z)
-    over_cycle = [one.max(axis=(0, 1)) for one in both]
-    places = [float(extreme(z, one)[1]) for one in over_cycle]
-    division = [
-        None if arcs is None else (arcs, positions(arcs), CellLoads.at_nodes(arcs, gear))
-        for arcs in (found.arcs, found.before)
-    ]
-    peaks, errors, instants, passage = [], [], [], None
-    for side, place in zip((LOADED, OTHER), places, strict=True):
-        fine, before = (
-            None if one is None else RootNodes(one[0], one[1], stress.at_place(one[2], place))
-            for one in division
-        )
+
+    stress: StressOverFace
+    found: MeshArcs
+    positions: Callable[[Arcs], Array]
+    gear: int
+    mesh_error: float
+
+    def loads(self, arcs: Arcs) -> CellLoads:
+        """Loads at all nodes of arcs, one after the other."""
+        every = np.concatenate([arc.pairs for arc in arcs.arcs if arc.pairs is not None])
+        return CellLoads(every[..., CELLS:], every[..., FORCE + 1 + self.gear])
+
+    def peak(self, side: int, z: float) -> _Found:
+        """Greatest stress on one side of all teeth and instants at a place of the face."""
+        stress, found, line = self.stress, self.found, self.stress.fillets.influence.line
+        fine, before = (None if one is None else self._nodes(one, z) for one in (found.arcs, found.before))
         assert fine is not None
         peak = peak_of(fine, before, found.gain, stress.teeth, stress.fillets.influence, side)
-        peak = replace(peak, face_position=place)
         instant = int(np.argmin(np.abs(fine.position + peak.tooth - peak.position)))
-        true, even, walls, compared = stress.beside(peak, nodes.part(instant), side)
-        peaks.append(replace(peak, von_mises_Pa=abs(peak.stress_Pa / true) * compared))
-        errors.append(_error(face, mesh_error, true, even, walls))
-        instants.append(instant)
-        if side == LOADED:
-            passage = np.stack([fine.stress.min(axis=(0, 1)), fine.stress.max(axis=(0, 1))])
-    assert passage is not None
-    row = int(np.argmax(stress.teeth == peaks[LOADED].tooth))
-    then = both[LOADED][instants[LOADED], row]
-    bears = np.abs(z) <= 0.5 * width * (1.0 + 1e-9)
-    mean = np.trapezoid(then[bears], z[bears]) / np.ptp(z[bears])
-    return RootOverFace(
-        stress.at_place(here, places[LOADED]),
-        peaks[LOADED],
-        peaks[OTHER],
-        passage,
-        FaceRootStress(
-            z,
-            loaded_position[:, None] + stress.teeth,
-            sampled[0],
-            -sampled[1],
-            over_cycle[0],
-            -over_cycle[1],
-            stress.along(nodes.part(instants[LOADED]), peaks[LOADED].tooth, z)[0, :, LOADED],
-            float(then.max() / mean),
-            *errors,
-        ),
-    )
+        peak = replace(peak, face_position=z)
+        true, even, walls, compared = stress.beside(peak, self.loads(found.arcs).part(instant), side)
+        error = self.mesh_error * abs((walls - even) / true) + ENDS_ERROR * abs((true - walls) / true)
+        for arcs, share in found.varied:  # half as many cells, other films
+            error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
+        passage = np.stack([fine.stress.min(axis=(0, 1)), fine.stress.max(axis=(0, 1))])
+        peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / true) * compared)
+        return _Found(peak, float(error), instant, passage)
 
-
-def _error(face: FaceLoads, mesh_error: float, true: float, even: float, walls: float) -> float:
-    """Relative error of a greatest stress by what varies along the face.
-
-    The waves count by the error of their mesh, as far as they change the stress, free ends by a tenth of what they
-    change, and the cells by the error of the greatest line load, as far as the stress follows it.
-    """
-    load = face.greatest_face_load_factor - 1.0
-    follows = min(abs(true / even - 1.0) / load, 1.0) if load > 0.0 else 0.0
-    by_waves, by_ends = abs((walls - even) / true), abs((true - walls) / true)
-    return mesh_error * by_waves + ENDS_ERROR * by_ends + follows * face.error
+    def _nodes(self, arcs: Arcs, z: float) -> RootNodes:
+        """Stress at all nodes of arcs at a place of the face."""
+        loads = self.loads(arcs)
+        stress = self.stress.with_cells(loads.load.shape[-1])
+        return RootNodes(arcs, self.positions(arcs), stress.at_place(loads, z))

@@ -73,34 +73,50 @@ class FilletFace:
         z : (places,) array
             From the middle of the gear's own face [m].
         """
-        along, across, _ = self.components(tooth, rho, load, z)
-        return along + self.nu * across
+        if tooth not in self.influence.series:
+            return np.zeros((len(rho), len(z), 2, len(self.influence.line.arc)))
+        by_wave, (even, _) = self._by_wave(tooth, rho), self._shapes(load, z)
+        both = by_wave[:, :, ALONG] + self.nu * by_wave[:, :, ACROSS]
+        found: Array = np.einsum("lwz,lwsn->lzsn", even, both, optimize=True)
+        more = self._by_ends(tooth, rho, load, z)
+        return found if more is None else found + more[0] + self.nu * more[1]
 
     def components(self, tooth: int, rho: Array, load: Array, z: Array) -> tuple[Array, Array, Array]:
         """E* eps_t, E* eps_z and tau (loads, places, 2, samples) [Pa], arguments as of ``tangential``."""
-        samples = len(self.influence.line.arc)
         if tooth not in self.influence.series:
-            none = np.zeros((len(rho), len(z), 2, samples))
+            none = np.zeros((len(rho), len(z), 2, len(self.influence.line.arc)))
             return none, none, none
-        wave, by_load = self._waves()
-        modes = load @ by_load
-        by_wave = self.waves.beyond(tooth, rho / self.module) / self.module
-        by_wave[:, :, ALONG] += self.influence.stress(tooth, rho)[:, None]
-        turn = wave[:, None] * (z + 0.5 * self.width)
-        weights = between_waves(wave * self.module)
-        even, odd = (
-            np.einsum("lm,mw,mz->lwz", modes, weights, f(turn), optimize=True) for f in (np.cos, np.sin)
-        )
+        by_wave, (even, odd) = self._by_wave(tooth, rho), self._shapes(load, z)
         along, across, shear = (
             np.einsum("lwz,lwsn->lzsn", shape, by_wave[:, :, kind], optimize=True)
             for kind, shape in ((ALONG, even), (ACROSS, even), (SHEAR, odd))
         )
-        if self.ends is not None and tooth in TEETH:
-            m = self.module
-            force = load * np.diff(self.edges) / m**2
-            more = self.ends.add(tooth, rho / m, force, self.edges / m, z / m, samples)
-            along, across = along + more[0], across + more[1]
-        return along, across, shear
+        more = self._by_ends(tooth, rho, load, z)
+        return (along, across, shear) if more is None else (along + more[0], across + more[1], shear)
+
+    def _by_wave(self, tooth: int, rho: Array) -> Array:
+        """E* eps_t, E* eps_z and tau by the solved waves (loads, waves, 3, 2, samples) [1/m]."""
+        found = self.waves.beyond(tooth, rho / self.module) / self.module
+        found[:, :, ALONG] += self.influence.stress(tooth, rho)[:, None]
+        return found
+
+    def _shapes(self, load: Array, z: Array) -> tuple[Array, Array]:
+        """Solved waves over the places by loads, as cosines and as sines (loads, waves, places) [N/m]."""
+        wave, by_load = self._waves()
+        weights, turn = between_waves(wave * self.module), wave[:, None] * (z + 0.5 * self.width)
+        even, odd = (
+            np.einsum("lm,mw,mz->lwz", load @ by_load, weights, f(turn), optimize=True)
+            for f in (np.cos, np.sin)
+        )
+        return even, odd
+
+    def _by_ends(self, tooth: int, rho: Array, load: Array, z: Array) -> tuple[Array, Array] | None:
+        """E* eps_t and E* eps_z that free ends add [Pa]; None where they add nothing."""
+        if self.ends is None or tooth not in TEETH:
+            return None
+        m, samples = self.module, len(self.influence.line.arc)
+        force = load * np.diff(self.edges) / m**2
+        return self.ends.add(tooth, rho / m, force, self.edges / m, z / m, samples)
 
     def von_mises(self, parts: Sequence[tuple[Array, Array, Array]]) -> Array:
         """Von Mises stress (places, 2, samples) [Pa] of loads that act together, of ``components`` of each."""

@@ -18,13 +18,14 @@ import numpy as np
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
 from fem.contact import MeshCycle
 from fem.face_fillets import face_fillets, over_face
-from fem.face_root import StressOverFace, root_over_face
+from fem.face_root import RootOnArcs, root_over_face
 from fem.fillet_influence import FilletInfluence
 from fem.gear_root import GearRootStress
 from fem.pair_fillets import Fillets
 from fem.pair_fillets import fillets as _fillets
 from fem.root_peaks import LOADED, OTHER, RootNodes, peak_of
 from fem.setting import Setting
+from fem.stress_over_face import StressOverFace
 from gears.arcs import FORCE, Arcs
 from gears.mesh_figures import MeshArcs
 
@@ -186,10 +187,8 @@ def _over_face(
 
     def of(gear: int, fillets: FilletFace) -> GearRootStress:
         stress = StressOverFace(fillets, offsets, teeth, 1 if gear == 0 else -1, pair.face_offsets[gear])
-        positions, mesh_error = partial(_positions, cycle), solved.mesh_errors[gear]
-        over = root_over_face(
-            stress, face, cycle.flank_rho[gear], found, positions, gear, mesh_error, cycle.loaded_position
-        )
+        on_arcs = RootOnArcs(stress, found, partial(_positions, cycle), gear, solved.mesh_errors[gear])
+        over = root_over_face(on_arcs, face, cycle.flank_rho[gear], cycle.loaded_position)
         return GearRootStress(
             fillets.influence.line,
             fillets.influence.law,
