@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flankfilm.figures.face import FlankMap
 from flankfilm.figures.reading import GEARS, Reading, need, read, read_figure
-from flankfilm.figures.style import Style, colours, from_zero, sheet
+from flankfilm.figures.style import Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from fem.face_root import FaceRootStress
 
 NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
+
+FEW = 0.2
+"""Part of the greatest tension below which an instant of a tooth is left out at both ends of its way."""
 
 SHOWN = ("travel", "face_position", "tension", "cycle_tension")
 
@@ -32,13 +37,14 @@ def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     names = {gear: [f"root_face_{gear}_{name}" for name in SHOWN] for gear in GEARS}
     need(results, NEEDED, *(name for some in names.values() for name in some))
-    with sheet(style, 3, height=6.8, legend=2, sharex=False) as (drawn, panels):
+    with sheet(style, 3, height=6.8, legend=0, sharex=False) as (drawn, panels):
         for axes, gear, colour in zip(panels, GEARS, colours(2), strict=False):
             travel, face, tension, most = (read(results, name) for name in names[gear])
             _paint(axes, gear, travel, face, tension)
-            panels[2].plot(face.values, most.values, color=colour, label=f"{gear}, {most.meaning}")
-        panels[2].set(xlabel="place on the face [mm]", ylabel=f"tension [{most.unit}]")
+            panels[2].plot(face.values, most.values, color=colour, label=gear)
+        panels[2].set(xlabel="place on the face [mm]", ylabel=f"greatest of a\ncycle [{most.unit}]")
         from_zero(panels[2])
+        legend_over(panels[2], 2)
     return drawn
 
 
@@ -54,6 +60,8 @@ def face_root_stress(found: FaceRootStress) -> Figure:
 
 
 def _paint(axes: Axes, what: str, travel: Reading, face: Reading, tension: Reading) -> None:
-    """Paint a map with its scale of colours."""
-    FlankMap.of(travel, face, Reading(tension.values, f"tension, {what}", tension.unit)).paint(axes)
+    """Paint a map with its scale of colours, as long as the tooth is stressed."""
+    bears = tension.values.max(axis=-1, keepdims=True) > FEW * tension.values.max()
+    shown = Reading(np.where(bears, tension.values, 0.0), f"tension, {what}", tension.unit)
+    FlankMap.of(travel, face, shown).paint(axes)
     axes.set_xlabel("base pitches since the tooth's pair passed A [-]")
