@@ -129,8 +129,7 @@ def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_posi
     both, sampled = stress.greatest(nodes, z), stress.greatest(here, z)
     over_cycle = [one.max(axis=(0, 1)) for one in both]
     tension, compression = (
-        on_arcs.peak(side, float(extreme(z, one)[1]))
-        for side, one in zip((LOADED, OTHER), over_cycle, strict=True)
+        on_arcs.peak(side, _place(z, one)) for side, one in zip((LOADED, OTHER), over_cycle, strict=True)
     )
     peak, row = tension.peak, int(np.argmax(stress.teeth == tension.peak.tooth))
     then = both[LOADED][tension.instant, row]
@@ -154,6 +153,12 @@ def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_posi
             compression.error,
         ),
     )
+
+
+def _place(z: Array, values: Array) -> float:
+    """Place of the greatest value, between places by the parabola through three."""
+    top = int(np.argmax(values))
+    return float(z[top] if top in (0, len(z) - 1) else extreme(z, values)[1])
 
 
 @record
