@@ -61,11 +61,11 @@ class HalfFace:
 
     def values(self, z: Array) -> Array:
         """Every function (n, k) at places (k,) of the half with z >= 0 [m]."""
-        return self._on_pieces(z)[0]
+        return np.asarray(self._on_pieces(z)[0])
 
     def slopes(self, z: Array) -> Array:
         """Their derivatives (n, k) [1/m]."""
-        return self._on_pieces(z)[1]
+        return np.asarray(self._on_pieces(z)[1])
 
     def _on_pieces(self, z: Array) -> Array:
         """Values and derivatives (2, n, k)."""
