@@ -349,8 +349,6 @@ WORDED = [
      rf"must be {NUMBER} mm", lambda n: {"pair.face_width_mm": float(n)}),
     ({**CROWNED, "stiffness": {"model": "ishikawa"}}, "stiffness.model", r'must be "(\w+)" for pair.pinion.crowning_um',
      lambda n: {"stiffness.model": n}),
-    ({**CROWNED, "wants": ["stiffness", "root-stress"]}, "wants", r"Leave (root-stress) out",
-     lambda n: {"wants": ["stiffness"]}),
     ({**CROWNED, "wants": ["film"], "film": {"supply": "meniscus", "meniscus_half_widths": 1.5}},
      "film.meniscus_half_widths", r"Give (meniscus_mm) instead",
      lambda n: {"film": {"supply": "meniscus", n: 0.8}}),
