@@ -84,7 +84,7 @@ ELSEWHERE = {
     "Frame", "animate_cycle", "film_families", "losses_along_path", "teeth_scene", "temperature_field",
     "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum", "run_up", "waterfall",
     "dynamic_map", "flank_map", "face_load_factor", "line_load_models",
-    "film_map", "drive_modes", "drive_sweep", "drive_run_up", "drive_map",
+    "film_map", "root_face_map", "drive_modes", "drive_sweep", "drive_run_up", "drive_map",
 }  # fmt: skip
 
 PURE = {"motion n-p-q", "evaluation"}
