@@ -209,7 +209,8 @@ class RootOnArcs:
         peak = replace(peak, face_position=z)
         true, even, walls, compared = stress.beside(peak, self.loads(found.arcs).part(instant), side)
         error = self.mesh_error * abs((walls - even) / true) + ENDS_ERROR * abs((true - walls) / true)
-        for arcs, share in found.varied:  # half as many cells, other films
+        fewer = () if found.fewer is None else ((found.fewer.arcs, found.fewer.share),)
+        for arcs, share in (*fewer, *found.varied):  # half as many cells, other films
             error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
         passage = np.stack([fine.stress.min(axis=(0, 1)), fine.stress.max(axis=(0, 1))])
         peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / true) * compared)
