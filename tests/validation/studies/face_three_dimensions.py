@@ -1,7 +1,7 @@
 """Load over the face by three-dimensional elements of whole gears: misaligned and crowned pairs.
 
 Run with ``python tests/validation/studies/face_three_dimensions.py FILE`` (both gears: four minutes of processor time,
-1 GB; what was solved is kept in FILE.npz and used again). ``--pressure``: half-width of the strip of pressure [mm].
+2.1 GB; what was solved is kept in FILE.npz and used again). ``--pressure``: half-width of the strip of pressure [mm].
 
 Nothing of ``fem.prism``, ``fem.free_ends`` or ``fem.gear_face`` is used. The annulus of either gear is meshed whole,
 with edges of 0.05 mm at the pitch point, and extruded: second-order triangles times second-order pieces of half the
@@ -23,6 +23,7 @@ which is definite where the strip is at least as wide as the contact.
 from __future__ import annotations
 
 import argparse
+import resource
 import time
 from dataclasses import replace
 from itertools import pairwise
@@ -300,7 +301,8 @@ def solved(file, half_width):
         for even in (True, False):
             kept[f"{'even' if even else 'odd'} {gear}"] = solid.along(ends, even, True)
         kept[f"plane {gear}"] = np.array(solid.plane_strain())
-        print(f"{time.process_time() - began:.0f} s of processor time", flush=True)
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        print(f"{time.process_time() - began:.0f} s of processor time, {most:.0f} MB at most", flush=True)
         np.savez(file, **kept)
     both = [sum(kept[f"{name} {gear}"] for gear in (0, 1)) for name in ("even", "odd")]
     return ends, both, float(kept["plane 0"] + kept["plane 1"])
