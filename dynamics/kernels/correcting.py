@@ -17,7 +17,7 @@ from dynamics.kernels.compiling import (
     IntArray,
     Room,
     helper,
-    kernel,
+    plain_kernel,
 )
 from dynamics.kernels.roots import choices, copy, largest
 from dynamics.kernels.sensitivity import probe
@@ -121,7 +121,7 @@ def newton_step(
     return float(max(abs(right[0]), abs(right[1]), abs(right[2])))
 
 
-@kernel
+@plain_kernel
 def correct(
     origin: FloatArray, ways: FloatArray, u: FloatArray, across: FloatArray, scale: float, periods: int, limit: int,
     state: FloatArray, lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, clock: FloatArray,
