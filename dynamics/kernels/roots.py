@@ -240,7 +240,8 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
             guess = left + (right - left) * b[0] / (b[0] - b[n - 1])
             for k in range(n):
                 b[k] = (k + 1) * c[m + k + 1]
-            b[n:] = 0.0
+            for k in range(n, len(b)):
+                b[k] = 0.0
             turn = find_root(b, ZERO, left, right, guess, YES)
             f_t, _, ddf = poly(c, m, turn)
             guess = -1.0
