@@ -54,7 +54,11 @@ def cycle_of(
     stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
-    by_cells = 0.0 if contact.face is None else float(contact.face.errors.relative[number])
+    by_cells = (
+        0.0
+        if contact.face is None
+        else float(contact.face.errors.relative[number] + contact.face.errors.ends[number])
+    )
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
     edge = np.tile(where.edge, (given.pitches, 1))
     on_path = where.touchable & ~where.edge
@@ -114,6 +118,7 @@ def cycle_of(
             tolerance,
             tables=tables,
             scatter=None if contact.face is None else contact.face.errors.of(number),
+            ends_error=0.0 if contact.face is None else float(contact.face.errors.ends[number]),
         ),
         flank="back" if given.back else "front",
         opposite=opposite.flanks(number) if opposite is not None and both else None,

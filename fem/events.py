@@ -57,6 +57,8 @@ class ContactProblem:
         Other films, and how much of what they change is error.
     scatter : mapping, optional
         What cells of the face leave at positions, as of ``gears.mesh_figures.FewerCells``.
+    ends_error : float
+        Relative, of stiffness and deflection by free ends of the face.
     """
 
     given: Setting
@@ -70,6 +72,7 @@ class ContactProblem:
     tables: EdgeTables | None = None
     varied: tuple[tuple[Film, float], ...] = ()
     scatter: Mapping[str, tuple[float, float]] | None = None
+    ends_error: float = 0.0
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -93,7 +96,7 @@ class ContactProblem:
             few, share = half_as_many(self.given.face)
             problem = replace(self, given=replace(self.given, face=few))
             fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
-        return MeshArcs(fine, coarse, self.bodies.gain, 0.0, varied, fewer)
+        return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, varied, fewer)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 import fem
+import fem.free_ends
+import fem.gear_face
 from base import InputError, RangeWarning
 from gears import Alignment, Gear, GearPair, Lead
 
+FREE = pytest.param("free-ends", marks=pytest.mark.slow)
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(200e-6)
 LINE_LOAD = 400e3
 ON_FEW = "most loaded pair bears on"
@@ -36,7 +39,7 @@ def _cycle(bodies, load=LINE_LOAD, lead=None, across=0.0, slenderness=10.0, **mo
     return found
 
 
-@pytest.mark.parametrize("model", ["walls", pytest.param("free-ends", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("model", ["walls", FREE])
 def test_contact_that_reaches_a_free_edge(bodies, model):
     """The length in contact grows with the load up to the far edge, which takes no load before."""
     lengths, far = [], []
@@ -51,23 +54,26 @@ def test_contact_that_reaches_a_free_edge(bodies, model):
     assert far[0] == far[1] == 0.0 < far[3]
 
 
-def test_hardly_any_load_on_60_um(bodies):
+@pytest.mark.parametrize("model", ["walls", FREE])
+def test_hardly_any_load_on_60_um(bodies, model):
     with pytest.warns(RangeWarning, match=ON_FEW):
-        found = _cycle(bodies, load=100.0, across=60e-6)
+        found = _cycle(bodies, load=100.0, across=60e-6, face_model=model)
     assert found.face_load_factor.min() > 30.0
     assert found.face.error >= 0.25
 
 
-def test_slope_that_opens_all_but_one_cell(bodies):
+@pytest.mark.parametrize("model", ["walls", FREE])
+def test_slope_that_opens_all_but_one_cell(bodies, model):
     with pytest.warns(RangeWarning, match="bears on 1 of 64 cells"):
-        found = _cycle(bodies, load=50.0, across=2e-3)
+        found = _cycle(bodies, load=50.0, across=2e-3, face_model=model)
     assert np.all(np.count_nonzero(found.line_load.sum(axis=1), axis=1) == 1)
     np.testing.assert_allclose(found.face_load_factor, 64.0)
 
 
+@pytest.mark.parametrize("model", ["walls", FREE])
 @pytest.mark.parametrize("load", [LINE_LOAD, 0.05 * LINE_LOAD])
-def test_crowning_of_200_um(bodies, load):
-    found = _cycle(bodies, load, Lead(crowning=200e-6))
+def test_crowning_of_200_um(bodies, load, model):
+    found = _cycle(bodies, load, Lead(crowning=200e-6), face_model=model)
     np.testing.assert_allclose(found.line_load, found.line_load[..., ::-1], rtol=1e-7, atol=1e-3)
     assert found.face_load_factor.min() > 3.0
     assert np.all(found.line_load[:, :, 0] == 0.0)
@@ -90,6 +96,37 @@ def test_free_ends_of_half_and_forty_modules(bodies, slenderness):
     assert np.all(found.stiffness < walls.stiffness)
     # plane stress is softer by nu^2 at most
     assert np.all(found.stiffness > 0.9 * walls.stiffness)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("wider", "offset"), [(1.1, 0.0), (1.3, 2e-3)])
+def test_free_ends_of_unequal_widths(bodies, wider, offset):
+    """A body that goes on beyond the load holds its end: less yields there, and more is borne."""
+    width = PAIR.face_width
+    pinion = replace(PAIR.pinion, face_width=wider * width, face_offset=offset)
+    pair = replace(PAIR, pinion=pinion, face_width=width)
+    torque = LINE_LOAD * width * pair.base_radii[0]
+    given = {"cells": 32, "alignment": Alignment(10e-6), "face_model": "free-ends"}
+    found = fem.mesh_cycle(pair, torque, 8, replace(bodies, pair=pair), **given)
+    same = fem.mesh_cycle(PAIR, torque, 8, bodies, **given)
+    assert found.converged
+    assert np.all(found.stiffness > same.stiffness)
+    assert found.face.greatest_line_load > same.face.greatest_line_load
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", [LINE_LOAD, 0.1 * LINE_LOAD])
+def test_what_free_ends_leave_uncertain_is_told(bodies, load, monkeypatch):
+    """Against pieces of half the length at the end and elements of 0.7 of it there."""
+    found = _cycle(bodies, load, across=20e-6, face_model="free-ends")
+    fem.forget_gears()
+    monkeypatch.setattr(fem.free_ends, "LAST", 0.5 * fem.free_ends.LAST)
+    monkeypatch.setattr(fem.gear_face, "ENDS_SIZES", fem.gear_face.ENDS_SIZES.scaled(0.7))
+    finer = _cycle(bodies, load, across=20e-6, face_model="free-ends")
+    fem.forget_gears()
+    factors = [one.face.greatest_face_load_factor for one in (found, finer)]
+    assert 0.0 < abs(factors[1] / factors[0] - 1.0) < found.face.error
+    assert abs(finer.mean_stiffness / found.mean_stiffness - 1.0) < 1e-3
 
 
 def test_what_is_too_much_is_refused_by_name(bodies):
