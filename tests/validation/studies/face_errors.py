@@ -22,6 +22,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -76,14 +77,14 @@ def drawn(rng: np.random.Generator) -> tuple[GearPair, float, Alignment]:
 @contextmanager
 def twice_as_fine() -> Iterator[None]:
     """Twice the waves and places; pieces at free ends of half the length, elements there of 0.7 of it."""
-    ends, face = fem.free_ends, fem.gear_face
-    before = face.WAVES, face.PLACES, face.ENDS_SIZES, ends.LAST
-    face.WAVES, face.PLACES, ends.LAST = 2 * before[0], 2 * before[1], before[3] / 2
-    face.ENDS_SIZES = before[2].scaled(0.7)
+    face, half = fem.gear_face, partial(fem.free_ends.half_face, last=0.5 * fem.free_ends.LAST)
+    before = face.WAVES, face.PLACES, face.ENDS_SIZES, face.half_face
+    face.WAVES, face.PLACES, face.ENDS_SIZES = 2 * before[0], 2 * before[1], before[2].scaled(0.7)
+    setattr(face, "half_face", half)  # noqa: B010
     try:
         yield
     finally:
-        face.WAVES, face.PLACES, face.ENDS_SIZES, ends.LAST = before
+        face.WAVES, face.PLACES, face.ENDS_SIZES, face.half_face = before
 
 
 CURVES: dict[str, tuple[str, Callable[[Arcs, str], float]]] = {
