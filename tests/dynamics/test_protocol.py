@@ -57,19 +57,19 @@ def test_states_at_rest_agree():
 
 
 @pytest.mark.parametrize(
-    ("name", "more"),
+    ("name", "more", "allowed"),
     [
-        ("find_orbits", ()),
-        ("diagram", ()),
-        ("multi_sweep", ("frequency", [0.5])),
-        ("contact_grazing", ()),
-        ("edge_saddles", (None,)),
-        ("basin_boundary", ((), ((0.0, 1.0), (0.0, 1.0)))),
-        ("continue_locus", (None, ("frequency", "mean_force"))),
+        ("find_orbits", (), "GearOscillator"),
+        ("diagram", (), "GearOscillator or a DriveOscillator"),
+        ("multi_sweep", ("frequency", [0.5]), "GearOscillator or a DriveOscillator"),
+        ("contact_grazing", (), "GearOscillator"),
+        ("edge_saddles", (None,), "GearOscillator"),
+        ("basin_boundary", ((), ((0.0, 1.0), (0.0, 1.0))), "GearOscillator"),
+        ("continue_locus", (None, ("frequency", "mean_force")), "GearOscillator"),
     ],
 )
-def test_what_needs_the_exact_flow_says_so(name, more):
-    with pytest.raises(InputError, match=f"must be a GearOscillator in {name}") as raised:
+def test_what_needs_the_exact_flow_says_so(name, more, allowed):
+    with pytest.raises(InputError, match=f"must be a {allowed} in {name}") as raised:
         getattr(dynamics, name)(STEPWISE, *more)
     assert "SmoothOscillator" in str(raised.value)
 

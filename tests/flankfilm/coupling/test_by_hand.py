@@ -100,7 +100,7 @@ def test_the_teeth_beside_the_film_at_the_pitch_point_are_their_tangent(bodies: 
 
 def test_a_jump_s_speed_errs_by_what_another_stiffness_makes_of_it(monkeypatch: pytest.MonkeyPatch):
     """One per cent more stiffness: forces over it are one per cent less, the natural frequency half of one more."""
-    monkeypatch.setattr(jumps, "_stiffness_errors", lambda series: (0.01, np.zeros(series.order)))
+    monkeypatch.setattr(jumps, "stiffness_errors", lambda series: (0.01, np.zeros(series.order)))
     cycle = ff.mesh_cycle(PAIR, 600.0, model="potential-energy", pairs="independent")
     motion = ff.pair_oscillator(PAIR.with_backlash(50e-6), cycle, 600.0, 800.0, error_amplitude=10e-6)
 
