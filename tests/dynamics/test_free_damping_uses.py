@@ -20,6 +20,7 @@ BOUNDS = (0.66, 0.7)
 """Contact is lost in nearly every period."""
 
 
+@pytest.mark.slow
 def test_a_run_up_damps_in_the_backlash_as_the_integrator_does():
     """A single block, period by period with scipy's events: the last state, which every period before went into."""
     osc, start = oscillator(), np.array([0.5, 0.2])
