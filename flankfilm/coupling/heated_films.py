@@ -23,6 +23,9 @@ LOOSER = 5.0
 LOOSEST = 0.2
 """What a film may be asked for at most."""
 
+SHORTEST = 1.0 / 16.0
+"""Least part of the way from another film that one step goes."""
+
 
 @dataclass(frozen=True)
 class HeatedOil:
@@ -223,7 +226,7 @@ def _film(
     near: ehl.ThermalFilm | None,
     rho1: float,
 ) -> ehl.ThermalFilm:
-    """Solve a film from its neighbour; where that fails less sharply, from nothing, or by way of one half as far."""
+    """Solve a film from its neighbour; where that fails less sharply, from nothing, or by way of what lies between."""
 
     def solved(contact: ehl.LineContact, tolerance: float, start: ehl.ThermalFilm | None) -> ehl.ThermalFilm:
         supply = oil.supply_of(contact)
@@ -236,22 +239,49 @@ def _film(
             if found.converged:
                 return found
     if near is not None:
-        half = solved(_halfway(near.contact, contact), oil.looser, near)
-        if half.converged:
-            found = solved(contact, oil.looser, half)
+        found = _by_way(contact, oil, bulk, near)
     if not found.converged:
         raise _none_at(rho1, found.message)
     return found
 
 
-def _halfway(one: ehl.LineContact, other: ehl.LineContact) -> ehl.LineContact:
-    """Contact between two, with the oil of the second."""
+def _by_way(
+    contact: ehl.LineContact, oil: HeatedOil, bulk: tuple[float, float], near: ehl.ThermalFilm
+) -> ehl.ThermalFilm:
+    """Solve a film by steps from another, in contact and bulk temperatures; each as far as goes, down to a part."""
+    assert near.oils is not None
+    here, at = near, near.oils[0].bulk
+    behind, step = 0.0, 0.5
+    while True:
+        part = min(step / (1.0 - behind), 1.0)
+        ahead = contact if part == 1.0 else _between(here.contact, contact, part)
+        mixed = at + part * (np.array(bulk) - at)
+        warm = (float(mixed[0]), float(mixed[1]))
+        found = ehl.solve_thermal(
+            ahead, oil.solids, warm, oil.looser, start=here, supply=oil.supply_of(ahead)
+        )
+        if found.converged and part == 1.0:
+            return found
+        if found.converged:
+            here, at, behind = found, mixed, behind + step
+        elif step > SHORTEST:
+            step *= 0.5
+        else:
+            return found
+
+
+def _between(one: ehl.LineContact, other: ehl.LineContact, part: float) -> ehl.LineContact:
+    """Contact so far from the first to the second, with the oil of the second."""
+
+    def mixed(figure: str) -> float:
+        return float((1.0 - part) * getattr(one, figure) + part * getattr(other, figure))
+
     return replace(
         other,
-        load=float(np.sqrt(one.load * other.load)),
-        entrainment=0.5 * (one.entrainment + other.entrainment),
-        radius=0.5 * (one.radius + other.radius),
-        sliding=0.5 * (one.sliding + other.sliding),
+        load=float(one.load ** (1.0 - part) * other.load**part),
+        entrainment=mixed("entrainment"),
+        radius=mixed("radius"),
+        sliding=mixed("sliding"),
     )
 
 

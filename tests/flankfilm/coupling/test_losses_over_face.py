@@ -9,8 +9,9 @@ import ehl
 import fem
 import flankfilm as ff
 from flankfilm.coupling import Flanks, MeshLosses
-from flankfilm.coupling.heated_films import HeatedOil
+from flankfilm.coupling.heated_films import HeatedOil, heated_films
 from flankfilm.coupling.heated_table import HeatedTable, heated_table
+from flankfilm.coupling.line_contacts import line_contacts, with_sliding
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from gears import Alignment, Gear, GearPair
 
@@ -114,3 +115,18 @@ def test_gears_take_up_what_their_surroundings_take_away(bodies):
         bodies, Alignment(20e-6), heat_transfer=(8.0, 9.0), ambient_temperature=313.15, tolerance=0.05
     )
     assert warm.bulk_temperatures == pytest.approx(313.15 + warm.heat / np.array([8.0, 9.0]), abs=1.0)
+
+
+@pytest.mark.slow
+def test_a_film_of_cold_gears_is_reached_from_that_of_warm_ones():
+    """At 3 GPa and 48 C neither the film at 80 C nor none at all is near enough; half as far is."""
+    at = np.array([PAIR.points.A])
+    contacts = with_sliding(PAIR, at, line_contacts(PAIR, at, np.array([4.554e5]), SPEED, OIL), SPEED)
+    oil = HeatedOil(STEELS, None, 0.1, 0.05)
+    warm = heated_films(at, contacts, oil, (353.15, 353.15))
+    cold = heated_films(at, contacts, oil, (321.13, 320.56), warm).films[0]
+    assert cold.contact == contacts[0]
+    assert cold.oils is not None
+    assert cold.oils[0].bulk.tolist() == [321.13, 320.56]
+    less = heated_films(at, contacts, oil, (322.0, 321.5), warm).films[0]
+    assert less.minimum_thickness < cold.minimum_thickness == pytest.approx(less.minimum_thickness, rel=0.1)
