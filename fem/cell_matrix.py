@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,7 +72,14 @@ def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -
     return CellCoupling(chosen, tuple(blocks), pairs * cells)
 
 
-def cell_matrix(face: FaceSetting, bodies: Compliance, rho: Array, kappa: Array, matrix: Array) -> Array:
+def cell_matrix(
+    face: FaceSetting,
+    bodies: Compliance,
+    rho: Array,
+    kappa: Array,
+    matrix: Array,
+    gears: Sequence[int] = (0, 1),
+) -> Array:
     """Compliance between cells of all pairs (positions, pairs cells, pairs cells) [m/N].
 
     Parameters
@@ -85,21 +92,25 @@ def cell_matrix(face: FaceSetting, bodies: Compliance, rho: Array, kappa: Array,
         Levers of the normals about the pinion's axis over its base radius.
     matrix : (positions, pairs, pairs) array
         The plane's compliance of forces kappa F [m/N].
+    gears : sequence of int
+        That yield beside that: 0 is the pinion, 1 the wheel.
     """
     cells, (positions, pairs), pair = face.cells, kappa.shape, bodies.pair
     modes, levers = cosines(cells), kappa[..., :, None] * kappa[..., None, :]
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     if face.model != SLICES:
-        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip) / levers[..., None]
+        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears) / levers[..., None]
     found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
     if face.model != SLICES:
-        for gear, width in enumerate(pair.face_widths):
-            if width != pair.face_width:
+        for gear in gears:
+            if pair.face_widths[gear] != pair.face_width:
                 found += overhang(bodies, gear, rho[gear], face) / levers[:, :, None, :, None]
     if face.model == FREE_ENDS:
         edges = face.edges(pair)
         first, second = (edges - offset for offset in pair.face_offsets)
-        found += pair_ends(bodies, rho, (first, second), pair.face_widths) / levers[:, :, None, :, None]
+        found += (
+            pair_ends(bodies, rho, (first, second), pair.face_widths, gears) / levers[:, :, None, :, None]
+        )
     shafts = shafts_under_face(face, pair)
     if shafts is not None:
         found += shafts.between.sum(axis=0)[:, None] / levers[:, :, None, :, None]

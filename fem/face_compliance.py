@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -37,7 +38,9 @@ def ends_of(meshed: MeshedShape, width: float, gears: Gears) -> FlankEnds:
     return gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
 
 
-def pair_waves(bodies: Compliance, rho: Array, cells: int, strip: float = 0.0) -> Array:
+def pair_waves(
+    bodies: Compliance, rho: Array, cells: int, strip: float = 0.0, gears: Sequence[int] = (0, 1)
+) -> Array:
     """What waves of load yield beyond even loads (..., n, n, cells - 1), per force on the whole face [m/N].
 
     Parameters
@@ -49,13 +52,15 @@ def pair_waves(bodies: Compliance, rho: Array, cells: int, strip: float = 0.0) -
         Waves k = m pi/b, m = 1 .. cells - 1.
     strip : float
         Half-width of strips of pressure over a cell's length; 0 is a line.
+    gears : sequence of int
+        That yield: 0 is the pinion, 1 the wheel.
     """
     width = bodies.pair.face_width
     long = width / bodies.pair.module
     wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi / long)
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape[1:], n, cells - 1))
-    for gear in range(2):
+    for gear in gears:
         found += gear_waves(bodies, gear, rho[gear], wavenumber, strip * long / cells) / width
     return found
 
@@ -117,7 +122,11 @@ def even_loads(bodies: Compliance, gear: int, rho: Array) -> Array:
 
 
 def pair_ends(
-    bodies: Compliance, rho: Array, edges: tuple[Array, Array], widths: tuple[float, float]
+    bodies: Compliance,
+    rho: Array,
+    edges: tuple[Array, Array],
+    widths: tuple[float, float],
+    gears: Sequence[int] = (0, 1),
 ) -> Array:
     """What free ends add between cells of n pairs (..., n, cells, n, cells) [m/N].
 
@@ -130,11 +139,14 @@ def pair_ends(
         Of the cells on pinion and wheel, growing, from the middle of the gear's own face [m].
     widths : (float, float)
         Face widths of both [m].
+    gears : sequence of int
+        As of ``pair_waves``.
     """
     n, cells = rho.shape[-1], len(edges[0]) - 1
     found: Array = np.zeros((*rho.shape[1:], cells, n, cells))
     module = bodies.pair.module
-    for gear, flexible in enumerate((bodies.pinion, bodies.wheel)):
+    for gear in gears:
+        flexible = (bodies.pinion, bodies.wheel)[gear]
         ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
         for one in range(n):

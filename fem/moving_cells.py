@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from fem.moving_corners import MovedFlanks
     from fem.part_cells import PartCells
 
-__all__ = ["MovingCells", "cell_roll", "tooth_smoothing"]
+__all__ = ["MovingCells", "cell_roll", "other_pairs", "tooth_smoothing"]
 
 STEP = 1e-3
 """Part of the module over which compliances are differentiated by the place."""
@@ -60,7 +60,7 @@ def cell_roll(
         (count, pairs), n = roll.shape[:2], face.cells
         one, still = np.ones((count, pairs)), np.zeros_like(roll)
         ahead, behind = (
-            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], one, still)
+            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], one, still, (0,))
             for by in (step, -step)
         )
         found = ((ahead - behind) / (2 * step)).reshape(count, pairs, n, pairs, n)
@@ -75,6 +75,34 @@ def cell_roll(
     if np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
         return cut()
     return Gears().over_face("roll", key, cut)
+
+
+def other_pairs(
+    held: CellCoupling, touchable: Booleans, levers: Array, before: Array, bulk: Array
+) -> CellCoupling:
+    """Compliance between cells that has another one of the plane, and forces by other levers.
+
+    Parameters
+    ----------
+    held : CellCoupling
+        With the plane's compliance ``before``.
+    touchable : (positions, pairs) boolean array
+    levers : (positions, pairs) array
+        Of its forces, over those of the forces that are asked for.
+    before, bulk : (positions, pairs, pairs) arrays
+        [m/N]
+    """
+    pairs = touchable.shape[-1]
+    n, blocks = held.unknowns // pairs, []
+    cell, both = np.arange(n), levers[..., :, None] * levers[..., None, :]
+    more = n * (bulk - before * both)
+    for row, block in enumerate(held.blocks):
+        at = np.flatnonzero(touchable[row])
+        k, between = len(at), np.ix_(at, at)
+        found = block.reshape(k, n, k, n) * both[row][between][:, None, :, None]
+        found[:, cell, :, cell] += more[row][between]
+        blocks.append(found.reshape(k * n, k * n))
+    return CellCoupling(held.cells, tuple(blocks), held.unknowns)
 
 
 def tooth_smoothing(face: FaceSetting, bodies: Compliance, where: ContactCandidates) -> Array:
@@ -168,12 +196,18 @@ class MovingCells:
         every, nothing = np.ones(loads.shape[:-1], dtype=bool), np.zeros_like(loads)
         return self.coupling.applied(loads, every, nothing), self.roll.applied(loads, every, nothing)
 
-    def thrust(self, loads: Array) -> tuple[Array, Array, Array]:
-        """By U_3: what cells gain by the tooth, by their own force [m], and blocks of second derivatives [m/N]."""
+    def tooth(self, loads: Array) -> Array:
+        """What cells gain by U_3 of the tooth (..., n) [m]."""
+        force = self.cells * self.split(loads)
+        smooth = (self.smoothing @ force[..., None])[..., 0]
+        less = smooth**2 + 2 * (self.smoothing @ (force * smooth)[..., None])[..., 0]
+        return np.asarray((self.moves.cubic[0][..., None] * less).reshape(loads.shape))
+
+    def thrust(self, loads: Array) -> tuple[Array, Array]:
+        """What cells gain by U_3 (..., n) [m], and blocks of its second derivatives (..., cells, cells) [m/N]."""
         force = self.cells * self.split(loads)
         cubic, local = (one[0][..., None] for one in (self.moves.cubic, self.moves.local))
         smooth = (self.smoothing @ force[..., None])[..., 0]
-        tooth = cubic * (smooth**2 + 2 * (self.smoothing @ (force * smooth)[..., None])[..., 0])
         root = np.sqrt(np.maximum(force, 0.0))
         across = smooth[..., :, None] * self.smoothing
         blocks = across + np.swapaxes(across, -1, -2)
@@ -181,7 +215,7 @@ class MovingCells:
         blocks = 2 * self.cells * cubic[..., None] * blocks
         cell = np.arange(self.cells)
         blocks[..., cell, cell] += 3.75 * self.cells * local * root
-        return tooth.reshape(loads.shape), (2.5 * local * root**3).reshape(loads.shape), blocks
+        return self.tooth(loads) + (2.5 * local * root**3).reshape(loads.shape), blocks
 
     def _pushed(self, loads: Array, approach: Array) -> tuple[Pushed, Pushed]:
         """What the pinion's own flanks and the corners yield, of cells (..., n)."""
@@ -204,10 +238,10 @@ class MovingCells:
 
     def linearised(self, loads: Array, approach: Array) -> Linearised:
         """As of ``MovingForces``."""
-        (bent, rolled), (tooth, own, blocks) = self.bent(loads), self.thrust(loads)
+        (bent, rolled), (thrust, blocks) = self.bent(loads), self.thrust(loads)
         turn, levers = self.turn(approach), self.everywhere(self.levers)
         approached, slope = self.laws.value_and_slope(loads)
-        residual = bent + approached + self.clear - tooth - own
+        residual = bent + approached + self.clear - thrust
         residual += turn[..., None] * rolled - approach[..., None]
         if self.film is not None:
             residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
@@ -243,9 +277,9 @@ class MovingCells:
 
     def unloaded(self, loads: Array, approach: Array) -> Array:
         """As of ``MovingForces``."""
-        (bent, rolled), (tooth, _, _) = self.bent(loads), self.thrust(loads)
+        bent, rolled = self.bent(loads)
         turn = self.turn(approach)
-        found = bent + self.clear - tooth + turn[..., None] * rolled - approach[..., None]
+        found = bent + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
         if self.film is not None:
             found = found - self.film.approach(np.zeros_like(loads))
         if self.own is not None:

@@ -12,7 +12,7 @@ from fem.cell_contact import along_cells
 from fem.cell_laws import CellLaws
 from fem.cell_matrix import cell_coupling
 from fem.face_share import FaceShare, of_pairs, settled_gaps
-from fem.moving_cells import MovingCells, cell_roll, tooth_smoothing
+from fem.moving_cells import MovingCells, cell_roll, other_pairs, tooth_smoothing
 from fem.moving_newton import moved_forces
 from fem.part_cells import PartCells, part_cells
 
@@ -124,7 +124,7 @@ def moving_cells(
     stays = part_cells(CellLaws(flanks.laws, face.cells), stiff, short)
     return MovingCells(
         face.cells,
-        cell_coupling(face, bodies, where, kappa, pairs.bulk),
+        other_pairs(stiff, where.touchable, flanks.kappa / kappa, flanks.matrix, pairs.bulk),
         cell_roll(face, bodies, where, pairs.moves),
         PartCells(CellLaws(pairs.laws, face.cells), short, stays.whole),
         None if pairs.film is None else CellLaws(pairs.film, face.cells),

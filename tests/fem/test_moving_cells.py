@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import fem
+from fem.cell_matrix import cell_coupling
 from fem.edge_tables import EdgeTables
 from fem.face_setting import face_setting
 from fem.gear_face import ENDS_SIZES, section_of
 from fem.line_load import flank_points
 from fem.loaded_flanks import loaded_flanks
-from fem.moving_cells import tooth_smoothing
+from fem.moving_cells import other_pairs, tooth_smoothing
 from fem.moving_contact import contact_moves, moving_pairs
 from fem.moving_corners import moved_flanks
 from fem.moving_face import moving_cells
@@ -151,6 +152,21 @@ def test_newton_s_matrix_is_the_derivative(bodies):
     np.testing.assert_allclose(
         cells.solved(known, approach, active)[1], way, rtol=1e-4, atol=1e-4 * loads.max()
     )
+
+
+def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
+    given = Setting(PLASTIC, 4, face=face_setting(PLASTIC, None, CELLS, "walls"))
+    flanks = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies))
+    own = moved_flanks(given, bodies, flanks, 1e3, EdgeTables(given, bodies))
+    ones = np.ones_like(flanks.kappa)
+    stays, anew = (
+        cell_coupling(given.face, bodies, flanks.where, levers, matrix)
+        for levers, matrix in ((flanks.kappa, flanks.matrix), (ones, own.matrix))
+    )
+    found = other_pairs(stays, flanks.where.touchable, flanks.kappa, flanks.matrix, own.matrix)
+    assert np.any(flanks.kappa[flanks.where.touchable] < 0.99)
+    for one, other in zip(found.blocks, anew.blocks, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * np.abs(other).max())
 
 
 def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
