@@ -69,6 +69,7 @@ def stays_clear(
         left,
         np.zeros(touch.shape[:-1]),
         given.moving_contact,
+        given.face is not None,
         (closing - given.pair.backlash).max(axis=(1, 2)),
     )
 

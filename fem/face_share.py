@@ -67,6 +67,21 @@ class FaceShare:
         """Least gap that is left along the face (torques, pitches, positions, pairs) [m]."""
         return np.asarray(self.left.min(axis=-1))
 
+    def turned(self, number: int, kappa: Array) -> Array:
+        """By how much more than the deflection the pinion turns (pitches, positions) [m], to close gaps and bend shafts.
+
+        Parameters
+        ----------
+        number : int
+            Of the torque.
+        kappa : (positions, pairs) array
+            Levers of the normals in whose forces these are.
+        """
+        bent = 0.0
+        if self.shafts is not None:
+            bent = (self.forces[number] / kappa[..., None]).sum(axis=-2) @ self.shafts.middle.sum(axis=0)
+        return np.asarray(self.least + bent + np.zeros(self.forces.shape[1:3]))
+
 
 def share_over_face(
     given: Setting,

@@ -24,6 +24,7 @@ from base import Array, Booleans, record
 from fem.cell_coupling import CellCoupling, solve_symmetric
 from fem.cell_matrix import MOST_KEPT, cell_matrix, in_blocks
 from fem.face_compliance import waves_of
+from fem.face_setting import SLICES
 from fem.moving_newton import Linearised
 from fem.overhang import cosines
 from fem.place_surface import Pushed
@@ -106,7 +107,12 @@ def other_pairs(
 
 
 def tooth_smoothing(face: FaceSetting, bodies: Compliance, where: ContactCandidates) -> Array:
-    """S of each pair (positions, pairs, cells, cells): how the tilt of both its flanks follows the load."""
+    """S of each pair (positions, pairs, cells, cells): how the tilt of both its flanks follows the load.
+
+    Slices tilt by their own load alone.
+    """
+    if face.model == SLICES:
+        return np.broadcast_to(np.eye(face.cells), (*where.touchable.shape, face.cells, face.cells)).copy()
     pair, step = bodies.pair, STEP
     wave: Array = np.arange(1, face.cells, dtype=float) * (np.pi * pair.module / pair.face_width)
     slow, fast = np.zeros(where.touchable.shape), np.zeros((*where.touchable.shape, len(wave)))

@@ -72,6 +72,8 @@ class OppositeShare:
         pressed together [m].
     moving : bool
         Whether contacts were to move.
+    cells : bool
+        Whether loads were to vary along the face.
     reached : (torques,) array
         By how much D closes gaps on this side [m].
     """
@@ -85,6 +87,7 @@ class OppositeShare:
     open: Array
     rest: Array
     moving: bool
+    cells: bool
     reached: Array
 
     @property
@@ -112,6 +115,11 @@ class OppositeShare:
         where, turned = self.where, self.forces[number]
         if self.moving and np.any(turned > 0.0):
             return "flanks on both sides bear, which contacts that move do not know; let contacts stay"
+        if self.cells and np.any(turned > 0.0):
+            return (
+                "flanks on both sides bear, which know no cells of the face; give more backlash, raise the torque, "
+                "or leave leads, alignment and cells out"
+            )
         if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
             return "a tip edge of a back flank presses over more than the strips cover; give more backlash"
         if self.reached[number] > where.reach_gap:
@@ -305,6 +313,7 @@ def share_with_opposite(
         left[..., count:],
         rest,
         given.moving_contact,
+        given.face is not None,
         closing.max(axis=(1, 2)),
     )
     return found, opposite, left[..., :count]

@@ -151,7 +151,7 @@ class Solution:
         if self.moves is None:
             return rho
         force, approach = share.forces[number], share.transmission_error[number]
-        approach = approach if self.face is None else approach + self.face.least
+        approach = approach if self.face is None else approach + self.face.turned(number, self.kappa)
         rho = rho + np.where(self.where.edge, 0.0, moved_places(self.moves, force, approach))
         if self.moved is not None:
             rho = np.where(self.where.edge, self.moved.edge_rho(approach), rho)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ehl
-from base import Array, SolverError, Stopwatch
+from base import Array, Stopwatch
 from fem.face_share import yielding_over_face
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cells import cells_of
@@ -50,11 +50,7 @@ def lubricate_face(
     tolerance = min(resolution.sampling, resolution.transmission_error)
     cycle = teeth.cycle(dry.position.size, table, tolerance, table.varied())
     face = cycle.face
-    if face is None:
-        raise SolverError(
-            "films reach the flanks on the other side, which know no cells of the face: raise the torque, or give "
-            "more backlash"
-        )
+    assert face is not None  # flanks on both sides are refused
     forces = face.line_load * teeth.pair.face_width / face.line_load.shape[-1]
     yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
     secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)

@@ -49,6 +49,7 @@ def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     """Name the outputs and keys of a scene that only the coupled finite elements know."""
     asked = [f"the wanted {want}" for want in sorted(listed & BY_FINITE_ELEMENTS)]
     asked += ["operating.friction"] if _table(raw, "operating").get("friction") else []
+    asked += ["stiffness.moving_contact"] if _table(raw, "stiffness").get("moving_contact") else []
     asked += ["pair.tight"] if _table(raw, "pair").get("tight") else []
     asked += ["dynamics.stiffness_reference"] if _table(raw, "dynamics").get("stiffness_reference") else []
     asked += ["[alignment]"] if raw.get("alignment") is not None else []

@@ -23,7 +23,7 @@ from fem.opposite_flanks import _both_sides, share_with_opposite
 from fem.ring import ring_of
 from fem.setting import Setting
 from fem.sharing import one_sided, solve
-from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
+from gears import Alignment, Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
 from gears.plane import turned
 from meshes import gear_mesh, mesh_sector
 
@@ -207,6 +207,18 @@ def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight)
     np.testing.assert_allclose(
         np.sort(found.share.forces[0, 0], axis=-1), np.sort(found.opposite.forces[0, 0], axis=-1), rtol=2e-3
     )
+
+
+def test_cells_of_the_face_where_both_sides_bear_are_refused(tight):
+    """They were left out without a word: an alignment changed nothing."""
+    pair, bodies = tight
+    even = fem.mesh_cycle(pair, 10.0, 2, bodies)
+    assert even.converged
+    assert even.opposite is not None
+    found = fem.mesh_cycle(pair, 10.0, 2, bodies, alignment=Alignment(20e-6), cells=4, face_model="slices")
+    assert not found.converged
+    assert "no cells of the face; give more backlash" in found.message
+    assert np.all(np.isnan(found.stiffness))
 
 
 def test_reversal_of_pressed_gears(tight):

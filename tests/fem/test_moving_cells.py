@@ -21,7 +21,7 @@ from fem.moving_face import moving_cells
 from fem.overhang import cosines
 from fem.prism import Face, prism
 from fem.setting import Setting
-from gears import Alignment, Gear, GearPair, Lead, Material
+from gears import Alignment, Bearing, Gear, GearPair, Lead, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
 PLASTIC = GearPair(Gear(17), Gear(51), 2e-3, 20e-3, material=(STEEL, PA66)).with_backlash(600e-6)
@@ -184,6 +184,28 @@ def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
     assert np.all(parts > -1e-12)
 
 
+def test_slices_tilt_by_their_own_load(bodies):
+    given = Setting(PLASTIC, 4)
+    where = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies)).where
+    smooth = tooth_smoothing(face_setting(PLASTIC, None, CELLS, "slices"), bodies, where)
+    np.testing.assert_array_equal(smooth, np.broadcast_to(np.eye(CELLS), smooth.shape))
+
+
+def test_a_pinion_rolls_on_by_what_its_shaft_gives_way(bodies):
+    """Both bearings alike and the gear between them: loads stay, D stays, the pinion turns by F/(2 c) more."""
+    stiff = 1e8
+    shaft = Shaft((ShaftSegment(0.1, 0.1),), (Bearing(0.01, stiff), Bearing(0.09, stiff)), 0.05, 0.0)
+    held, yielding = (
+        cycle(bodies, beyond_path=False, shafts=(one, None))
+        for one in (replace(shaft, bearings=tuple(replace(b, stiffness=1e13) for b in shaft.bearings)), shaft)
+    )
+    np.testing.assert_allclose(yielding.transmission_error, held.transmission_error, rtol=1e-3)
+    bears = held.forces > 0.0
+    more = (yielding.flank_rho - held.flank_rho)[:, bears]
+    np.testing.assert_allclose(more[0], TORQUE / PLASTIC.base_radii[0] / (2 * stiff), rtol=0.05)
+    assert np.abs(more[1]).max() < 0.05 * more[0].min()
+
+
 def test_flanks_move_along_themselves_as_they_tilt(bodies):
     """t(k)/t(0) by the prism, beside s(k) of the tilt: within a tenth, of the wheel's body within two."""
     rho = np.array([3.0, 4.0])
@@ -236,7 +258,7 @@ def test_far_too_large_deflections_are_refused(bodies):
 
 @pytest.mark.slow
 def test_friction_relief_and_shafts_with_contacts_that_move(bodies):
-    from gears import Bearing, Shaft, ShaftSegment, TipRelief
+    from gears import TipRelief
 
     relief = TipRelief(40e-6, 0.8e-3)
     eased = GearPair(

@@ -109,6 +109,20 @@ def test_wants_that_a_model_cannot_give_are_refused(new: str, where: str, said: 
     assert said in found[where]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ('model = "fem"', 'model = "potential-energy"', "stiffness.model"),
+        ('pairs = "coupled"', 'pairs = "independent"', "stiffness.pairs"),
+    ],
+)
+def test_contacts_that_move_are_asked_of_coupled_finite_elements_alone(old: str, new: str, where: str):
+    """Other models left the key out without a word."""
+    kept = re.sub(r"^wants = .*$", 'wants = ["stiffness"]', template(), flags=re.MULTILINE)
+    found = faults(kept.replace(old, f"{new}\nmoving_contact = true", 1))
+    assert "stiffness.moving_contact" in found[where]
+
+
 def test_all_faults_come_at_once():
     text = template()
     for old, new in (
