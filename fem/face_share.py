@@ -68,7 +68,7 @@ class FaceShare:
         return np.asarray(self.left.min(axis=-1))
 
     def turned(self, number: int, kappa: Array) -> Array:
-        """By how much more than the deflection the pinion turns (pitches, positions) [m], to close gaps and bend shafts.
+        """By how much more than D the pinion turns (pitches, positions) [m]: to close gaps, and to bend shafts.
 
         Parameters
         ----------

@@ -15,120 +15,22 @@ of even loads the plane's, of slow waves that of slices.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, record
+from base import Array, Booleans, Integers, record
 from fem.cell_coupling import CellCoupling, solve_symmetric
-from fem.cell_matrix import MOST_KEPT, cell_matrix, in_blocks
-from fem.face_compliance import waves_of
-from fem.face_setting import SLICES
 from fem.moving_newton import Linearised
-from fem.overhang import cosines
 from fem.place_surface import Pushed
-from fem.solved_gear import Gears
 
 if TYPE_CHECKING:
-    from fem.bodies import Compliance
     from fem.cell_laws import CellLaws
-    from fem.contact_candidates import ContactCandidates
-    from fem.face_setting import FaceSetting
     from fem.moving_contact import ContactMoves
     from fem.moving_corners import MovedFlanks
     from fem.part_cells import PartCells
 
-__all__ = ["MovingCells", "cell_roll", "other_pairs", "tooth_smoothing"]
-
-STEP = 1e-3
-"""Part of the module over which compliances are differentiated by the place."""
-
-
-def cell_roll(
-    face: FaceSetting, bodies: Compliance, where: ContactCandidates, moves: ContactMoves
-) -> CellCoupling:
-    """C' between cells of pairs that may touch [1/N], kept for loads and alignments that follow."""
-    held = replace(face, strip=0.0, shafts=(None, None))  # neither changes with the place
-    arrays = (where.rho, where.touchable, moves.roll)
-    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
-    pair = bodies.pair
-    size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
-    key = (bodies.meshed, laws, size_of, held.coupled, *(one.tobytes() for one in arrays))
-
-    def differ(of: slice) -> Array:
-        rho, roll, step = where.rho[:, of], moves.roll[of], STEP * pair.module
-        (count, pairs), n = roll.shape[:2], face.cells
-        one, still = np.ones((count, pairs)), np.zeros_like(roll)
-        ahead, behind = (
-            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], one, still, (0,))
-            for by in (step, -step)
-        )
-        found = ((ahead - behind) / (2 * step)).reshape(count, pairs, n, pairs, n)
-        cell, rolls = np.arange(n), np.diagonal(roll, axis1=-2, axis2=-1) != 0.0
-        found[:, :, cell, :, cell] += n * roll
-        found *= (rolls[..., :, None] & rolls[..., None, :])[:, :, None, :, None]
-        return np.asarray(found.reshape(count, pairs * n, pairs * n))
-
-    def cut() -> CellCoupling:
-        return in_blocks(differ, where.touchable, face.cells)
-
-    if np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
-        return cut()
-    return Gears().over_face("roll", key, cut)
-
-
-def other_pairs(
-    held: CellCoupling, touchable: Booleans, levers: Array, before: Array, bulk: Array
-) -> CellCoupling:
-    """Compliance between cells that has another one of the plane, and forces by other levers.
-
-    Parameters
-    ----------
-    held : CellCoupling
-        With the plane's compliance ``before``.
-    touchable : (positions, pairs) boolean array
-    levers : (positions, pairs) array
-        Of its forces, over those of the forces that are asked for.
-    before, bulk : (positions, pairs, pairs) arrays
-        [m/N]
-    """
-    pairs = touchable.shape[-1]
-    n, blocks = held.unknowns // pairs, []
-    cell, both = np.arange(n), levers[..., :, None] * levers[..., None, :]
-    more = n * (bulk - before * both)
-    for row, block in enumerate(held.blocks):
-        at = np.flatnonzero(touchable[row])
-        k, between = len(at), np.ix_(at, at)
-        found = block.reshape(k, n, k, n) * both[row][between][:, None, :, None]
-        found[:, cell, :, cell] += more[row][between]
-        blocks.append(found.reshape(k * n, k * n))
-    return CellCoupling(held.cells, tuple(blocks), held.unknowns)
-
-
-def tooth_smoothing(face: FaceSetting, bodies: Compliance, where: ContactCandidates) -> Array:
-    """S of each pair (positions, pairs, cells, cells): how the tilt of both its flanks follows the load.
-
-    Slices tilt by their own load alone.
-    """
-    if face.model == SLICES:
-        return np.broadcast_to(np.eye(face.cells), (*where.touchable.shape, face.cells, face.cells)).copy()
-    pair, step = bodies.pair, STEP
-    wave: Array = np.arange(1, face.cells, dtype=float) * (np.pi * pair.module / pair.face_width)
-    slow, fast = np.zeros(where.touchable.shape), np.zeros((*where.touchable.shape, len(wave)))
-    gears = zip((bodies.pinion, bodies.wheel), bodies.meshed, bodies.motions, where.rho, strict=True)
-    for gear, meshed, motion, place in gears:
-        rho = np.where(where.touchable, np.clip(place, *motion.rho_range), motion.rho_range[0])
-        lever, at = gear.base_radius / rho, rho / pair.module
-        waves = waves_of(meshed, Gears())
-        slope = (waves.own_at(at + step, wave) - waves.own_at(at - step, wave)) / (2 * step * pair.module)
-        even = gear.own_slope(rho) * lever
-        slow += even
-        fast += even[..., None] + slope / gear.law.plane_modulus * lever[..., None]
-    part = np.ones((*slow.shape, face.cells))
-    part[..., 1:] = np.clip(fast / slow[..., None], 0.0, 1.0)
-    modes = cosines(face.cells)
-    return np.asarray(np.einsum("mc,...m,md->...cd", modes, part, modes, optimize=True))
+__all__ = ["MovingCells"]
 
 
 @record
@@ -202,26 +104,39 @@ class MovingCells:
         every, nothing = np.ones(loads.shape[:-1], dtype=bool), np.zeros_like(loads)
         return self.coupling.applied(loads, every, nothing), self.roll.applied(loads, every, nothing)
 
+    def _tilted(self, loads: Array) -> tuple[tuple[Integers, ...], Array, Array, Array]:
+        """Pairs that bear, as an index of (..., pairs), their forces f (k, cells), S (k, cells, cells) and S f."""
+        force = self.cells * self.split(loads)
+        bear = np.nonzero(force.max(axis=-1) > 0.0)
+        force, smoothing = force[bear], self.smoothing[bear[-2:]]
+        return bear, force, smoothing, (smoothing @ force[..., None])[..., 0]
+
+    def _gained(self, loads: Array, bear: tuple[Integers, ...], of_pairs: Array) -> Array:
+        """(k, cells) of pairs that bear as (..., n), zero elsewhere."""
+        found = np.zeros_like(self.split(loads))
+        found[bear] = of_pairs
+        return found.reshape(loads.shape)
+
     def tooth(self, loads: Array) -> Array:
         """What cells gain by U_3 of the tooth (..., n) [m]."""
-        force = self.cells * self.split(loads)
-        smooth = (self.smoothing @ force[..., None])[..., 0]
-        less = smooth**2 + 2 * (self.smoothing @ (force * smooth)[..., None])[..., 0]
-        return np.asarray((self.moves.cubic[0][..., None] * less).reshape(loads.shape))
+        bear, force, smoothing, smooth = self._tilted(loads)
+        less = smooth**2 + 2 * (smoothing @ (force * smooth)[..., None])[..., 0]
+        return self._gained(loads, bear, self.moves.cubic[0][bear[-2:]][:, None] * less)
 
     def thrust(self, loads: Array) -> tuple[Array, Array]:
         """What cells gain by U_3 (..., n) [m], and blocks of its second derivatives (..., cells, cells) [m/N]."""
-        force = self.cells * self.split(loads)
-        cubic, local = (one[0][..., None] for one in (self.moves.cubic, self.moves.local))
-        smooth = (self.smoothing @ force[..., None])[..., 0]
+        bear, force, smoothing, smooth = self._tilted(loads)
+        cubic, local = (one[0][bear[-2:]][:, None] for one in (self.moves.cubic, self.moves.local))
         root = np.sqrt(np.maximum(force, 0.0))
-        across = smooth[..., :, None] * self.smoothing
-        blocks = across + np.swapaxes(across, -1, -2)
-        blocks = blocks + (self.smoothing * force[..., None, :]) @ self.smoothing
-        blocks = 2 * self.cells * cubic[..., None] * blocks
+        less = smooth**2 + 2 * (smoothing @ (force * smooth)[..., None])[..., 0]
+        across = smooth[..., :, None] * smoothing
+        second = across + np.swapaxes(across, -1, -2) + (smoothing * force[..., None, :]) @ smoothing
+        second *= 2 * self.cells * cubic[..., None]
         cell = np.arange(self.cells)
-        blocks[..., cell, cell] += 3.75 * self.cells * local * root
-        return self.tooth(loads) + (2.5 * local * root**3).reshape(loads.shape), blocks
+        second[..., cell, cell] += 3.75 * self.cells * local * root
+        blocks = np.zeros((*self.split(loads).shape, self.cells))
+        blocks[bear] = second
+        return self._gained(loads, bear, cubic * less + 2.5 * local * root**3), blocks
 
     def _pushed(self, loads: Array, approach: Array) -> tuple[Pushed, Pushed]:
         """What the pinion's own flanks and the corners yield, of cells (..., n)."""

@@ -12,7 +12,8 @@ from fem.cell_contact import along_cells
 from fem.cell_laws import CellLaws
 from fem.cell_matrix import cell_coupling
 from fem.face_share import FaceShare, of_pairs, settled_gaps
-from fem.moving_cells import MovingCells, cell_roll, other_pairs, tooth_smoothing
+from fem.moving_cells import MovingCells
+from fem.moving_coupling import cell_roll, other_pairs, tooth_smoothing
 from fem.moving_newton import moved_forces
 from fem.part_cells import PartCells, part_cells
 

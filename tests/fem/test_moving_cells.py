@@ -14,9 +14,9 @@ from fem.face_setting import face_setting
 from fem.gear_face import ENDS_SIZES, section_of
 from fem.line_load import flank_points
 from fem.loaded_flanks import loaded_flanks
-from fem.moving_cells import other_pairs, tooth_smoothing
 from fem.moving_contact import contact_moves, moving_pairs
 from fem.moving_corners import moved_flanks
+from fem.moving_coupling import other_pairs, tooth_smoothing
 from fem.moving_face import moving_cells
 from fem.overhang import cosines
 from fem.prism import Face, prism
