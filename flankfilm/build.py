@@ -5,6 +5,7 @@ What a section hands over one to one is its `Section.si`; here stands what takes
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -13,6 +14,7 @@ from typing import TypeVar
 import fem
 import gears
 from base import InputError
+from flankfilm.build_flanks import lead_trace
 from flankfilm.scene.gears import GearSection, PairSection, RackSection
 from flankfilm.scene.ground import in_keys, under_keys
 from flankfilm.scene.heat import GROWTH
@@ -44,10 +46,9 @@ def _cold_pair(scene: Scene) -> gears.GearPair:
         materials = (gears.STEEL, gears.STEEL)
         if scene.material is not None:
             materials = _both(scene.material.each, lambda section: section.material())
-        pinion, wheel = _both(section.each, _gear)
-        pair = gears.GearPair(
-            pinion=pinion, wheel=wheel, rack=_rack(section), material=materials, **section.si()
-        )
+        rack = _rack(section)
+        pinion, wheel = (_gear(section, name, rack) for name in ("pinion", "wheel"))
+        pair = gears.GearPair(pinion=pinion, wheel=wheel, rack=rack, material=materials, **section.si())
         backlash = section.value("backlash_um")
         return pair.with_backlash(backlash) if backlash else pair
 
@@ -81,13 +82,17 @@ def _both(sections: tuple[S, S], build: Callable[[S], B]) -> tuple[B, B]:
     return first, second
 
 
-def _gear(section: GearSection) -> gears.Gear:
+def _gear(pair: PairSection, name: str, rack: gears.BasicRack) -> gears.Gear:
+    section: GearSection = getattr(pair, name)
     relief, blank = section.tip_relief, section.blank
+    width = section.value("face_width_mm") or pair.value("face_width_mm")
+    base_radius = 0.5 * pair.value("module_mm") * section.teeth * math.cos(rack.alpha)
+    trace = lead_trace(section, name, width, base_radius)
     return gears.Gear(
         **section.si(),
         tip_relief=None if relief is None else gears.TipRelief(**relief.si()),
         blank=None if blank is None else gears.Blank(**blank.si()),
-        lead=gears.Lead(**section.si_of("lead")),
+        lead=gears.Lead(**section.si_of("lead"), trace=trace),
     )
 
 

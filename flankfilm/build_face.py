@@ -64,6 +64,8 @@ def varies_by(scene: Scene) -> list[str]:
         if gear.face_width_mm not in (None, scene.pair.face_width_mm):
             found.append(f"pair.{name}.face_width_mm")
         found += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
+        if gear.deviations is not None:
+            found += [f"pair.{name}.deviations.{key}" for key in gear.deviations.given("lead", "map")]
     return found
 
 

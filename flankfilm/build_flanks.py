@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 import gears
-from base import Array, Faults
-from flankfilm.scene.flank_sections import CurveSection, DeviationsSection, WearSection
+from base import Array, Faults, InputError
+from flankfilm.scene.flank_sections import (
+    CurveSection,
+    DeviationsSection,
+    LeadSection,
+    MapSection,
+    WearSection,
+)
+from flankfilm.scene.gears import GearSection
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import required
 
-__all__ = ["deviations"]
+__all__ = ["deviations", "lead_trace"]
 
 SLACK = 0.05
-"""Part of the active profile that a curve may leave out at either end."""
+"""Part of the active profile, or of the face, that a curve may leave out at either end."""
+
+LEAST_TWIST = 1e-8
+"""Twist of a map that is worth a word [m]."""
 
 Both = tuple[gears.GearDeviations | None, gears.GearDeviations | None]
 
@@ -46,6 +57,63 @@ def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both
             found.append(_of_gear(curves, section.deviations, section.wear))
     first, second = (one if one is None or every_tooth else _plain_as_none(one.mean) for one in found)
     return (first, second) if first or second else None
+
+
+def lead_trace(
+    section: GearSection, name: str, face_width: float, base_radius: float
+) -> gears.LeadTrace | None:
+    """Measured lead of a gear.
+
+    Parameters
+    ----------
+    section : GearSection
+    name : {"pinion", "wheel"}
+    face_width, base_radius : float
+        Of the gear [m].
+
+    Raises
+    ------
+    InputError
+        Where it leaves out a part of the face.
+
+    Warns
+    -----
+    GeometryWarning
+        Of a map's twist, which is left out.
+    """
+    made = section.deviations
+    if made is None or (made.lead is None and made.map is None):
+        return None
+    given: LeadSection | MapSection
+    if made.map is not None:
+        given, kind = made.map, "map"
+        parts = _parts(made.map, base_radius)
+        found = parts.lead
+        if parts.twist > LEAST_TWIST:
+            twist = f"{name}: the map's twist, up to {1e6 * parts.twist:.2g} um of material, is left out"
+            warnings.warn(twist, gears.GeometryWarning, stacklevel=2)
+    elif made.lead is not None:
+        given, kind = made.lead, "lead"
+        found = gears.LeadTrace(given.value("z_mm"), given.value("material_um"), given.form)
+    half, slack = 0.5 * face_width, SLACK * face_width
+    apart = found.z[-1] <= -half or found.z[0] >= half
+    short = found.z[0] > slack - half or found.z[-1] < half - slack
+    if apart or (short and given.beyond == "refuse"):
+        where = f"{name}.deviations.{kind}" + (".file" if given.file else "")
+        ends = f"the face, {-1e3 * half:.5g} to {1e3 * half:.5g} mm"
+        value = f"{1e3 * found.z[0]:.6g} to {1e3 * found.z[-1]:.6g} mm"
+        if apart:
+            remedy = "Check the unit, and that places are counted from the middle of this gear's face"
+            raise InputError.at(where, value, f"must lie on {ends}", remedy)
+        remedy = 'Measure farther, count places from the middle of the face, or give beyond = "hold"'
+        raise InputError.at(where, value, f"must cover {ends}, but for a twentieth at either end", remedy)
+    return found
+
+
+def _parts(given: MapSection, base_radius: float) -> gears.FlankMap:
+    """Profile, lead and twist of a map."""
+    rho = radii_of(given, base_radius)
+    return gears.flank_map(rho, given.value("z_mm"), given.value("material_um"), given.form)
 
 
 def _of_gear(
@@ -98,12 +166,21 @@ class _Curves:
         """Measured profile of all teeth, or of each."""
 
         def built(section: CurveSection) -> gears.ProfileDeviation:
-            return gears.ProfileDeviation(self._rho(section), section.value("material_um"), section.form)
+            return gears.ProfileDeviation(
+                radii_of(section, self.base_radius), section.value("material_um"), section.form
+            )
 
         if (traces := given.traces) is not None and traces.teeth is not None:
             at = "deviations.traces." + ("file" if traces.file else "teeth")
             self._cover(at, traces.teeth, traces.beyond == "hold")
             return tuple(map(built, traces.teeth))
+        if given.map is not None:
+            self._cover(
+                "deviations.map" + (".file" if given.map.file else ""),
+                [given.map],
+                given.map.beyond == "hold",
+            )
+            return None if self.faults.found else _parts(given.map, self.base_radius).profile
         if given.profile is None:
             return None
         self._cover("deviations.profile", [given.profile], hold=True)
@@ -114,22 +191,11 @@ class _Curves:
 
         def built(section: CurveSection) -> gears.WearDepth:
             depth = given.factor * np.array(section.value("depth_um"))
-            return gears.WearDepth(self._rho(section), tuple(depth.tolist()), section.form)
+            return gears.WearDepth(radii_of(section, self.base_radius), tuple(depth.tolist()), section.form)
 
         at = "wear.file" if given.file else "wear" if given.teeth is None else "wear.teeth"
         self._cover(at, given.teeth or [given], given.beyond == "hold", ends_at_nothing=True)
         return built(given) if given.teeth is None else tuple(map(built, given.teeth))
-
-    def _rho(self, section: CurveSection) -> tuple[float, ...]:
-        """Curvature radii of a curve's points [m]; nan below the base circle."""
-        by, base = section.measured_by, self.base_radius
-        places = np.array(section.value(by))
-        if by == "roll_deg":
-            places = base * places
-        elif by == "diameter_mm":
-            square = (0.5 * places) ** 2 - base**2
-            places = np.where(square >= 0.0, np.sqrt(np.maximum(square, 0.0)), np.nan)
-        return tuple(places.tolist())
 
     def _cover(
         self, at: str, curves: Sequence[CurveSection], hold: bool, ends_at_nothing: bool = False
@@ -138,7 +204,7 @@ class _Curves:
         low, high = self.active
         slack, bad = SLACK * (high - low), []
         for number, section in enumerate(curves):
-            rho, values = np.array(self._rho(section)), getattr(section, section.values[0])
+            rho, values = np.array(radii_of(section, self.base_radius)), getattr(section, section.values[0])
             missing = (rho[0] > low + slack, rho[-1] < high - slack)
             if ends_at_nothing:
                 missing = (missing[0] and values[0] != 0.0, missing[1] and values[-1] != 0.0)
@@ -170,3 +236,15 @@ class _Curves:
         if by == "diameter_mm":
             return lambda rho: 2e3 * math.hypot(rho, self.base_radius)
         return lambda rho: 1e3 * rho
+
+
+def radii_of(section: CurveSection, base_radius: float) -> tuple[float, ...]:
+    """Curvature radii of a curve's points [m]; nan below the base circle [m]."""
+    by = section.measured_by
+    places = np.array(section.value(by))
+    if by == "roll_deg":
+        places = base_radius * places
+    elif by == "diameter_mm":
+        square = (0.5 * places) ** 2 - base_radius**2
+        places = np.where(square >= 0.0, np.sqrt(np.maximum(square, 0.0)), np.nan)
+    return tuple(places.tolist())

@@ -7,8 +7,11 @@ from .errors import GeometryWarning as GeometryWarning
 from .errors import LoadSharingError as LoadSharingError
 from .face import Alignment as Alignment
 from .face import Lead as Lead
+from .flank_curves import LeadTrace as LeadTrace
 from .flank_curves import ProfileDeviation as ProfileDeviation
 from .flank_curves import WearDepth as WearDepth
+from .flank_map import FlankMap as FlankMap
+from .flank_map import flank_map as flank_map
 from .gear import Gear as Gear
 from .gear import TipRelief as TipRelief
 from .heat import Heat as Heat

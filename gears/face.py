@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array, Fault, Faults, Limit
+from gears.flank_curves import LeadTrace
 
 __all__ = ["ALIGNED", "STRAIGHT", "Alignment", "Lead"]
 
@@ -32,7 +33,8 @@ ALIGNMENT_LIMITS = {
 class Lead:
     """What is removed from one gear's flanks along the face, the same on every tooth.
 
-    Removed at z, with x = 2 z/b: ``crowning x^2 + slope x/2 + end_relief max(0, 1 - (b/2 - |z|)/length)^2``.
+    Removed at z, with x = 2 z/b: ``crowning x^2 + slope x/2 + end_relief max(0, 1 - (b/2 - |z|)/length)^2``, less the
+    material of a measured trace.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ class Lead:
         Material removed at both ends by a parabola over a part of the face [m].
     end_relief_length : float
         Length of that part, from either end [m].
+    trace : LeadTrace, optional
+        Measured lead, on top of these.
 
     Examples
     --------
@@ -55,6 +59,7 @@ class Lead:
     slope: float = 0.0  # f_Hbeta, m
     end_relief: float = 0.0  # C_beta I = C_beta II, m
     end_relief_length: float = 0.0  # L_CI = L_CII, m
+    trace: LeadTrace | None = None
 
     def faults(self, where: str) -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
@@ -64,6 +69,8 @@ class Lead:
             found.add(
                 f"{where}.end_relief_length", self.end_relief_length, allowed, "give its length in metres"
             )
+        if self.trace is not None:
+            found.extend(self.trace.faults(f"{where}.trace"))
         return tuple(found.found)
 
     def removed(self, z: Array, face_width: float) -> Array:
@@ -73,6 +80,8 @@ class Lead:
         if self.end_relief:
             inside = 0.5 * face_width - np.abs(z)
             found = found + self.end_relief * np.maximum(0.0, 1.0 - inside / self.end_relief_length) ** 2
+        if self.trace is not None:
+            found = found - self.trace.at(z)
         return np.asarray(found)
 
 

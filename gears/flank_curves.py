@@ -1,4 +1,4 @@
-"""Curves over a flank, in points: measured profiles and the depth of wear."""
+"""Curves over a flank, in points: measured profiles and leads, and the depth of wear."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ from typing import ClassVar, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Fault, Faults
+from base import Array, Fault, Faults, Limit
 
-__all__ = ["ProfileDeviation", "WearDepth", "mean_curve", "numbers"]
+__all__ = ["LeadTrace", "ProfileDeviation", "WearDepth", "mean_curve", "numbers"]
 
 FORMS = ("smooth", "linear")
+
+MATERIAL = Limit(-1e-3, 1e-3, "m", "give the material in excess in metres")
+"""What a lead may deviate by."""
 
 
 def numbers(values: ArrayLike) -> tuple[float, ...]:
@@ -30,18 +33,28 @@ def check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
 
 
 @dataclass(frozen=True)
-class FlankCurve(ABC):
-    """What curves over a flank have in common; a kind of curve names its values.
+class PointCurve(ABC):
+    """What curves through points have in common; a kind of curve names its places and its values.
 
     ``smooth``: the monotone piecewise cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980,
     doi:10.1137/0717021), with one continuous derivative and without overshoot. ``linear``: straight lines from
     point to point. Outside its points a curve keeps the value of the nearest end.
     """
 
+    placed_in: ClassVar[str]
+    """Field of the places."""
+
+    called: ClassVar[str]
+    """What the places are."""
+
     kept_in: ClassVar[str]
     """Field of the values."""
 
-    rho: tuple[float, ...]  # m
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Where the points are [m]."""
+        found: tuple[float, ...] = getattr(self, self.placed_in)
+        return found
 
     @property
     @abstractmethod
@@ -55,25 +68,25 @@ class FlankCurve(ABC):
 
     def __repr__(self) -> str:
         """One line: how many points, and where."""
-        if not self.rho:
+        if not self.places:
             return f"{type(self).__name__}(no points)"
-        ends = f"rho {1e3 * self.rho[0]:.6g} to {1e3 * self.rho[-1]:.6g} mm"
-        return f"{type(self).__name__}({len(self.rho)} points, {ends})"
+        ends = f"{self.placed_in} {1e3 * self.places[0]:.6g} to {1e3 * self.places[-1]:.6g} mm"
+        return f"{type(self).__name__}({len(self.places)} points, {ends})"
 
-    def at(self, rho: float | Array) -> Array:
-        """Value at curvature radii `rho` [m], an array like it [m]."""
-        x, y = np.array(self.rho), np.array(self.values)
+    def at(self, place: float | Array) -> Array:
+        """Value at places [m], an array like them [m]."""
+        x, y = np.array(self.places), np.array(self.values)
         if self.form == "linear":
-            return np.asarray(np.interp(np.asarray(rho, dtype=float), x, y))
+            return np.asarray(np.interp(np.asarray(place, dtype=float), x, y))
         width, rise = np.diff(x), np.diff(y) / np.diff(x)
         slope = np.concatenate([rise[:1], np.zeros(len(x) - 2), rise[-1:]])
         same = np.flatnonzero(rise[:-1] * rise[1:] > 0)
         left = 2 * width[same + 1] + width[same]
         right = width[same + 1] + 2 * width[same]
         slope[same + 1] = (left + right) / (left / rise[same] + right / rise[same + 1])
-        place = np.clip(np.asarray(rho, dtype=float), x[0], x[-1])
-        cell = np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2)
-        t = (place - x[cell]) / width[cell]
+        inside = np.clip(np.asarray(place, dtype=float), x[0], x[-1])
+        cell = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
+        t = (inside - x[cell]) / width[cell]
         ends = y[cell] * (1 + 2 * t) * (1 - t) ** 2 + y[cell + 1] * t**2 * (3 - 2 * t)
         bend = slope[cell] * t * (1 - t) ** 2 - slope[cell + 1] * t**2 * (1 - t)
         return np.asarray(ends + width[cell] * bend)
@@ -81,16 +94,28 @@ class FlankCurve(ABC):
     def faults(self, where: str = "profile") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
         found = Faults()
-        check_finite(found, f"{where}.rho", self.rho)
+        at = f"{where}.{self.placed_in}"
+        check_finite(found, at, self.places)
         check_finite(found, f"{where}.{self.kept_in}", self.values)
         found.choice(f"{where}.form", self.form, FORMS)
-        if len(self.rho) != len(self.values) or len(self.rho) < 2:
-            points = f"{len(self.rho)} and {len(self.values)} points"
-            found.add(where, points, "must be as many radii as values, at least 2", "give pairs")
-        if not found.found and not np.all(np.diff(self.rho) > 0):
-            remedy = "sort the points and leave out doubles"
-            found.add(f"{where}.rho", "not growing", "must be growing curvature radii", remedy)
+        if len(self.places) != len(self.values) or len(self.places) < 2:
+            points = f"{len(self.places)} and {len(self.values)} points"
+            found.add(where, points, f"must be as many {self.called} as values, at least 2", "give pairs")
+        if not found.found and not np.all(np.diff(self.places) > 0):
+            found.add(
+                at, "not growing", f"must be growing {self.called}", "sort the points and leave out doubles"
+            )
         return tuple(found.found)
+
+
+@dataclass(frozen=True, repr=False)
+class FlankCurve(PointCurve):
+    """A curve over the curvature radius of a flank, from root to tip."""
+
+    placed_in = "rho"
+    called = "radii"
+
+    rho: tuple[float, ...]  # m
 
 
 @dataclass(frozen=True, repr=False)
@@ -175,6 +200,54 @@ class WearDepth(FlankCurve):
             return found
         remedy = "wear removes material; give what is in excess as a profile deviation"
         return (*found, Fault(f"{where}.depth", f"{min(least):g} m", "must be at least 0 m", remedy))
+
+
+@dataclass(frozen=True, repr=False)
+class LeadTrace(PointCurve):
+    """Measured lead of a gear's flanks: a curve along the face, the same on every tooth.
+
+    Parameters
+    ----------
+    z : (n,) sequence
+        Places along the face, growing, 0 at the middle of the gear's own face [m]. Towards the positive end a
+        positive `Lead.slope` removes material.
+    material : (n,) sequence
+        Material in excess of the straight lead, normal to the flank [m]: negative where some is missing.
+    form : {"smooth", "linear"}
+        As of `ProfileDeviation`.
+
+    Examples
+    --------
+    >>> trace = LeadTrace([-0.02, 0.0, 0.02], [-6e-6, 0.0, -10e-6], form="linear")
+    >>> float(trace.at(0.01))
+    -5e-06
+    """
+
+    placed_in = "z"
+    called = "places"
+    kept_in = "material"
+
+    z: tuple[float, ...]  # m
+    material: tuple[float, ...] = ()  # m
+    form: str = "smooth"
+
+    def __post_init__(self) -> None:
+        """Keep the points as plain numbers, so that equal traces compare equal."""
+        object.__setattr__(self, "z", numbers(self.z))
+        object.__setattr__(self, "material", numbers(self.material))
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Material in excess [m]."""
+        return self.material
+
+    def faults(self, where: str = "trace") -> tuple[Fault, ...]:
+        """All faults of the points, empty when there are none."""
+        found = Faults()
+        found.extend(super().faults(where))
+        if not found.found:
+            found.number(f"{where}.material", max(self.material, key=abs), MATERIAL)
+        return tuple(found.found)
 
 
 C = TypeVar("C", ProfileDeviation, WearDepth)

@@ -172,6 +172,8 @@ def _left_out(face: fem.FaceLoads, pair: gears.GearPair) -> Iterator[str]:
             yield f"crowning of the {name}"
         if lead.end_relief:
             yield f"end relief of the {name}"
+        if lead.trace is not None:
+            yield f"measured lead of the {name}"
     if setting.alignment.out_of_plane:
         yield "alignment across the plane of action"
     if any(shaft is not None for shaft in setting.shafts):

@@ -65,7 +65,9 @@ class _Points:
         return (self.places[::-1], self.heights[::-1]) if falls else (self.places, self.heights)
 
 
-def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
+def read_curves(
+    path: Path, name: str, where: str, positions: Sequence[str] = tuple(POSITIONS)
+) -> Curve | list[Curve]:
     """Read curves as the keys of a scene have them.
 
     Parameters
@@ -75,6 +77,8 @@ def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
         Which values.
     where : str
         Key that names the file, for faults.
+    positions : sequence of str
+        Columns by one of which points are placed.
 
     Returns
     -------
@@ -88,13 +92,13 @@ def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
     """
     rows = table_rows(path, where)
     head = [cell.strip().lower() for cell in rows[0].cells]
-    by = [column for column in head if column in POSITIONS]
+    by = [column for column in head if column in positions]
     value = [column for column in head if column in VALUES[name]]
     each = {int(match[1]): place for place, cell in enumerate(head) if (match := OF_A_TOOTH.fullmatch(cell))}
     known = len(by) + len(value) + len(each) + head.count("tooth")
     one_kind = len(value) == 1 and not each if value else bool(each) and "tooth" not in head
     if len(by) != 1 or not one_kind or known != len(head) or head.count("tooth") > 1:
-        allowed = f"must have the columns {' or '.join(POSITIONS)}, and {name}, tooth and {name}, or numbers of teeth"
+        allowed = f"must have the columns {' or '.join(positions)}, and {name}, tooth and {name}, or numbers of teeth"
         remedy = "name each column so in the first row, and leave out others"
         raise InputError.at(where, f"{path.name}: {shorten(', '.join(head))}", allowed, remedy)
     place = head.index(by[0])
@@ -106,6 +110,19 @@ def read_curves(path: Path, name: str, where: str) -> Curve | list[Curve]:
         _check(found, where, path.name, teeth)
     curves = [dict(zip((by[0], name), teeth[number].rising(), strict=True)) for number in sorted(teeth)]
     return curves if each or "tooth" in head else curves[0]
+
+
+def mean_of(curves: Sequence[Curve], position: str, name: str, where: str) -> Curve:
+    """Mean of the curves of teeth at common positions."""
+    first = curves[0][position]
+    apart = next((k for k, curve in enumerate(curves) if curve[position] != first), None)
+    if apart is not None:
+        allowed = f"must have the same {position} for every tooth, of which the mean is taken"
+        raise InputError.at(
+            where, f"curve {apart + 1} of {len(curves)}", allowed, "give a column for each tooth"
+        )
+    values = [sum(heights) / len(curves) for heights in zip(*(curve[name] for curve in curves), strict=True)]
+    return {position: first, name: values}
 
 
 class TableRow(NamedTuple):

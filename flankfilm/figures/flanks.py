@@ -1,4 +1,4 @@
-"""Measured and worn flanks."""
+"""Measured and worn flanks, and measured leads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GEARS = ("pinion", "wheel")
 
 
 def flanks(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw deviations of the flanks over the active profile, of each tooth and in the mean, and what wear has left.
+    """Draw deviations of the flanks over the active profile, of each tooth and in the mean, wear, and leads.
 
     Parameters
     ----------
@@ -25,13 +25,29 @@ def flanks(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    drawn = [gear for gear in GEARS if f"flank_{gear}_diameter" in results] or GEARS[:1]
-    need(results, "run a scene that has deviations or wear of a gear", f"flank_{drawn[0]}_diameter")
-    with sheet(style, 1, len(drawn), height=3.0, legend=0) as (found, panels):
-        for gear, axes in zip(drawn, panels, strict=True):
-            _of_gear(axes, results, gear)
+    drawn = [
+        (draw, gear)
+        for draw, along in ((_of_gear, "diameter"), (_lead, "face_place"))
+        for gear in GEARS
+        if f"flank_{gear}_{along}" in results
+    ]
+    if not drawn:
+        need(results, "run a scene that has deviations or wear of a gear", f"flank_{GEARS[0]}_diameter")
+    rows, columns = (len(drawn) + 1) // 2, min(len(drawn), 2)
+    with sheet(style, rows, columns, height=3.0 * rows, legend=0, sharex=False) as (found, panels):
+        for (draw, gear), axes in zip(drawn, panels, strict=False):
+            draw(axes, results, gear)
             legend_over(axes, 2)
+        for axes in panels[len(drawn) :]:
+            axes.remove()
     return found
+
+
+def _lead(axes: Axes, results: xr.Dataset, gear: str) -> None:
+    """Draw the measured lead of a gear."""
+    place, lead = (read(results, f"flank_{gear}_{name}") for name in ("face_place", "lead"))
+    axes.plot(place.values, lead.values, color=colours(1)[0], linestyle="-", label="lead of all teeth")
+    axes.set(xlabel=place.label, ylabel=lead.named(f"material in excess, {gear}"))
 
 
 def _of_gear(axes: Axes, results: xr.Dataset, gear: str) -> None:

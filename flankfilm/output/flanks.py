@@ -1,4 +1,4 @@
-"""Measured and worn flanks as variables: deviations over the active profile, of each tooth and in the mean."""
+"""Measured and worn flanks as variables: deviations over the profile, of each tooth and in the mean, and leads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.build_flanks import Both
-    from gears import GearDeviations, GearPair
+    from gears import GearDeviations, GearPair, LeadTrace
 
 __all__ = ["measured_flanks"]
 
@@ -25,7 +25,7 @@ PLACES = 121
 
 
 def measured_flanks(pair: GearPair, both: Both | None) -> Iterator[xr.Dataset]:
-    """Variables ``flank_pinion_...`` and ``flank_wheel_...`` of the gears that have curves over their flanks."""
+    """Variables ``flank_pinion_...`` and ``flank_wheel_...`` of gears with measured or worn flanks."""
     ends = np.array([pair.points.A, pair.points.E])
     active = (ends, pair.line_of_action - ends[::-1])
     for name, radius, span, found in zip(
@@ -35,6 +35,22 @@ def measured_flanks(pair: GearPair, both: Both | None) -> Iterator[xr.Dataset]:
             yield of_quantities(
                 f"flank_{name}", _curves(found, radius, np.linspace(span[0], span[1], PLACES))
             )
+    for name, gear, width in zip(
+        ("pinion", "wheel"), (pair.pinion, pair.wheel), pair.face_widths, strict=True
+    ):
+        if gear.lead.trace is not None:
+            yield of_quantities(
+                f"flank_{name}", _lead(gear.lead.trace, np.linspace(-0.5, 0.5, PLACES) * width)
+            )
+
+
+def _lead(trace: LeadTrace, z: Array) -> Iterator[Quantity]:
+    yield figure_of(
+        "face_place", "m", "place along the face, from its middle", "face", z, shown="mm", no_error=EXACT
+    )
+    yield figure_of(
+        "lead", "m", "deviation from the straight lead", "face", trace.at(z), shown="um", no_error=EXACT
+    )
 
 
 def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Quantity]:

@@ -132,6 +132,7 @@ TABLES: Mapping[str, Table] = {
         )
         for gear in GEARS
     },
+    **{f"lead_{gear}": Table(f"flank_{gear}", "face_place", ("face_place", "lead")) for gear in GEARS},
     **{f"root_stress_{gear}": Table(f"root_{gear}", "travel", axis="instant") for gear in GEARS},
     **{f"fillet_stress_{gear}": Table(f"fillet_{gear}", "arc", axis="arc") for gear in GEARS},
     "mesh_cycle_lubricated": Table("lubricated", "position", CYCLE),

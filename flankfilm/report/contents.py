@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from flankfilm.coupling import LubricatedCycle
     from flankfilm.results import Results
 
+ALONG_FLANKS = ("diameter", "face_place")
+"""What measured flanks are drawn over."""
+
 HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "film": film_parts.headlines,
     "losses": losses_parts.headlines,
@@ -164,7 +167,7 @@ def _result_parts(results: Results) -> list[Part]:
         parts.append(pair_parts.geometry(pair, data))
         if (heat := values.get("heat")) is not None:
             parts.append(pair_parts.heat(heat))
-        if any(f"flank_{gear}_diameter" in data for gear in ("pinion", "wheel")):
+        if any(f"flank_{gear}_{along}" in data for gear in ("pinion", "wheel") for along in ALONG_FLANKS):
             parts.append(mesh_parts.flanks(data))
         if cycle is not None:
             cycles = list(dict.fromkeys((cycle, values["dry cycle"], *values.get("other cycles", ()))))

@@ -61,6 +61,11 @@ def _made_of(found: fem.FaceLoads) -> str:
         ):
             if value:
                 parts.append(f"{what} of the {name} {number(1e6 * value)} µm")
+        if lead.trace is not None:
+            low, high = min(lead.trace.material), max(lead.trace.material)
+            parts.append(
+                f"measured lead of the {name}, {number(1e6 * low)} to {number(1e6 * high)} µm of material"
+            )
     for plane, value in (("in", setting.alignment.in_plane), ("across", setting.alignment.out_of_plane)):
         if value:
             parts.append(f"axes {number(1e6 * value)} µm out of parallel {plane} the plane of action")

@@ -9,15 +9,20 @@ from typing import Any
 from base import Fault, InputError
 from flankfilm.scene.error_curve import POINTS
 from flankfilm.scene.error_file import names_the_error, read_error_file, without_points
-from flankfilm.scene.flank_sections import POSITIONS
+from flankfilm.scene.flank_sections import PLACES, POSITIONS
 
 __all__ = ["CURVES", "names_a_file", "read_flank_files", "without_curves"]
 
-FILES = {("deviations", "traces"): "material_um", ("wear",): "depth_um"}
-"""Tables of a gear that may name a file, and what its values are."""
+FILES = {
+    ("deviations", "traces"): ("material_um", POSITIONS),
+    ("deviations", "lead"): ("material_um", PLACES),
+    ("deviations", "map"): ("material_um", POSITIONS),
+    ("wear",): ("depth_um", POSITIONS),
+}
+"""Tables of a gear that may name a file, what its values are, and by what they may be placed."""
 
 
-CURVES = ("teeth", *POSITIONS, *dict.fromkeys(FILES.values()), *POINTS)
+CURVES = ("teeth", *POSITIONS, *PLACES, *dict.fromkeys(name for name, _ in FILES.values()), *POINTS)
 """Keys that a file gives."""
 
 
@@ -37,7 +42,7 @@ def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()
         Dotted keys that alone are looked at, where others have been read; all unless given.
     """
     found = read_error_file(raw, folder, keys)
-    for path, table, parent, kind in _tables(raw):
+    for path, table, parent, (kind, positions) in _tables(raw):
         where = f"pair.{path}.file"
         if keys and where not in keys:
             continue
@@ -47,15 +52,22 @@ def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()
                 Fault(where, table["file"], f"excludes {' and '.join(clash)}", "Leave one of them out")
             )
             continue
-        from flankfilm.exchange.trace_files import read_curves
+        from flankfilm.exchange.map_files import read_map
+        from flankfilm.exchange.trace_files import mean_of, read_curves
 
         try:
-            curves = read_curves(folder / table["file"], kind, where)
+            curves: Any
+            if path.endswith(".map"):
+                curves = read_map(folder / table["file"], where)
+            else:
+                curves = read_curves(folder / table["file"], kind, where, tuple(positions))
+            if isinstance(curves, list) and path.endswith(".lead"):
+                curves = mean_of(curves, "z_mm", kind, where)
         except InputError as error:
             found += error.faults
             del parent[path.rpartition(".")[2]]
             continue
-        if isinstance(curves, dict) and "deviations" not in path:
+        if isinstance(curves, dict) and not path.endswith(".traces"):
             table.update(curves)
         else:
             table["teeth"] = [curves] if isinstance(curves, dict) else curves
@@ -79,8 +91,10 @@ def without_curves(raw: dict[str, Any], key: str) -> None:
                 table.pop(name, None)
 
 
-def _tables(raw: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any], dict[str, Any], str]]:
-    """Tables that name a file: path below the pair, table, the table it is in, name of the values."""
+def _tables(
+    raw: Mapping[str, Any],
+) -> Iterator[tuple[str, dict[str, Any], dict[str, Any], tuple[str, Mapping[str, Any]]]]:
+    """Tables that name a file: path below the pair, table, the table it is in, what `FILES` says of it."""
     pair = raw.get("pair")
     for gear in ("pinion", "wheel"):
         for keys, kind in FILES.items():

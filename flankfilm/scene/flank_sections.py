@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from base import Fault, InputError, Limit
+from base import Fault, Limit
 from flankfilm.scene.key import key
+from flankfilm.scene.point_sections import (
+    BETWEEN,
+    MOST_POINTS,
+    Beyond,
+    Form,
+    Numbers,
+    PointsSection,
+    not_rising,
+    outside,
+    points,
+)
 from flankfilm.scene.section import Section, refused
-
-Numbers = Annotated[tuple[float, ...], Field(strict=False)]
-
-MOST_POINTS = 10_000
-"""Points of a curve."""
 
 POSITIONS = {
     "roll_deg": Limit(0.0, 180.0, "deg", "give roll angles from the start of the involute"),
@@ -24,70 +29,25 @@ POSITIONS = {
 }
 """Keys by one of which a curve says where its points are, and what they may be."""
 
+PLACES = {"z_mm": Limit(-1e4, 1e4, "mm", "give places in millimetres from the middle of the face")}
+"""The same of a lead's points."""
+
+LEAD = Limit(-1000.0, 1000.0, "um", "check the unit: micrometres, positive for too much material")
 EXCESS = Limit(-2000.0, 2000.0, "um", "check the unit: micrometres, positive for too much material")
 DEPTH = Limit(0.0, 2000.0, "um", "wear removes material; give what is in excess as a profile")
 
 
-def _points(meaning: str, such_as: tuple[float, ...]) -> Any:
-    """Key of one number for each point of a curve."""
-    return key(meaning, None, of=None, such_as=such_as, min_length=2, max_length=MOST_POINTS)
+class CurveSection(PointsSection):
+    """What curves over a flank have in common: positions from root to tip."""
 
+    positions = POSITIONS
 
-class CurveSection(Section):
-    """What curves over a flank have in common: where their points are, and what is between them."""
-
-    values: ClassVar[tuple[str, Limit]]
-    """Key of the values at the points, and what they may be."""
-
-    roll_deg: Numbers | None = _points("roll angles of the points, rising", such_as=(10.0, 20.0, 28.0))
-    diameter_mm: Numbers | None = _points("or their diameters", such_as=(69.0, 73.0, 76.0))
-    roll_length_mm: Numbers | None = _points(
+    roll_deg: Numbers | None = points("roll angles of the points, rising", such_as=(10.0, 20.0, 28.0))
+    diameter_mm: Numbers | None = points("or their diameters", such_as=(69.0, 73.0, 76.0))
+    roll_length_mm: Numbers | None = points(
         "or their lengths of roll: curvature radii of the flank", such_as=(6.0, 12.0, 17.0)
     )
-    form: Literal["smooth", "linear"] = key(
-        "between the points: a smooth curve without overshoot, or straight lines", "smooth"
-    )
-
-    @property
-    def measured_by(self) -> str:
-        """Key that says where the points are; empty where there are none."""
-        return next(iter(self.given(*POSITIONS)), "")
-
-    @model_validator(mode="after")
-    def _points_that_rise(self) -> CurveSection:
-        if faults := tuple(self._faults()):
-            raise InputError(faults)
-        return self
-
-    def _faults(self) -> Iterator[Fault]:
-        """What is wrong with the points; those of a file without any are looked at where it is read."""
-        name, limit = self.values
-        heights, by = getattr(self, name), self.given(*POSITIONS)
-        if len(by) != 1:
-            keys = ", ".join(POSITIONS)
-            yield Fault("", " and ".join(by), f"must have one of {keys}, and {name}", "Give one of them")
-            return
-        places = getattr(self, by[0])
-        if heights is None or len(heights) != len(places):
-            count = 0 if heights is None else len(heights)
-            remedy = "Give pairs; leave out points without a value"
-            yield Fault("", "", f"must have as many {by[0]} as {name}, not {len(places)} and {count}", remedy)
-        yield from _outside(by[0], places, POSITIONS[by[0]])
-        yield from _outside(name, heights or (), limit)
-        for number, (before, after) in enumerate(itertools.pairwise(places), start=1):
-            if after <= before:
-                value = f"{before:g}, {after:g} (points {number} and {number + 1})"
-                yield Fault(by[0], value, "must rise from point to point", "Sort them; leave out doubles")
-                break
-
-
-def _outside(name: str, values: tuple[float, ...], limit: Limit) -> Iterator[Fault]:
-    """The first of values that are not allowed, and how many more there are."""
-    bad = [(number, value) for number, value in enumerate(values, start=1) if not limit.holds(value)]
-    if bad:
-        more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
-        allowed = str(limit).replace("a finite number, ", "")
-        yield Fault(name, f"{bad[0][1]:g} (point {bad[0][0]}{more})", allowed, limit.remedy)
+    form: Form = key(BETWEEN, "smooth")
 
 
 class ProfileSection(CurveSection):
@@ -95,7 +55,7 @@ class ProfileSection(CurveSection):
 
     values = ("material_um", EXCESS)
 
-    material_um: Numbers | None = _points(
+    material_um: Numbers | None = points(
         "deviation at each point, normal to the flank; positive: too much material",
         such_as=(0.0, 0.0, -10.0),
     )
@@ -106,12 +66,38 @@ class DepthSection(CurveSection):
 
     values = ("depth_um", DEPTH)
 
-    depth_um: Numbers | None = _points(
+    depth_um: Numbers | None = points(
         "material worn off at each point, normal to the flank, at least 0", such_as=(12.0, 0.0, 5.0)
     )
 
 
-Beyond = Literal["refuse", "hold"]
+class LeadSection(PointsSection):
+    """Measured lead of a gear's flanks, a curve along the face that all teeth have."""
+
+    positions = PLACES
+    values = ("material_um", LEAD)
+
+    file: str | None = key(
+        "CSV file beside the scene instead of points: columns z_mm, material_um, or a column for each tooth measured",
+        None,
+        such_as="pinion_lead.csv",
+        max_length=1000,
+    )
+    z_mm: Numbers | None = points(
+        "places along the face, rising, 0 at the middle of this gear's face, above 0 where lead_slope_um removes "
+        "material",
+        such_as=(-20.0, 0.0, 20.0),
+    )
+    material_um: Numbers | None = points(
+        "deviation at each place, normal to the flank; positive: too much material",
+        such_as=(-6.0, 0.0, -10.0),
+    )
+    form: Form = key(BETWEEN, "smooth")
+    beyond: Beyond = key(
+        "where the trace leaves more than a twentieth of the face out at an end: refuse it, or hold its value",
+        "refuse",
+    )
+
 
 BEYOND = "where a curve leaves more than a twentieth of the active profile out at an end: refuse it, or hold its value"
 
@@ -180,6 +166,17 @@ class DeviationsSection(Section):
         None,
         such_as={"file": "pinion_traces.csv"},
     )
+    map: MapSection | None = key(
+        "measured map of the flanks instead of profile and lead: its means over the face and over the profile count, "
+        "its twist is left out, and named",
+        None,
+        such_as={"file": "pinion_map.csv"},
+    )
+    lead: LeadSection | None = key(
+        "measured lead of the flanks, on top of crowning, slope and end relief: the load is computed along the face",
+        None,
+        such_as={"z_mm": (-20.0, 0.0, 20.0), "material_um": (-6.0, 0.0, -10.0)},
+    )
     single_pitch_um: Numbers | None = key(
         "single pitch deviations, one for each tooth in the order of meshing",
         None,
@@ -199,7 +196,63 @@ class DeviationsSection(Section):
             raise refused("must have single_pitch_um or cumulative_pitch_um, not both", "Leave one out")
         if len(self.given("profile", "traces")) > 1:
             raise refused("must have profile or traces, not both", "Leave one out")
+        if self.map is not None and (clash := self.given("profile", "traces", "lead")):
+            raise refused(f"must have map, or {' and '.join(clash)}, not both", "Leave one out")
         return self
+
+
+class MapSection(CurveSection):
+    """Measured map of a gear's flanks, over profile and face; its twist is left out."""
+
+    values = ("material_um", EXCESS)
+
+    file: str | None = key(
+        "CSV file beside the scene instead of points: columns z_mm, position, material_um, rows of a full grid",
+        None,
+        such_as="pinion_map.csv",
+        max_length=1000,
+    )
+    z_mm: Numbers | None = points(
+        "places along the face, rising, 0 at the middle of this gear's face", such_as=(-20.0, 0.0, 20.0)
+    )
+    material_um: Annotated[tuple[Numbers, ...], Field(strict=False)] | None = key(
+        "deviations normal to the flank, a row of all places along the face for each position; positive: too much "
+        "material",
+        None,
+        of=None,
+        such_as=((-6.0, 0.0, -9.0), (-8.0, -2.0, -11.0), (-12.0, -6.0, -15.0)),
+        min_length=2,
+        max_length=1000,
+    )
+    beyond: Beyond = key(
+        "where the map leaves out more than a twentieth of face or active profile: refuse it, or hold its value",
+        "refuse",
+    )
+
+    def _faults(self) -> Iterator[Fault]:
+        """What is wrong with the places, and rows that do not fit them."""
+        by, rows, places = self.given(*POSITIONS), self.material_um, self.z_mm
+        if len(by) != 1 or rows is None or places is None:
+            keys = ", ".join(POSITIONS)
+            yield Fault(
+                "", " and ".join(by), f"must have one of {keys}, z_mm, and material_um", "Give all three"
+            )
+            return
+        over = getattr(self, by[0])
+        for name, values, limit in ((by[0], over, POSITIONS[by[0]]), ("z_mm", places, PLACES["z_mm"])):
+            yield from outside(name, values, limit)
+            yield from not_rising(name, values)
+        wrong = [k for k, row in enumerate(rows, start=1) if len(row) != len(places)]
+        if len(rows) != len(over) or wrong:
+            value = f"{len(rows)} rows" + (
+                f", row {wrong[0]} of {len(rows[wrong[0] - 1])} values" if wrong else ""
+            )
+            allowed = (
+                f"must have a row for each of {len(over)} {by[0]} with a value for each of {len(places)} z_mm"
+            )
+            yield Fault("material_um", value, allowed, "Give a full grid")
+        for row in rows:
+            yield from outside("material_um", row, EXCESS)
 
 
 def wrong_counts(

@@ -10,7 +10,7 @@ import pytest
 from base import InputError
 from fem import Compliance, compliance, mesh_cycle
 from fem.face_compliance import pair_ends, pair_waves
-from gears import Alignment, Gear, GearPair, Lead
+from gears import Alignment, Gear, GearPair, Lead, LeadTrace
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 TORQUE = 100.0
@@ -54,6 +54,19 @@ def test_alignment_turned_round_mirrors_the_face(bodies, model):
     one, other = (_cycle(bodies, alignment=Alignment(turn * 20e-6), face_model=model) for turn in (1, -1))
     np.testing.assert_allclose(one.line_load, other.line_load[..., ::-1], rtol=1e-8, atol=1e-3)
     np.testing.assert_allclose(one.transmission_error, other.transmission_error, rtol=1e-10)
+
+
+def test_a_measured_lead_is_the_modification_that_it_traces(bodies):
+    straight = LeadTrace([-10e-3, 10e-3], [10e-6, -10e-6], form="linear")
+    place = np.linspace(-10e-3, 10e-3, 401)
+    bulge = LeadTrace(place, -15e-6 * (place / 10e-3) ** 2)
+    for trace, designed in ((straight, Lead(slope=20e-6)), (bulge, Lead(crowning=15e-6))):
+        one, other = (
+            _cycle(bodies, replace(PAIR, wheel=replace(PAIR.wheel, lead=lead)))
+            for lead in (Lead(trace=trace), designed)
+        )
+        np.testing.assert_allclose(one.line_load, other.line_load, rtol=0, atol=2e-4 * one.line_load.max())
+        np.testing.assert_allclose(one.transmission_error, other.transmission_error, rtol=1e-5)
 
 
 def test_a_slope_of_the_lead_undoes_an_alignment(bodies):
