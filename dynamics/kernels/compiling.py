@@ -52,7 +52,7 @@ _INNER: dict[str, Any] = {**_OPTIONS, "no_cpython_wrapper": True}  # not for Pyt
 LINKED: dict[str, Any] = {}
 WHOLE: dict[str, Any] = {}
 if numba.__version__.startswith(TRIED):
-    from dynamics.kernels.pipeline import Inner, Outer
+    from dynamics.kernels.pipeline import Inner, Outer, meet_extensions
 
     LINKED["pipeline_class"], WHOLE["pipeline_class"] = Inner, Outer
 MAX_EVENTS = 10_000  # in one cell, which holds a fraction of an oscillation: never met in earnest
@@ -86,6 +86,8 @@ class _Kept(FunctionCache):
     _impl_class = _Store
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
+        if LINKED:
+            meet_extensions(target_context)
         if self._cache_file._load_index():
             for ready in pieces_of(self._py_func):
                 ready()

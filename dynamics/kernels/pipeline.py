@@ -4,9 +4,12 @@ Three things take most of the time in which numba compiles a kernel of forty hel
 
 - every helper becomes machine code of its own, which nobody calls, because its callers link and inline it. Here it is
   handed to them as it is before LLVM works on it, and is worked on there;
-- for every ``+`` and every ``a[i]`` numba tries all that it knows of these operators, in each round of the inference of
-  types and once more for the code, and again for each literal index. Here the answer is remembered by types;
-- a dozen passes look for what kernels do not have: closures, ``with``, strings, expressions of whole arrays.
+- for every ``+``, ``a[i]`` and ``max`` numba tries all that it knows of these, in each round of the inference of types
+  and once more for the code, and again for each literal index; of every condition it asks what ``bool`` does. Here the
+  answer is remembered by types. Every array that is met has it look for new extensions, which nothing brings here
+  but the pieces that a kernel calls where they lie;
+- a dozen passes look for what kernels do not have: closures, ``with``, strings, expressions of whole arrays; where
+  variables begin and end is found after every second pass, and written into code that counts no references to them.
 
 What a kernel links is its own: elsewhere LLVM's loader takes the first of several functions of one name, so that last
 digits would hang on what a process has compiled or loaded before.
@@ -16,13 +19,23 @@ All this leans on how numba is built inside, and is for the versions of `compili
 
 from __future__ import annotations
 
+import math
 import operator
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 from llvmlite.binding import Linkage
 from numba.core import typed_passes, types, untyped_passes
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, PassManager
+from numba.core.compiler import CompilerBase
+from numba.core.datamodel.models import OpaqueModel
+from numba.core.datamodel.registry import register_default
+from numba.core.imputils import builtin_registry
+from numba.core.ir_utils import build_definitions
+from numba.core.rewrites import rewrite_registry
+from numba.core.ssa import reconstruct_ssa
+from numba.core.transforms import canonicalize_cfg
 from numba.core.types.containers import BaseTuple
 from numba.core.types.misc import SliceType
 
@@ -31,25 +44,13 @@ _OPERATORS = frozenset(
         operator.getitem, operator.setitem, operator.add, operator.sub, operator.mul, operator.truediv,
         operator.floordiv, operator.mod, operator.iadd, operator.isub, operator.imul, operator.itruediv, operator.neg,
         operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne,
+        abs, bool, float, int, len, max, min, range, math.cos, math.sin, math.sqrt,
     }
 )  # fmt: skip
-_PASSES = (
-    untyped_passes.TranslateByteCode,
-    untyped_passes.FixupArgs,
-    untyped_passes.IRProcessing,
-    untyped_passes.GenericRewrites,
-    untyped_passes.ReconstructSSA,
-    typed_passes.NopythonTypeInference,
-    typed_passes.PreLowerStripPhis,
-    typed_passes.IRLegalization,
-    typed_passes.AnnotateTypes,
-    typed_passes.NativeLowering,
-    typed_passes.NoPythonBackend,
-)
 
 
 class _Operator(types.Function):
-    """An operator that remembers what it gives for which types of numbers and arrays of them."""
+    """An operator, or function, that remembers what it gives for which types of numbers and arrays of them."""
 
     def __init__(self, function: types.Function) -> None:
         super().__init__(function.templates)
@@ -65,6 +66,7 @@ class _Operator(types.Function):
         return self._known[plain]
 
 
+register_default(_Operator)(OpaqueModel)
 _KNOWN: dict[types.Function, _Operator] = {}
 
 
@@ -86,6 +88,16 @@ def _unliteral(given: Any) -> Any:
 def _numbers(given: Any) -> bool:
     """Whether this is an array of numbers, whose items are all alike."""
     return isinstance(given, types.Array) and isinstance(given.dtype, types.Number)
+
+
+@cache
+def meet_extensions(context: Any) -> None:
+    """Have numba meet what extends it, once: each it meets would have it look for all of them again."""
+    context.refresh = lambda: None
+    try:
+        type(context).refresh(context)
+    finally:
+        del context.refresh
 
 
 class _Remembering:
@@ -166,6 +178,63 @@ class _Mute:
         """There is nowhere to write it."""
 
 
+class _Way:
+    """What numba calls a pipeline: from a function in Python to machine code, step by step."""
+
+    pipeline_name = "kernel"
+
+    def __init__(self) -> None:
+        self.exec_times: dict[str, Any] = {}  # numba keeps it with what was compiled
+
+    def run(self, state: Any) -> None:
+        """Compile."""
+        for step in _STEPS:
+            step(state)
+
+
+def _rewritten(state: Any) -> None:
+    """Loops in numba's own form; constant indices and the like by what is made for them."""
+    blocks = state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
+    for kind in rewrite_registry.rewrites["before-inference"]:
+        rewrite, waiting = kind(state), list(blocks.items())
+        while waiting:
+            label, block = waiting.pop()
+            if rewrite.match(state.func_ir, block, state.typemap, state.calltypes):
+                blocks[label] = rewrite.apply()
+                waiting.append((label, blocks[label]))
+
+
+def _assigned_once(state: Any) -> None:
+    """Every variable assigned once."""
+    state.func_ir = reconstruct_ssa(state.func_ir)
+    state.func_ir._definitions = build_definitions(state.func_ir.blocks)
+
+
+def _assigned_where_known(state: Any) -> None:
+    """Variables that come from several places are assigned in each of these."""
+    state.func_ir = typed_passes.PreLowerStripPhis()._strip_phi_nodes(state.func_ir)
+    state.func_ir._definitions = build_definitions(state.func_ir.blocks)
+
+
+def _ended(state: Any) -> None:
+    """Where references are counted: where each variable ends."""
+    if state.flags.nrt:
+        typed_passes.IRLegalization().run_pass(state)
+
+
+_STEPS: tuple[Callable[[Any], Any], ...] = (
+    untyped_passes.TranslateByteCode().run_pass,
+    untyped_passes.FixupArgs().run_pass,
+    _rewritten,
+    _assigned_once,
+    typed_passes.NopythonTypeInference().run_pass,
+    _assigned_where_known,
+    _ended,
+    typed_passes.NativeLowering().run_pass,
+    typed_passes.NoPythonBackend().run_pass,
+)
+
+
 class Outer(CompilerBase):
     """The way of what is called from Python, or where it lies."""
 
@@ -175,14 +244,11 @@ class Outer(CompilerBase):
         """Passes that a kernel needs."""
         state = self.state
         state.typingctx = _Remembering(state.typingctx)
-        state.targetctx = state.targetctx.subtarget(typing_context=state.typingctx)
+        fresh = partial(state.targetctx.install_registry, builtin_registry)
+        state.targetctx = state.targetctx.subtarget(typing_context=state.typingctx, refresh=fresh)
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
-        passes = PassManager("kernel")
-        for one in _PASSES:
-            passes.add_pass(one, one.__name__)
-        passes.finalize()
-        return [passes]
+        return [_Way()]
 
 
 class Inner(Outer):
