@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -20,7 +21,8 @@ pytestmark = pytest.mark.xdist_group("article")
 def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("article")
     cache = str(out / "cache")
-    flankfilm("run", EXAMPLES / "article.toml", "--out", out / "first", FLANKFILM_CACHE=cache)
+    done = flankfilm("run", EXAMPLES / "article.toml", "--out", out / "first", FLANKFILM_CACHE=cache)
+    (out / "said.txt").write_text(done.stdout + done.stderr, encoding="utf-8")
     return out
 
 
@@ -28,6 +30,21 @@ def folder(tmp_path_factory):
 def results(folder):
     with xr.open_dataset(folder / "first" / "results.nc", engine="h5netcdf") as dataset:
         yield dataset.load()
+
+
+def test_the_first_page_shows_what_the_program_says(folder):
+    """Texts to the letter, numbers to a tenth: errors hang on the machine's last digits."""
+    page = (EXAMPLES.parent / "docs" / "getting_started.md").read_text(encoding="utf-8")
+    number = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
+    said = {
+        number.sub("#", line): line for line in (folder / "said.txt").read_text(encoding="utf-8").splitlines()
+    }
+    shown = re.search(r"```text\n(mean mesh stiffness.*?)```", page, re.DOTALL)
+    assert shown is not None
+    for line in shown[1].splitlines():
+        own = said[number.sub("#", line)]
+        for one, other in zip(number.findall(line), number.findall(own), strict=True):
+            assert float(one) == pytest.approx(float(other), rel=0.1), (line, own)
 
 
 def test_every_figure_has_an_error_or_says_why_not(results):
