@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fem.face_setting import FaceSetting
     from fem.setting import Setting
     from gears import GearPair, LoadShare
+    from gears.load_sharing import DeflectionLaw
 
 __all__ = ["CellContact", "CellShare", "along_cells"]
 
@@ -100,12 +101,13 @@ class CellContact:
         def share(strip: float, some: Integers) -> LoadShare:
             stiff, whole, begin = coupling(strip), self.whole[some], start[some]
             if rise is None:
-                return share_load(whole, stiff, laws, apart, film, arms, begin)
+                return _unique(share_load(whole, stiff, laws, apart, film, arms, begin), stiff, laws, film)
             part = part_cells(laws, stiff, _flat(rise)[some])
             first = apart - part.rise
             least = first.min(axis=-1)
             found = share_load(whole, stiff, part, first - least[..., None], film, arms, begin)
-            return replace(found, transmission_error=found.transmission_error + least)
+            found = replace(found, transmission_error=found.transmission_error + least)
+            return _unique(found, stiff, part, film)
 
         def widest(found: LoadShare) -> Array:
             return self._half_widths(_by_cells(found.forces, cells).max(axis=-1) / unit)
@@ -173,6 +175,27 @@ def along_cells(face: FaceSetting, pair: GearPair, where: ContactCandidates) -> 
 def _radius(where: ContactCandidates) -> Array:
     rho1, rho2 = where.rho
     return np.asarray(rho1 * rho2 / (rho1 + rho2))
+
+
+def _unique(
+    found: LoadShare, coupling: CellCoupling, laws: DeflectionLaw, film: DeflectionLaw | None
+) -> LoadShare:
+    """Return a share of cells that no other one stands beside, which wider strips else have.
+
+    Laws of contacts that a tip corner cuts off may fall by the load, as far as the tooth in the plane yields more than
+    that; in short waves along the face it yields less.
+    """
+    from gears.errors import LoadSharingError
+
+    slope, bears = laws.slope(found.forces), found.forces > 0.0
+    if film is not None:
+        slope = slope - film.slope(found.forces)
+    if not coupling.definite(slope, bears, np.any(bears & (slope < 0.0), axis=-1)):
+        allowed = "must yield to short waves of load beside a tip corner, which these do not"
+        raise LoadSharingError.at(
+            "cells", coupling.unknowns, allowed, "reduce the torque, or give fewer cells"
+        )
+    return found
 
 
 def _by_cells(values: Array, cells: int) -> Array:

@@ -93,6 +93,22 @@ class CellCoupling(Coupling):
             one[at, chosen], other[at, chosen] = solve_symmetric(jacobian, sides)
         return unit, response, 1.0
 
+    def definite(self, slope: Array, active: Booleans, wanted: Booleans) -> bool:
+        """Whether cells that bear yield to every change of their forces, with slopes of their laws (..., n) [m/N].
+
+        Positions that are not wanted (...) are not looked at. Forces of others are one solution of many.
+        """
+        from scipy.linalg.lapack import dpotrf
+
+        for at in zip(*np.nonzero(wanted), strict=True):
+            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
+            bears = np.flatnonzero(active[at][cells])
+            jacobian = block.take(bears, axis=0).take(bears, axis=1)
+            jacobian.ravel()[:: len(bears) + 1] += slope[at][cells[bears]]
+            if dpotrf(jacobian.T, lower=True)[1]:
+                return False
+        return True
+
 
 def solve_symmetric(matrix: Array, sides: Array) -> Array:
     """Solve for rows of sides by Cholesky's method; where cells are narrow the matrix may be indefinite."""
