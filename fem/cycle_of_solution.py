@@ -13,6 +13,7 @@ from fem.cycle import MeshCycle
 from fem.edge_tables import EdgeTables
 from fem.elasticity import reduced_modulus
 from fem.events import ContactProblem
+from fem.face_errors import FEW_CELLS
 from fem.face_loads import face_loads
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
@@ -28,9 +29,6 @@ LARGE_DEFLECTION = 0.03
 
 WIDE_CONTACT = 0.07
 """Part of the radius of relative curvature above which a contact's half-width is told."""
-
-FEW_CELLS = 4
-"""Cells that a contact needs, or those who ask are told."""
 
 
 def cycle_of(

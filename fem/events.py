@@ -18,7 +18,7 @@ from fem.setting import Setting
 from fem.sharing import Solution, solve
 from gears.arcs import Arcs
 from gears.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
-from gears.mesh_figures import CURVES, FewerCells, MeshArcs
+from gears.mesh_figures import CURVES, FewerCells, MeshArcs, Scatter
 
 __all__ = ["ContactProblem", "measured_less"]
 
@@ -71,7 +71,7 @@ class ContactProblem:
     turn: Array | None = None
     tables: EdgeTables | None = None
     varied: tuple[tuple[Film, float], ...] = ()
-    scatter: Mapping[str, tuple[float, float]] | None = None
+    scatter: Mapping[str, Scatter] | None = None
     ends_error: float = 0.0
 
     def less(self, turn: Array) -> ContactProblem:

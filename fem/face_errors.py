@@ -1,32 +1,36 @@
-"""Errors by the cells of a face and by its free ends: what half as many cells change."""
+"""Errors by the cells of a face and by its free ends: what half as many cells change, and how loads bend."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, record
 from fem.face_setting import FREE_ENDS, WALLS
+from gears.mesh_figures import Scatter
 
 if TYPE_CHECKING:
     from fem.cell_contact import CellContact, CellShare
     from fem.face_setting import FaceSetting
     from gears import LoadShare
 
-__all__ = ["CellErrors", "cell_errors", "face_load_factors", "half_as_many"]
+__all__ = ["FEW_CELLS", "CellErrors", "cell_errors", "face_load_factors", "greatest_error", "half_as_many"]
 
-LEFT, LEFT_OF_LOAD, LEFT_AT_END = 0.9, 0.7, 1.0
-"""Part of what twice as many cells changed that is left: all of it in the first order, a third in the second.
+LEFT = 1.0 / sqrt(3.0)
+"""Part of what twice as many cells changed that is left of stiffness and deflection.
 
-Of stiffness and deflection, whose changes are irregular, of the greatest load within the face, and of that at an end,
-which is found in the first order.
+Every doubling changes about half as much as the one before, with a sign by chance: (1/4 + 1/16 + ...)^(1/2).
 """
 
-FAR = 4.0
-"""Times what neighbouring cells say of halving them that the change from half as many is believed."""
+LEFT_OF_LOAD = 0.25
+"""Part that is left, in the second order, of what a greatest load changed by and a parabola did not foresee."""
+
+FEW_CELLS = 4
+"""Cells that a contact needs, or those who ask are told."""
 
 ENDS_ERROR = 0.03
 """Part of what free ends do that their coarse section leaves uncertain: 0.02 beside three-dimensional elements."""
@@ -34,28 +38,31 @@ ENDS_ERROR = 0.03
 
 @record
 class CellErrors:
-    """Errors by the cells of every torque.
+    """Errors by the cells of every torque, relative.
 
     Attributes
     ----------
-    factor : (torques,) array
-        Of the greatest face-load factor.
+    factor, line_load : (torques,) arrays
+        Of the greatest face-load factor and the greatest line load.
     relative : (torques,) array
-        Of stiffness and deflection at a position, in the mean over positions.
+        Of stiffness and deflection at a position, root mean square over positions.
     ends : (torques,) array
         Further one of both by what free ends leave uncertain, alike at all positions.
-    scatter : dict of (2, torques) arrays
+    scatter : dict of (3, torques) arrays
         As of ``gears.mesh_figures.FewerCells``.
     """
 
     factor: Array
+    line_load: Array
     relative: Array
     ends: Array
     scatter: Mapping[str, Array]
 
-    def of(self, torque: int) -> dict[str, tuple[float, float]]:
+    def of(self, torque: int) -> dict[str, Scatter]:
         """Scatter of a single torque."""
-        return {name: (float(both[0, torque]), float(both[1, torque])) for name, both in self.scatter.items()}
+        return {
+            name: Scatter(*(float(size) for size in each[:, torque])) for name, each in self.scatter.items()
+        }
 
 
 def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:
@@ -72,12 +79,27 @@ def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: C
     for name, curve in both[0].items():
         change = rest * (both[1][name] - curve)
         varying = change - change.mean(axis=(1, 2), keepdims=True)
-        scatter[name] = np.stack([np.abs(one).mean(axis=(1, 2)) for one in (change, varying)])
+        size = _size(change)
+        scatter[name] = np.stack([size, _size(varying), size / np.sqrt(_stretches(change))])
         if name != "secant_stiffness":
-            relative = np.maximum(relative, np.abs(change / curve).mean(axis=(1, 2)))
-    each = [_factor_error(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
-    factor, ends = np.array(each).T
-    return CellErrors(factor, relative, ends, scatter)
+            relative = np.maximum(relative, _size(change / curve))
+    each = [_load_errors(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
+    factor, line_load, ends = np.array(each).T
+    return CellErrors(factor, line_load, relative, ends, scatter)
+
+
+def _size(change: Array) -> Array:
+    """Root mean square over pitches and positions (torques,)."""
+    return np.asarray(np.sqrt(np.mean(change**2, axis=(1, 2))))
+
+
+def _stretches(change: Array) -> Array:
+    """Stretches of the mesh cycle in which a change (torques, pitches, positions) keeps its sign, at least one each.
+
+    What changes by chance from one to the next is off in the mean by its size over the root of their number.
+    """
+    signs = np.sign(change.reshape(len(change), -1))
+    return np.asarray(np.maximum(np.count_nonzero(signs != np.roll(signs, 1, axis=1), axis=1), 1))
 
 
 def _curves(whole: Array, share: LoadShare) -> dict[str, Array]:
@@ -86,37 +108,78 @@ def _curves(whole: Array, share: LoadShare) -> dict[str, Array]:
     return {"stiffness": share.stiffness, "transmission_error": moved, "secant_stiffness": whole / moved}
 
 
-def _factor_error(
+def _load_errors(
     over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
-) -> tuple[float, float]:
-    """Error of the greatest face-load factor, and the relative one of stiffness and deflection by free ends."""
-    (few, rest), kappa = half_as_many(face), over.kappa[..., None]
-    loads, fewer = (one.forces[torque] / kappa for one in (fine, coarse))
+) -> tuple[float, float, float]:
+    """Errors of the greatest factor and line load, and that of stiffness and deflection by free ends."""
+    kappa = over.kappa[..., None]
+    loads, fewer = (one.left.shape[-1] * one.forces[torque] / kappa for one in (fine, coarse))
     factors, half = face_load_factors(loads), face_load_factors(fewer)
-    pitch, position = (int(k) for k in np.unravel_index(int(np.argmax(factors)), factors.shape))
-    cells = loads[pitch, position]
-    most = cells[int(np.argmax(cells.sum(axis=-1)))]
-    at_end = int(np.argmax(most)) in (0, len(most) - 1)
-    settled = (
-        rest
-        / LEFT
-        * (LEFT_AT_END if at_end else LEFT_OF_LOAD)
-        * abs(float(np.max(factors)) - float(np.max(half)))
-    )
-    between = _between(most)
-    found, ends = float(np.clip(settled, between, FAR * between)), 0.0
-    if face.model == FREE_ENDS:
-        at = over.at(torque, pitch, position)
-        walls = at.shared(replace(few, model=WALLS), coarse.forces[torque, pitch, position][None, None, None])
-        without = float(face_load_factors(walls.forces / at.kappa[..., None])[0, 0, 0])
-        found += ENDS_ERROR * abs(float(half[pitch, position]) - without)
-        for name in ("stiffness", "transmission_error"):
-            free, held = (
-                getattr(coarse.share, name)[torque, pitch, position],
-                getattr(walls.share, name)[0, 0, 0],
-            )
-            ends = max(ends, ENDS_ERROR * abs(float(held / free) - 1.0))
-    return found, ends
+    greatest, greatest_half = loads.max(axis=(-2, -1)), fewer.max(axis=(-2, -1))
+    ends, found = 0.0, []
+    for values, few_values, over_mean in ((factors, half, True), (greatest, greatest_half, False)):
+        at, few_at = _place(values), _place(few_values)
+        error = greatest_error(_most_loaded(loads[at], over_mean), _most_loaded(fewer[few_at], over_mean))
+        if face.model == FREE_ENDS:
+            free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
+            without = held.left.shape[-1] * held.forces[0] / kappa[at[1]]
+            value = face_load_factors(without) if over_mean else without.max(axis=(-2, -1))
+            error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
+            for name in ("stiffness", "transmission_error") if over_mean else ():
+                apart = getattr(held.share, name)[0, 0, 0] / getattr(free, name)[torque, *at]
+                ends = max(ends, ENDS_ERROR * abs(float(apart) - 1.0))
+        found.append(error)
+    return found[0], found[1], ends
+
+
+def _place(values: Array) -> tuple[int, int]:
+    """Pitch and position of the greatest value."""
+    pitch, position = np.unravel_index(int(np.argmax(values)), values.shape)
+    return int(pitch), int(position)
+
+
+def _between_walls(
+    over: CellContact, face: FaceSetting, coarse: CellShare, torque: int, at: tuple[int, int]
+) -> CellShare:
+    """Half as many cells at one position without what free ends do."""
+    few, _ = half_as_many(face)
+    start = coarse.forces[torque, *at][None, None, None]
+    return over.at(torque, *at).shared(replace(few, model=WALLS), start)
+
+
+def _most_loaded(loads: Array, over_mean: bool) -> Array:
+    """Line loads (cells,) of the pair that bears most, over their mean, or of that with the greatest one."""
+    if over_mean:
+        most = loads[int(np.argmax(loads.sum(axis=-1)))]
+        return np.asarray(most / most.mean())
+    return np.asarray(loads[int(np.argmax(loads.max(axis=-1)))])
+
+
+def greatest_error(cells: Array, fewer: Array) -> float:
+    """Relative error of the greatest of line loads (cells,), by those with half as many.
+
+    Within the face it is what the greatest cell lacks to the top of a parabola through it and its neighbours, and a
+    part of what the last doubling changed beyond what the parabola there foresaw. At an end, and where few cells bear,
+    all that the doubling changed is left, in the first order, or what the parabola foresees, if more.
+    """
+    k, most = int(np.argmax(cells)), float(cells.max())
+    change = (most - float(fewer.max())) / max(len(cells) / len(fewer) - 1.0, 1.0)
+    if k in (0, len(cells) - 1) or np.count_nonzero(cells) < FEW_CELLS:
+        return max(abs(change), abs(_foreseen(cells))) / most
+    bend, slope = 2.0 * cells[k] - cells[k - 1] - cells[k + 1], cells[k + 1] - cells[k - 1]
+    lacking = bend / 24.0 + slope**2 / (8.0 * bend)
+    return float(hypot(lacking, LEFT_OF_LOAD * (change - _foreseen(fewer))) / most)
+
+
+def _foreseen(cells: Array) -> float:
+    """What halving the cells adds to the greatest, by a parabola with the means of three."""
+    k, last = int(np.argmax(cells)), len(cells) - 1
+    if last < 2:
+        return 0.0
+    if k in (0, last):
+        first, second, third = cells[:3] if k == 0 else cells[:-4:-1]
+        return float(3.0 * first - 4.0 * second + third) / 8.0
+    return abs(float(cells[k + 1] - cells[k - 1])) / 8.0
 
 
 def face_load_factors(forces: Array) -> Array:
@@ -124,13 +187,3 @@ def face_load_factors(forces: Array) -> Array:
     most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
     chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
     return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))
-
-
-def _between(cells: Array) -> float:
-    """What halving changes of the greatest cell over their mean, by a parabola through three or at an end a line."""
-    k = int(np.argmax(cells))
-    if k in (0, len(cells) - 1):
-        change = (cells[k] - cells[1 if k == 0 else k - 1]) / 4
-    else:
-        change = (2 * cells[k] - cells[k - 1] - cells[k + 1]) / 16
-    return float(change / cells.mean())

@@ -27,8 +27,8 @@ HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not 
 class FaceLoads(FaceCells):
     """Line loads over the face at the positions of a mesh cycle.
 
-    ``error`` is that of the greatest face-load factor: what twice as many cells would change, and a part of what free
-    ends do.
+    ``error`` and ``line_load_error`` are what more cells would change of the greatest face-load factor and of the
+    greatest line load, and a part of what free ends do.
     """
 
     no_error = IN_SINGLE_CELLS
@@ -49,6 +49,7 @@ class FaceLoads(FaceCells):
         shown="um",
     )
     error: float = quantity("1", "estimated relative error of the greatest face-load factor")
+    line_load_error: float = quantity("1", "estimated relative error of the greatest line load")
     shaft_misalignment: Array = quantity(
         "m",
         "how far the shafts' bending and twist under the load open the flanks over the face, end to end, by the mean "
@@ -62,7 +63,7 @@ class FaceLoads(FaceCells):
         """Greatest of the face-load factors of all positions."""
         return float(np.max(self.face_load_factor))
 
-    @described("N/m", shown="N/mm", error="error")
+    @described("N/m", shown="N/mm", error="line_load_error")
     def greatest_line_load(self) -> float:
         """Greatest line load of all positions, pairs and cells."""
         return float(np.max(self.line_load))
@@ -111,6 +112,7 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
         plane=plane,
         curvature_radius=np.tile(radius, (given.pitches, 1)),
         gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
-        error=float(over.errors.factor[number] / np.max(factors)),
+        error=float(over.errors.factor[number]),
+        line_load_error=float(over.errors.line_load[number]),
         shaft_misalignment=bent,
     )

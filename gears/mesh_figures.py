@@ -22,7 +22,7 @@ from base import Array, Integers, described, part, quantity, record
 from gears.arcs import Arcs
 from gears.events import Division
 
-__all__ = ["CURVES", "Estimate", "FewerCells", "MeshArcs", "MeshFigures"]
+__all__ = ["CURVES", "Estimate", "FewerCells", "MeshArcs", "MeshFigures", "Scatter"]
 
 CURVES = ("transmission_error", "stiffness", "secant_stiffness")
 """Curves of every mesh cycle on its arcs."""
@@ -58,6 +58,17 @@ class Estimate:
 
 
 @record
+class Scatter:
+    """What cells leave of a curve at the positions of a cycle, in the curve's unit."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    size: float = quantity("", "root mean square over positions")
+    varying: float = quantity("", "the same of what is not alike at all positions")
+    of_mean: float = quantity("", "of their mean, which changes of sign leave the less of the more there are")
+
+
+@record
 class FewerCells:
     """A cycle with half as many cells of the face."""
 
@@ -65,9 +76,7 @@ class FewerCells:
 
     arcs: Arcs = part("curves with fewer cells")
     share: float = quantity("1", "how much of what fewer cells change is error")
-    scatter: Mapping[str, tuple[float, float]] = part(
-        "mean size over positions of that part, of curves by their names, and of what is not alike at all positions"
-    )
+    scatter: Mapping[str, Scatter] = part("that part at positions, of curves by their names")
 
 
 @record
@@ -107,12 +116,14 @@ class MeshArcs:
     def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
         """Mean of a curve, all over or between two ends of arcs in every base pitch."""
         value, error = self.arcs.mean(name, between)
-        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], self._scatter(name)[0])
+        return self._estimate(
+            value, error, lambda arcs: arcs.mean(name, between)[0], self._scatter(name).of_mean
+        )
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
         """Least or greatest value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
-        scatter, _ = self._scatter(name)
+        scatter = self._scatter(name).size
         return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter)
 
     def range(self, name: str) -> Estimate:
@@ -123,7 +134,7 @@ class MeshArcs:
             (low, _), (high, _) = arcs.extremes(name)
             return high - low
 
-        return self._estimate(most - least, hypot(off, more), apart, self._scatter(name)[1])
+        return self._estimate(most - least, hypot(off, more), apart, self._scatter(name).varying)
 
     def greatest_share(self) -> Estimate:
         """Greatest share of the torque that a pair takes; nan where pairs are not told apart."""
@@ -187,9 +198,10 @@ class MeshArcs:
         parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied, *fewer)]
         return value, np.concatenate(parts, axis=1)
 
-    def _scatter(self, name: str) -> tuple[float, float]:
-        """Mean size of what the cells leave of a curve, and of what of it is not alike at all positions."""
-        return (0.0, 0.0) if self.fewer is None else self.fewer.scatter.get(name, (0.0, 0.0))
+    def _scatter(self, name: str) -> Scatter:
+        """What the cells leave of a curve at positions."""
+        none = Scatter(0.0, 0.0, 0.0)
+        return none if self.fewer is None else self.fewer.scatter.get(name, none)
 
     def _estimate(
         self,

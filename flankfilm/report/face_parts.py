@@ -46,7 +46,7 @@ def headlines(found: fem.FaceLoads) -> list[Headline]:
     note = f"{plus_minus(found.error)}; {LABELS[found.setting.model]}, {found.setting.cells} cells"
     return [
         Headline(GREATEST, factor, note),
-        Headline(load.meaning, number(float(load.values)), plus_minus(found.error), load.unit),
+        Headline(load.meaning, number(float(load.values)), plus_minus(found.line_load_error), load.unit),
     ]
 
 
@@ -84,7 +84,7 @@ def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     yield "mean of the face-load factor over the cycle", f"{number(float(factor.mean()))} {off}"
     load = read_figure(found, "greatest_line_load")
     *_, cell = np.unravel_index(np.argmax(found.line_load), found.line_load.shape)
-    yield load.meaning, f"{number(float(load.values))} {load.unit} {off}"
+    yield load.meaning, f"{number(float(load.values))} {load.unit} {plus_minus(found.line_load_error)}"
     at = f"{number(1e3 * float(found.face_position[cell]), 3)} mm"
     yield "its place on the face, from the middle", at
     pressure = read_figure(found, "hertz_pressure")

@@ -100,6 +100,7 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     ),
     _of_face("contact_pattern", "contact_pattern"),
     _of_face("face_load_factor_error", "error"),
+    _of_face("greatest_line_load_error", "line_load_error"),
     _over_tolerance(
         "robust_face_load_factor",
         figures(FaceTolerance)["robust_face_load_factor"],

@@ -13,7 +13,8 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "stiffness_error": ("mean_secant_stiffness_N_per_mm_um",),
     "tangent_stiffness_error": ("mean_stiffness_N_per_mm_um",),
     "transmission_error_error": ("transmission_error_um",),
-    "face_load_factor_error": ("face_load_factor", "greatest_line_load_N_per_mm"),
+    "face_load_factor_error": ("face_load_factor",),
+    "greatest_line_load_error": ("greatest_line_load_N_per_mm",),
     "robust_face_load_factor_error": ("robust_face_load_factor",),
     "root_stress_error": tuple(
         f"root_{kind}_{gear}_MPa" for kind in ("tension", "compression") for gear in ("pinion", "wheel")

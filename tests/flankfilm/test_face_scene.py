@@ -217,6 +217,7 @@ def test_outputs_of_studies_are_those_of_the_face(ran):
         "face_pressure_MPa": 1e-6 * np.nanmax(loads.hertz_pressure),
         "contact_pattern": loads.contact_pattern,
         "face_load_factor_error": loads.error,
+        "greatest_line_load_error": loads.line_load_error,
         "face_load_factor_at_C": models.pitch_point_factor[0],
         "slices_face_load_factor": models.pitch_point_factor[0],
         "iso_face_load_factor": models.pitch_point_factor[-1],

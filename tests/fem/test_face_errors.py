@@ -1,0 +1,72 @@
+"""Errors by the cells of a face: greatest loads by how they bend, changes of sign, and what twice as many cells do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem import Compliance, compliance, mesh_cycle
+from fem.face_errors import greatest_error
+from gears import Alignment, Gear, GearPair, Lead
+
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
+
+
+def _means(cells, primitive):
+    """Means over equal cells of (0, 1) of what has this primitive."""
+    return cells * np.diff(primitive(np.linspace(0.0, 1.0, cells + 1)))
+
+
+@pytest.mark.parametrize("top", [0.31, 0.5, 0.5078125, 0.617])
+def test_what_the_greatest_cell_lacks_to_the_top_of_a_parabola(top):
+    """Means of a parabola are its own: all of the error is known, and the last doubling was foreseen."""
+    cells, fewer = (_means(n, lambda z: z - (z - top) ** 3 / 3.0) for n in (64, 32))
+    assert greatest_error(cells, fewer) == pytest.approx(1.0 / cells.max() - 1.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("turned", [slice(None), slice(None, None, -1)])
+def test_at_an_end_all_of_the_last_change_is_left(turned):
+    """A load that is linear over the face: the end cell lacks half of what its neighbour does, at any number."""
+    cells, fewer = (_means(n, lambda z: 2.0 * z - 0.5 * z**2)[turned] for n in (64, 32))
+    assert greatest_error(cells, fewer) == pytest.approx(2.0 / cells.max() - 1.0, rel=1e-9)
+
+
+def test_a_single_cell_that_bears_is_told_to_be_half_of_what_it_may_be():
+    cells, fewer = (n * np.eye(n)[n // 4] for n in (64, 32))
+    assert greatest_error(cells, fewer) == pytest.approx(0.5)
+
+
+def test_a_parabola_that_foresaw_wrongly_is_an_error():
+    """The top is flat where it was pointed with half as many cells."""
+    cells, fewer = np.full(64, 1.0), np.full(32, 0.9)
+    cells[31:33] += 1e-6
+    fewer[15:17] += 0.05
+    assert greatest_error(cells, fewer) == pytest.approx(0.25 * (1.0 - 0.95 - 0.05 / 8.0), rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def bodies() -> Compliance:
+    return compliance(PAIR, tolerance=0.02)
+
+
+@pytest.mark.parametrize("slope", [0.0, 4e-6, 9e-6])
+def test_greatest_loads_are_off_by_about_what_is_told(bodies, slope):
+    pair = replace(PAIR, wheel=replace(PAIR.wheel, lead=Lead(crowning=25e-6)))
+    own = replace(bodies, pair=pair)
+    given = {"alignment": Alignment(slope), "face_model": "walls"}
+    few, many = (mesh_cycle(pair, 60.0, 8, own, cells=cells, **given).face for cells in (16, 64))
+    for name, told in (("greatest_face_load_factor", few.error), ("greatest_line_load", few.line_load_error)):
+        change = getattr(many, name) / getattr(few, name) - 1.0
+        assert 0.5 * change < told < 2.0 * change
+
+
+def test_means_feel_less_of_what_changes_sign(bodies):
+    """Cells change the tangent to either side within a cycle: its mean errs less than its extremes are told to."""
+    found = mesh_cycle(
+        PAIR, 50.0, 16, bodies, cells=16, alignment=Alignment(60e-6), face_model="walls", beyond_path=False
+    )
+    scatter = found.problem.scatter["stiffness"]
+    assert 0.0 < scatter.of_mean < scatter.varying <= scatter.size
+    assert found.errors["mean_stiffness"] < found.errors["greatest_stiffness"]
