@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from math import hypot
+from math import hypot, sqrt
 from types import MappingProxyType
 
 import numpy as np
@@ -171,8 +171,7 @@ class MeshArcs:
             return size, None
         either = np.abs(value[:, None] + np.stack([changes, -changes]))
         sizes = np.max(np.abs(either - size[:, None]), axis=0)
-        phase = np.divide(value, size, out=np.ones_like(value), where=size > 0.0)
-        across = np.abs(np.imag(changes * np.conj(phase)[:, None]))
+        across = np.abs(np.imag(changes * np.conj(_phase(value))[:, None]))
         return size, np.linalg.norm(np.hypot(sizes, UNLIKE * across), axis=1)
 
     def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
@@ -194,8 +193,11 @@ class MeshArcs:
             return value, None
         parts.append(self.other * value[:, None])
         before = () if self.before is None else ((self.before, 1.0 / self.gain),)
-        fewer = () if self.fewer is None else ((self.fewer.arcs, self.fewer.share),)
-        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied, *fewer)]
+        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
+        if self.fewer is not None:
+            # what cells change has a phase by chance: half of its square is along the harmonic, half across
+            change = self.fewer.share * np.abs(value - figure(self.fewer.arcs)) / sqrt(2.0)
+            parts += [(turn * change * _phase(value))[:, None] for turn in (1.0, 1j)]
         return value, np.concatenate(parts, axis=1)
 
     def _scatter(self, name: str) -> Scatter:
@@ -221,6 +223,12 @@ class MeshArcs:
             # the change of a figure may vanish by chance where cells change much at single positions
             varied.append(max(self.fewer.share * abs(value - figure(self.fewer.arcs)), least))
         return Estimate(value, hypot(sampling, mesh, other, *varied))
+
+
+def _phase(value: Array) -> Array:
+    """Of complex amplitudes, as numbers of size one."""
+    size = np.abs(value)
+    return np.asarray(np.divide(value, size, out=np.ones_like(value), where=size > 0.0))
 
 
 IN_SINGLE_POSITIONS = "not estimated in single positions; means and extremes have errors"

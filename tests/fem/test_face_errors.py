@@ -70,3 +70,16 @@ def test_means_feel_less_of_what_changes_sign(bodies):
     scatter = found.problem.scatter["stiffness"]
     assert 0.0 < scatter.of_mean < scatter.varying <= scatter.size
     assert found.errors["mean_stiffness"] < found.errors["greatest_stiffness"]
+
+
+def test_what_cells_change_of_a_phase_may_be_a_size_with_others(bodies):
+    """Fewer cells that shift the whole transmission error by 0.001 base pitches leave sizes of harmonics uncertain."""
+    arcs = mesh_cycle(PAIR, 100.0, 8, bodies, cells=16, alignment=Alignment(20e-6), face_model="walls").arcs
+    moved = tuple(replace(one, low=one.low + 1e-3, high=one.high + 1e-3) for one in arcs.arcs.arcs)
+    fewer = replace(arcs.fewer, arcs=replace(arcs.arcs, arcs=moved), share=1.0)
+    size, told = replace(arcs, before=None, other=0.0, fewer=fewer).amplitudes(
+        "transmission_error", np.array([1, 2]), over_mean=False
+    )
+    turned = 2.0 * np.pi * np.array([1, 2]) * 1e-3
+    assert np.all(told > 0.5 * turned * size)
+    assert np.all(told < turned * size)
