@@ -197,7 +197,7 @@ class MeshArcs:
         if self.fewer is not None:
             # what cells change has a phase by chance: half of its square is along the harmonic, half across
             change = self.fewer.share * np.abs(value - figure(self.fewer.arcs)) / sqrt(2.0)
-            parts += [(turn * change * _phase(value))[:, None] for turn in (1.0, 1j)]
+            parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
         return value, np.concatenate(parts, axis=1)
 
     def _scatter(self, name: str) -> Scatter:
