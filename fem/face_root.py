@@ -79,6 +79,11 @@ class FaceRootStress:
         "stress face-load factor: greatest tension over its mean over the face in contact, at the instant of the "
         "greatest",
     )
+    over_even: float = quantity(
+        "1",
+        "greatest tension over that of the same forces of all pairs spread evenly along the face: what uneven loads "
+        "cost this root",
+    )
     tension_error: float = quantity(
         "1", "estimated relative error of the greatest tension by what varies along the face", no_error=ITSELF
     )
@@ -149,10 +154,17 @@ def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_posi
             -over_cycle[1],
             stress.along(nodes.part(tension.instant), peak.tooth, z)[0, :, LOADED],
             float(then.max()) / mean,
+            float(over_cycle[0].max()) / _even(stress, nodes.even, z),
             tension.error,
             compression.error,
         ),
     )
+
+
+def _even(stress: StressOverFace, even: CellLoads, z: Array) -> float:
+    """Greatest tension by even loads [Pa]: at the instant that is the greatest where the face in contact is halved."""
+    instant = int(np.argmax(stress.greatest(even, np.zeros(1))[0].max(axis=(1, 2))))
+    return float(stress.greatest(even.part(instant), z)[0].max())
 
 
 def _place(z: Array, values: Array) -> float:

@@ -17,7 +17,7 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from gears.errors import GeometryError
 
-__all__ = ["FaceLoadModels", "face_load_models"]
+__all__ = ["FaceLoadModels", "face_load_models", "left_out_by_iso"]
 
 LABELS = {FREE_ENDS: "free ends", WALLS: "between walls", SLICES: "independent slices"}
 ISO = "ISO 6336-1, method C"
@@ -136,7 +136,7 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
         line_load=np.array(loads),
         misalignment=float(slope),
         iso_fault=fault,
-        iso_left_out=", ".join(_left_out(own, teeth.pair)),
+        iso_left_out=left_out_by_iso(own, teeth.pair),
         cost=Cost(watch.seconds),
     )
 
@@ -162,6 +162,17 @@ def _iso(teeth: LoadedTeeth, misalignment: float) -> tuple[float, str]:
     except GeometryError as error:
         return float("nan"), str(error)
     return found.K_Hbeta, ""
+
+
+def left_out_by_iso(face: fem.FaceLoads, pair: gears.GearPair) -> str:
+    """What varies the load along a face and is not in the factors by ISO 6336-1, by name.
+
+    Parameters
+    ----------
+    face : fem.FaceLoads
+    pair : gears.GearPair
+    """
+    return ", ".join(_left_out(face, pair))
 
 
 def _left_out(face: fem.FaceLoads, pair: gears.GearPair) -> Iterator[str]:

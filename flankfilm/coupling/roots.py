@@ -11,6 +11,7 @@ import fem
 import gears
 from base import Cost, Stopwatch, part, quantity, record, unclocked
 from flankfilm.coupling.believed import believed
+from flankfilm.coupling.face_models import left_out_by_iso
 
 if TYPE_CHECKING:
     from fem import Kept
@@ -30,6 +31,9 @@ class RootStresses:
     iso_fault: str = quantity("", "why ISO 6336-3 has no answer")
     iso_face: gears.closed_form.Iso6336FaceLoad | None = part(
         "face-load factors by ISO 6336-1, method C; None of loads that are even along the face"
+    )
+    iso_left_out: str = quantity(
+        "", "what varies the load along this face and is not in the factors by ISO 6336-1"
     )
     error: float | None
     cost: Cost
@@ -82,13 +86,14 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
         iso = iso6336_3(pair, abs(pair.normal_force(cycle.torque)))
     except GeometryError as error:
         fault = str(error)
-    face, over = cycle.face, None
+    face, over, left_out = cycle.face, None, ""
     if face is not None:
+        left_out = left_out_by_iso(face, pair)
         try:
             over = iso6336_face_load(pair, abs(cycle.torque), abs(face.setting.slope))
         except GeometryError as error:
             fault = "; ".join(one for one in (fault, str(error)) if one)
-    return RootStresses(found, iso, fault, over, found.error, Cost(watch.seconds))
+    return RootStresses(found, iso, fault, over, left_out, found.error, Cost(watch.seconds))
 
 
 def fillets_over_face(

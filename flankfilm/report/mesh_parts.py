@@ -223,7 +223,7 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
         both = "at D for the pinion and at B for the wheel"
         note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else both)
     drawn = pictures(results, "root_stress", *(("root_face_map",) if over_face else ()))
-    notes = (note, *((said("root_over_face"),) if over_face else ()))
+    notes = (note, *((said("root_over_face", left_out=stage.iso_left_out),) if over_face else ()))
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
 
 
@@ -234,6 +234,8 @@ def _over_face(stage: RootStresses) -> Table:
         if gear.face is not None:
             factor = f"{number(gear.face.face_factor)} {plus_minus(gear.face.tension_error)}"
             rows.append((f"{name}: greatest tension over its mean over the face", factor))
+            even = f"{number(gear.face.over_even)} {plus_minus(gear.face.tension_error)}"
+            rows.append((f"{name}: greatest tension over that of the same forces spread evenly", even))
     if stage.iso_face is not None:
         iso = stage.iso_face
         rows.append(("ISO 6336-1, method C: K_Hbeta of the load", number(iso.K_Hbeta)))

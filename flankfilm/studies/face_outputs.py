@@ -83,6 +83,12 @@ def _of_roots() -> Iterator[Named]:
             attrgetter(f"stress.{gear}.face.face_factor"),
             f"greatest tension at the root of the {gear} over its mean over the face; nan where even",
         )
+        yield _of_root(
+            f"root_over_even_{gear}",
+            figures(fem.FaceRootStress)["over_even"],
+            attrgetter(f"stress.{gear}.face.over_even"),
+            f"greatest tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
+        )
     about = figures(Iso6336FaceLoad)["K_Fbeta"]
     yield _of_root("iso_root_face_factor", about, lambda found: found.iso_face and found.iso_face.K_Fbeta)
 

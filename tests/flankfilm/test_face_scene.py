@@ -258,12 +258,14 @@ def test_root_stress_over_the_face_from_scene_to_page(rooted):
     assert len(axes[2].lines) == 2
     np.testing.assert_allclose(axes[2].lines[1].get_ydata(), 1e-6 * gear.face.cycle_tension)
     part = mesh_parts.root_stress(found, data)
-    assert [len(table.rows) for table in part.tables][:2] == [4, 4]
-    assert "N_F" in part.tables[1].rows[3][0]
+    assert [len(table.rows) for table in part.tables][:2] == [4, 6]
+    assert "N_F" in part.tables[1].rows[5][0]
+    assert "crowning of the pinion" in part.notes[1]
     assert len(part.figures) == 2
     expected = {
         "root_face_position_wheel_mm": 1e3 * gear.greatest_tension.face_position,
         "root_face_factor_wheel": gear.face.face_factor,
+        "root_over_even_wheel": gear.face.over_even,
         "iso_root_face_factor": found.iso_face.K_Fbeta,
         "root_tension_wheel_MPa": 1e-6 * gear.greatest_tension_Pa,
     }
