@@ -1,4 +1,4 @@
-"""Root stress over the face in scenes with what else varies the load: shafts, films, unequal widths, moving contacts."""
+"""Root stress over the face in scenes, with shafts, films, unequal widths and contacts that move."""
 
 from __future__ import annotations
 
@@ -41,9 +41,13 @@ OIL = (
 WET = SCENE.replace('["root-stress"]', '["film", "root-stress"]').replace(
     "pinion_torque_Nm = 100", "pinion_torque_Nm = 100\npinion_speed_rpm = 2000"
 )
-PLASTIC = SCENE.replace("[material]", "[material.pinion]").replace("Nm = 100", "Nm = 8").replace(
-    "[operating]",
-    "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n[operating]",
+PLASTIC = (
+    SCENE.replace("[material]", "[material.pinion]")
+    .replace("Nm = 100", "Nm = 8")
+    .replace(
+        "[operating]",
+        "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n[operating]",
+    )
 )
 UNEQUAL = SCENE.replace("teeth = 30", "teeth = 30, face_width_mm = 22, face_offset_mm = 1")
 
@@ -62,7 +66,9 @@ COMBINED = {
     "shafts": SCENE + SHAFTS,
     "unequal widths": UNEQUAL + ALIGNED,
     "films": WET + ALIGNED + OIL,
-    "shafts, films, unequal widths": WET.replace("teeth = 30", "teeth = 30, face_width_mm = 22") + SHAFTS + OIL,
+    "shafts, films, unequal widths": WET.replace("teeth = 30", "teeth = 30, face_width_mm = 22")
+    + SHAFTS
+    + OIL,
 }
 
 

@@ -41,3 +41,50 @@ CASES = {
     "forty modules": (wide(40.0), 1.0, 40e-6),
 }
 """Pair, part of the line load, and how far axes are out of parallel [m]."""
+
+
+def stresses(pair: GearPair, part: float, across: float, bodies, roots, cells: int, model: str):
+    torque = part * LINE_LOAD * pair.face_width * pair.base_radii[0]
+    given = {"alignment": Alignment(across), "cells": cells, "face_model": model}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)  # of loads on few cells
+        cycle = fem.mesh_cycle(pair, torque, 4, replace(bodies, pair=pair), **given)
+    assert cycle.converged, cycle.message
+    return fem.root_stress(pair, cycle, replace(roots, pair=pair)), cycle
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    return fem.compliance(PAIR, 0.02)
+
+
+@pytest.fixture(scope="module")
+def roots():
+    return fem.fillets(PAIR, 0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", ["walls", "free-ends"])
+@pytest.mark.parametrize("name", CASES)
+def test_twice_as_many_cells_are_within_the_error(bodies, roots, name, model):
+    """And the root feels the load less than the flank does, greatest where that is greatest."""
+    pair, part, across = CASES[name]
+    (few, _), (many, cycle) = (
+        stresses(pair, part, across, bodies, roots, cells, model) for cells in (FEW, MANY)
+    )
+    assert many.converged
+    for gear in ("pinion", "wheel"):
+        one, true = getattr(few, gear), getattr(many, gear)
+        for kind in ("tension", "compression"):
+            told = getattr(one.face, f"{kind}_error")
+            values = [getattr(each, f"greatest_{kind}_Pa") for each in (one, true)]
+            assert abs(values[0] / values[1] - 1.0) < told < 0.5
+        peak, face = true.greatest_tension, true.face
+        assert np.isfinite(face.tension).all()
+        assert np.abs(peak.face_position) <= 0.5 * pair.face_width * (1 + 1e-9)
+        assert peak.stress_Pa == pytest.approx(face.cycle_tension.max(), rel=0.02)
+        assert 1.0 - 1e-6 < face.over_even < 1.05 * cycle.face.greatest_face_load_factor
+        bears = np.abs(
+            peak.face_position - cycle.face.face_position[np.argmax(cycle.line_load.sum(axis=(0, 1)))]
+        )
+        assert bears < 3.0 * pair.module

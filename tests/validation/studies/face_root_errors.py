@@ -136,7 +136,9 @@ def show(rows: list[dict[str, Any]]) -> None:
             true = [abs(row["found"][name][0] / row["true"][name] - 1.0) for row in some]
             told = [row["found"][name][1] for row in some]
             columns = " ".join(f"{v:6.2f}" for v in np.percentile(values, [0, 50, 100]))
-            print(f"{model:10} {name:20} {len(some):3} pairs, least, median, largest ratio {columns};", end="")
+            print(
+                f"{model:10} {name:20} {len(some):3} pairs, least, median, largest ratio {columns};", end=""
+            )
             print(f" true at most {100 * max(true):.2f} %, told at most {100 * max(told):.2f} %")
 
 
@@ -158,7 +160,9 @@ def main(file: Path, pairs: int, seed: int, seconds: float) -> None:
         rows.append(row)
         with file.open("a") as kept:
             kept.write(json.dumps(row) + "\n")
-        said = {name: f"{ratio:.2g}" for name, ratio in ratios(row).items()} if "found" in row else row["fault"]
+        said = (
+            {name: f"{ratio:.2g}" for name, ratio in ratios(row).items()} if "found" in row else row["fault"]
+        )
         print(number, row.get("teeth"), row.get("model"), said, row.get("seconds"), flush=True)
     show(rows)
 
