@@ -15,6 +15,7 @@ import numpy as np
 
 from base import Array, quantity, record
 from base.results import EXACT, ITSELF
+from fem.face_errors import ENDS_ERROR
 from fem.fillet_face import places_on_face
 from fem.root_peaks import LOADED, OTHER, RootNodes, RootPeak, extreme, peak_of
 from fem.stress_over_face import CellLoads, StressOverFace
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from gears.mesh_figures import MeshArcs
 
 __all__ = ["FaceRootStress", "RootOnArcs", "RootOverFace", "root_over_face"]
-
-ENDS_ERROR = 0.1
-"""Part of what free ends do to the greatest stress that their coarse section leaves uncertain."""
 
 SINGLE = "not estimated at single places; the greatest stresses have errors"
 
@@ -219,13 +217,13 @@ class RootOnArcs:
         peak = peak_of(fine, before, found.gain, stress.teeth, stress.fillets.influence, side)
         instant = int(np.argmin(np.abs(fine.position + peak.tooth - peak.position)))
         peak = replace(peak, face_position=z)
-        true, even, walls, compared = stress.beside(peak, self.loads(found.arcs).part(instant), side)
-        error = self.mesh_error * abs((walls - even) / true) + ENDS_ERROR * abs((true - walls) / true)
+        beside = stress.beside(peak, self.loads(found.arcs).part(instant), side)
+        error = (self.mesh_error * abs(beside.waves) + ENDS_ERROR * beside.ends) / abs(beside.stress)
         fewer = () if found.fewer is None else ((found.fewer.arcs, found.fewer.share),)
         for arcs, share in (*fewer, *found.varied):  # half as many cells, other films
             error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
         passage = np.stack([fine.stress.min(axis=(0, 1)), fine.stress.max(axis=(0, 1))])
-        peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / true) * compared)
+        peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / beside.stress) * beside.von_mises)
         return _Found(peak, float(error), instant, passage)
 
     def _nodes(self, arcs: Arcs, z: float) -> RootNodes:

@@ -15,6 +15,9 @@ __all__ = ["CellLoads", "StressOverFace"]
 MOST = 4_000_000
 """Stresses that are held at once."""
 
+NEAR = 2.0
+"""Modules of the face to either side of a place that its root feels most."""
+
 
 @record
 class CellLoads:
@@ -39,6 +42,26 @@ class CellLoads:
     def even(self) -> CellLoads:
         """The same forces spread evenly."""
         return CellLoads(np.zeros_like(self.load) + self.load.mean(axis=-1, keepdims=True), self.rho)
+
+
+@record
+class Beside:
+    """Stress along the fillet at a peak's place by loads at one instant [Pa], and what it is made of.
+
+    Attributes
+    ----------
+    stress : float
+    waves : float
+        By what varies along the face, between walls.
+    ends : float
+        Most that free ends do at places near it, for what they do may vanish at the peak itself.
+    von_mises : float
+    """
+
+    stress: float
+    waves: float
+    ends: float
+    von_mises: float
 
 
 @record
@@ -111,13 +134,18 @@ class StressOverFace:
         """Stress (n, teeth, 2, samples) [Pa] at one place of the face."""
         return np.stack([self.along(loads, int(tooth), np.array([z]))[:, 0] for tooth in self.teeth], axis=1)
 
-    def beside(self, peak: RootPeak, loads: CellLoads, side: int) -> tuple[float, float, float, float]:
-        """Stress at a peak's place by loads at one instant [Pa]: itself, with even loads, between walls, von Mises."""
-        z = np.array([peak.face_position])
+    def beside(self, peak: RootPeak, loads: CellLoads, side: int) -> Beside:
+        """Stress of a peak's fillet sample, at its place and near it, by loads at one instant."""
+        near = peak.face_position + NEAR * self.fillets.module * np.linspace(-1.0, 1.0, 9)
+        half = 0.5 * self.fillets.width
+        z = np.concatenate([[peak.face_position], np.clip(near, self.offset - half, self.offset + half)])
         sample = int(np.argmin(np.abs(self.fillets.influence.line.arc - peak.arc)))
         walls = replace(self, fillets=replace(self.fillets, ends=None))
         true, even, held = (
-            float(of.along(by, peak.tooth, z)[0, 0, side, sample])
-            for of, by in ((self, loads), (self, loads.even), (walls, loads))
+            of.along(by, peak.tooth, z)[0, :, side, sample]
+            for of, by in ((self, loads), (walls, loads.even), (walls, loads))
         )
-        return true, even, held, float(self.von_mises(loads, peak.tooth, z)[0, side, sample])
+        compared = self.von_mises(loads, peak.tooth, z[:1])[0, side, sample]
+        return Beside(
+            float(true[0]), float(held[0] - even[0]), float(np.max(np.abs(true - held))), float(compared)
+        )

@@ -57,6 +57,7 @@ def test_contacts_that_move_out_of_parallel_mirror_and_cost_as_much_as_the_load_
         assert here.greatest_tension_Pa != pytest.approx(stays.greatest_tension_Pa, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_stress_on_shafts_is_that_of_the_alignment_that_they_come_to():
     bodies, roots = fem.compliance(PAIR, 0.05), fem.fillets(PAIR, 0.05)
 
