@@ -212,6 +212,7 @@ class RootOnArcs:
     def peak(self, side: int, z: float) -> _Found:
         """Greatest stress on one side of all teeth and instants at a place of the face."""
         stress, found, line = self.stress, self.found, self.stress.fillets.influence.line
+        whole = self._whole(found.arcs, z)
         fine, before = (None if one is None else self._nodes(one, z) for one in (found.arcs, found.before))
         assert fine is not None
         peak = peak_of(fine, before, found.gain, stress.teeth, stress.fillets.influence, side)
@@ -222,12 +223,17 @@ class RootOnArcs:
         fewer = () if found.fewer is None else ((found.fewer.arcs, found.fewer.share),)
         for arcs, share in (*fewer, *found.varied):  # half as many cells, other films
             error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
-        passage = np.stack([fine.stress.min(axis=(0, 1)), fine.stress.max(axis=(0, 1))])
+        passage = np.stack([whole.min(axis=(0, 1)), whole.max(axis=(0, 1))])
         peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / beside.stress) * beside.von_mises)
         return _Found(peak, float(error), instant, passage)
 
     def _nodes(self, arcs: Arcs, z: float) -> RootNodes:
-        """Stress at all nodes of arcs at a place of the face."""
+        """Stress at all nodes of arcs at a place of the face, but for what contacts do next to themselves."""
+        return RootNodes(
+            arcs, self.positions(arcs), self.stress.clear(self._whole(arcs, z), self.loads(arcs))
+        )
+
+    def _whole(self, arcs: Arcs, z: float) -> Array:
+        """Stress at all nodes of arcs at a place of the face (n, teeth, 2, samples) [Pa]."""
         loads = self.loads(arcs)
-        stress = self.stress.with_cells(loads.load.shape[-1])
-        return RootNodes(arcs, self.positions(arcs), stress.at_place(loads, z))
+        return self.stress.with_cells(loads.load.shape[-1]).at_place(loads, z)

@@ -18,6 +18,13 @@ MOST = 4_000_000
 NEAR = 2.0
 """Modules of the face to either side of a place that its root feels most."""
 
+OWN = 0.5
+"""Modules around a contact that no root stress is looked for in.
+
+A load P on a short length of the face draws the free surface at a distance r by (1 - 2 nu) P/(2 pi r^2), as a force on
+a half-space does: without end where r is small, and no bending.
+"""
+
 
 @record
 class CellLoads:
@@ -125,7 +132,7 @@ class StressOverFace:
             rows = slice(first, first + step)
             some = CellLoads(loads.load[rows], loads.rho[rows])
             for i, tooth in enumerate(self.teeth):
-                found = self.along(some, int(tooth), z)
+                found = self._clear(self.along(some, int(tooth), z), some, int(tooth))
                 tension[rows, i] = extreme(arc, found[:, :, LOADED])[0]
                 compression[rows, i] = extreme(arc, -found[:, :, OTHER])[0]
         return tension, compression
@@ -133,6 +140,28 @@ class StressOverFace:
     def at_place(self, loads: CellLoads, z: float) -> Array:
         """Stress (n, teeth, 2, samples) [Pa] at one place of the face."""
         return np.stack([self.along(loads, int(tooth), np.array([z]))[:, 0] for tooth in self.teeth], axis=1)
+
+    def clear(self, stress: Array, loads: CellLoads) -> Array:
+        """Stress of ``at_place`` without what contacts do next to themselves: no more than where that ends."""
+        each = [self._clear(stress[:, i, None], loads, int(tooth)) for i, tooth in enumerate(self.teeth)]
+        return np.concatenate(each, axis=1)
+
+    def _clear(self, stress: Array, loads: CellLoads, tooth: int) -> Array:
+        """Stress of one tooth (n, places, 2, samples); the fillet under the loaded flank ends short of the contact."""
+        column = np.flatnonzero(self.offsets == tooth)
+        if not len(column):
+            return stress
+        rho, bears = loads.rho[:, column[0]], loads.load[:, column[0]].max(axis=-1) > 0.0
+        influence = self.fillets.influence
+        contact = influence.profile.involute(np.where(bears, rho, influence.rho_range[1]))
+        away = np.linalg.norm(influence.line.points - contact[:, None], axis=-1)
+        last = np.maximum(np.sum(away >= OWN * self.fillets.module, axis=1), 3) - 1
+        samples = np.where(
+            bears[:, None], np.minimum(np.arange(away.shape[1]), last[:, None]), np.arange(away.shape[1])
+        )
+        found = stress.copy()
+        found[:, :, LOADED] = np.take_along_axis(stress[:, :, LOADED], samples[:, None], axis=-1)
+        return found
 
     def beside(self, peak: RootPeak, loads: CellLoads, side: int) -> Beside:
         """Stress of a peak's fillet sample, at its place and near it, by loads at one instant."""

@@ -19,7 +19,9 @@ from fem.gear_face import between_waves, solved_waves
 from fem.line_load import flank_points
 from fem.pair_fillets import fillets
 from fem.prism import Face, prism, section
+from fem.root_peaks import LOADED, OTHER
 from fem.solved_gear import Gears
+from fem.stress_over_face import CellLoads, StressOverFace
 from fem.tooth_root import root_stress
 from gears import Alignment, Gear, GearPair, Lead
 from meshes.triangle import shape
@@ -213,6 +215,28 @@ def test_out_of_parallel_stresses_an_end_less_than_the_load_and_mirrors(bodies, 
         assert here.face.tangential.max() == pytest.approx(most, rel=0.01)
         assert here.face.tension.max() <= most * (1 + 1e-12)
         assert here.errors["greatest_tension_Pa"] > here.face.tension_error > 0.0
+
+
+def test_what_a_contact_does_next_to_itself_is_no_root_stress(walls):
+    """A load on one cell at A, close above the fillet: the root's greatest is that of bending, lower down."""
+    over, count = walls[0], 64
+    finer = replace(over, edges=np.linspace(over.edges[0], over.edges[-1], count + 1))
+    stress = StressOverFace(finer, np.array([0]), np.array([0]), 1, 0.0)
+    low = np.array([PAIR.points.A])
+    loads, z = CellLoads(1e5 * np.eye(count)[None, :1], low[None]), finer.edges[:1]
+    raw = stress.at_place(loads, float(z[0]))
+    clear = stress.clear(raw, loads)[0, 0]
+    away = np.linalg.norm(finer.influence.line.points - finer.influence.profile.involute(low), axis=-1)
+    far = away >= 0.5 * PAIR.module
+    assert not far[np.argmax(raw[0, 0, LOADED])]
+    np.testing.assert_array_equal(clear[OTHER], raw[0, 0, OTHER])
+    np.testing.assert_array_equal(clear[LOADED, far], raw[0, 0, LOADED, far])
+    assert clear[LOADED].max() == raw[0, 0, LOADED, far].max() < 0.8 * raw[0, 0, LOADED].max()
+    assert stress.greatest(loads, z)[0][0, 0, 0] == pytest.approx(clear[LOADED].max(), rel=0.02)
+    # high on the flank the contact is far from all of the fillet
+    high = CellLoads(loads.load, np.array([[PAIR.points.E]]))
+    there = stress.at_place(high, float(z[0]))
+    np.testing.assert_array_equal(stress.clear(there, high), there)
 
 
 @pytest.mark.slow
