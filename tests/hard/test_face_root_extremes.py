@@ -73,18 +73,22 @@ def test_twice_as_many_cells_are_within_the_error(bodies, roots, name, model):
         stresses(pair, part, across, bodies, roots, cells, model) for cells in (FEW, MANY)
     )
     assert many.converged
+    most = cycle.face.face_position[np.argmax(cycle.line_load.sum(axis=(0, 1)))]
     for gear in ("pinion", "wheel"):
         one, true = getattr(few, gear), getattr(many, gear)
-        for kind in ("tension", "compression"):
-            told = getattr(one.face, f"{kind}_error")
-            values = [getattr(each, f"greatest_{kind}_Pa") for each in (one, true)]
-            assert abs(values[0] / values[1] - 1.0) < told < 0.5
+        for kind in ("greatest_tension_Pa", "greatest_compression_Pa"):
+            told, value = one.errors[kind], getattr(true, kind)
+            off = abs(getattr(one, kind) / value - 1.0)
+            assert off < told < 0.5
+            print(f"{kind} of the {gear} {1e-6 * value:.4g} MPa, changed by {off:.4f}, told {told:.4f}")
         peak, face = true.greatest_tension, true.face
-        assert np.isfinite(face.tension).all()
-        assert np.abs(peak.face_position) <= 0.5 * pair.face_width * (1 + 1e-9)
-        assert peak.stress_Pa == pytest.approx(face.cycle_tension.max(), rel=0.02)
-        assert 1.0 - 1e-6 < face.over_even < 1.05 * cycle.face.greatest_face_load_factor
-        bears = np.abs(
-            peak.face_position - cycle.face.face_position[np.argmax(cycle.line_load.sum(axis=(0, 1)))]
+        print(
+            f"over even {face.over_even:.3f}, factors {face.face_factor:.3f} {cycle.face.greatest_face_load_factor:.3f}"
         )
-        assert bears < 3.0 * pair.module
+        assert np.isfinite(face.tension).all()
+        assert np.abs(peak.face_position) <= 0.5 * pair.face_widths[gear == "wheel"] + 1e-3
+        assert peak.stress_Pa == pytest.approx(
+            face.cycle_tension.max(), rel=max(0.01, true.errors["greatest_tension_Pa"])
+        )
+        assert 0.99 < face.over_even < 1.05 * cycle.face.greatest_face_load_factor
+        assert abs(peak.face_position - most) < 3.0 * pair.module

@@ -1,6 +1,6 @@
 """Root stress over the face by three-dimensional elements of a whole pinion: misaligned, crowned, loaded at an end.
 
-Run with ``python tests/validation/studies/face_root_three_dimensions.py`` (two minutes of processor time, 1 GB).
+Run with ``python tests/validation/studies/face_root_three_dimensions.py`` (65 s of processor time, 1 GB).
 
 The solid is that of ``face_three_dimensions``, with edges of 0.05 modules on the loaded fillet. Its displacement under
 the line loads that `fem.mesh_cycle` finds with a pair at C gives the stress by Hooke's law in three dimensions at the
