@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.face_fillets import face_fillets, over_face
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -55,6 +56,29 @@ def test_contacts_that_move_out_of_parallel_mirror_and_cost_as_much_as_the_load_
         np.testing.assert_allclose(here.face.cycle_tension, there.face.cycle_tension[::-1], rtol=1e-7)
         assert 1.05 < here.face.over_even < stays.face.over_even
         assert here.greatest_tension_Pa != pytest.approx(stays.greatest_tension_Pa, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_what_single_cells_move_farther_changes_little(plastic):
+    """The flanks' own motion grows with the load: as if all of it followed the cells' at once."""
+    bodies, roots = plastic
+    given = {"alignment": Alignment(60e-6), "cells": 32, "face_model": "walls", "beyond_path": False}
+    moved, still = (
+        fem.mesh_cycle(PLASTIC, 20.0, 8, bodies, moving_contact=moving, **given) for moving in (True, False)
+    )
+    found = fem.root_stress(PLASTIC, moved, roots)
+    over = over_face(roots, face_fillets(roots, PLASTIC, "walls"), PLASTIC, moved.face.setting)
+    for gear, (name, fillets) in enumerate(zip(("pinion", "wheel"), over, strict=True)):
+        stress = getattr(found, name)
+        row = int(np.argmax(stress.face.tension.max(axis=(1, 2))))
+        pair = int(np.argmax(moved.forces[row]))
+        rho, load = moved.flank_rho[gear][row, pair], moved.line_load[row, pair]
+        own = rho - still.flank_rho[gear][row, pair] - (moved.transmission_error[row] if gear == 0 else 0.0)
+        shift, z = own * (load.max() / load.mean() - 1.0), np.array([stress.greatest_tension.face_position])
+        at = np.array([rho, rho + shift])
+        near, far = fillets.tangential(0, at, np.stack([load, load]), z)[:, 0, 0].max(axis=-1)
+        print(f"{name}: {far / near - 1.0:+.4f}")
+        assert abs(far / near - 1.0) < 0.01
 
 
 @pytest.mark.slow

@@ -65,7 +65,6 @@ COMBINED = {
     "contacts that move": PLASTIC + ALIGNED,
     "shafts": SCENE + SHAFTS,
     "unequal widths": UNEQUAL + ALIGNED,
-    "films": WET + ALIGNED + OIL,
     "shafts, films, unequal widths": WET.replace("teeth = 30", "teeth = 30, face_width_mm = 22")
     + SHAFTS
     + OIL,
