@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FaceRootStress", "RootOnArcs", "RootOverFace", "root_over_face"]
 
+LEFT_OF_ROOT = 0.9
+"""Part of what twice as many cells changed that is left: a third in the second order, the most on few cells at an end."""
+
 SINGLE = "not estimated at single places; the greatest stresses have errors"
 
 
@@ -220,12 +223,17 @@ class RootOnArcs:
         peak = replace(peak, face_position=z)
         beside = stress.beside(peak, self.loads(found.arcs).part(instant), side)
         error = (self.mesh_error * abs(beside.waves) + ENDS_ERROR * beside.ends) / abs(beside.stress)
-        fewer = () if found.fewer is None else ((found.fewer.arcs, found.fewer.share),)
+        fewer = () if found.fewer is None else ((found.fewer.arcs, self._left(found.fewer.arcs)),)
         for arcs, share in (*fewer, *found.varied):  # half as many cells, other films
             error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
         passage = np.stack([whole.min(axis=(0, 1)), whole.max(axis=(0, 1))])
         peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / beside.stress) * beside.von_mises)
         return _Found(peak, float(error), instant, passage)
+
+    def _left(self, fewer: Arcs) -> float:
+        """Part of what fewer cells change that is error."""
+        many, few = (self.loads(arcs).load.shape[-1] for arcs in (self.found.arcs, fewer))
+        return LEFT_OF_ROOT / max(many / few - 1.0, 1.0)
 
     def _nodes(self, arcs: Arcs, z: float) -> RootNodes:
         """Stress at all nodes of arcs at a place of the face, but for what contacts do next to themselves."""
