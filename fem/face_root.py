@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["FaceRootStress", "RootOnArcs", "RootOverFace", "root_over_face"]
 
 LEFT_OF_ROOT = 0.9
-"""Part of what twice as many cells changed that is left: a third in the second order, the most on few cells at an end."""
+"""Part of what twice as many cells changed that is left: a third in the second order, the most on few at an end."""
 
 SINGLE = "not estimated at single places; the greatest stresses have errors"
 
