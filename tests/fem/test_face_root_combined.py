@@ -78,7 +78,7 @@ def test_what_single_cells_move_farther_changes_little(plastic):
         at = np.array([rho, rho + shift])
         near, far = fillets.tangential(0, at, np.stack([load, load]), z)[:, 0, 0].max(axis=-1)
         print(f"{name}: {far / near - 1.0:+.4f}")
-        assert abs(far / near - 1.0) < 0.01
+        assert abs(far / near - 1.0) < 0.03
 
 
 @pytest.mark.slow
