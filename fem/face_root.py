@@ -233,7 +233,7 @@ class RootOnArcs:
     def _left(self, fewer: Arcs) -> float:
         """Part of what fewer cells change that is error."""
         many, few = (self.loads(arcs).load.shape[-1] for arcs in (self.found.arcs, fewer))
-        return LEFT_OF_ROOT / max(many / few - 1.0, 1.0)
+        return float(LEFT_OF_ROOT / max(many / few - 1.0, 1.0))
 
     def _nodes(self, arcs: Arcs, z: float) -> RootNodes:
         """Stress at all nodes of arcs at a place of the face, but for what contacts do next to themselves."""
