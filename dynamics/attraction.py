@@ -20,6 +20,7 @@ from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, rep
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
 PATIENCE = 20  # times the limit that a motion which does not repeat is followed on
+SOME = 5  # part of that after which a motion of a train that did not creep to an orbit is looked at again
 TRIALS = 3  # motions followed so far to distinguish chaos from a long transient
 SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
 
@@ -145,12 +146,13 @@ def basins(
             found.settle(there, 2 * wait, mine)  # transient chaos outlives damping
         for i in np.flatnonzero(mine == UNDECIDED):
             mine[i] = found.follow(there[i], 0)
-        found.settle(there, PATIENCE * wait, mine, UNSETTLED)
+        if any(orbit is not None for orbit in found.orbits):
+            found.settle(there, PATIENCE * wait, mine, UNSETTLED)
         labels[some] = mine
         if progress is not None:
             progress(int(some[-1]) + 1, len(labels))
     last = labels == UNSETTLED  # of the first starts: there were fewer attractors to come to
-    if np.any(last):
+    if np.any(last) and any(orbit is not None for orbit in found.orbits):
         mine, there = labels[last], starts[last]
         found.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)
         labels[last] = mine
@@ -211,8 +213,13 @@ class _Found:
         """Label of a motion that does not repeat: chaotic, on its way to an orbit after all, or unsettled."""
         if self.oscillator.decay == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
             return self.note(None, states)
+        several = self.oscillator.dimension > 2
+        if several and (label := self.creep(states)) >= 0:
+            return label
         if self.trials == TRIALS:
             return UNSETTLED
+        if several and (label := self.creep(self.later(states))) >= 0:
+            return label
         self.trials += 1
         motion, exponent, error = stretch_rate(self.flow, states[-1], self.patience)
         self.periods += self.patience
@@ -227,6 +234,24 @@ class _Found:
             return self.note(None, states)
         n, _, more = creeping(self.oscillator, self.flow, end, self.longest)
         return self.polish(end, n) if n and more else UNSETTLED
+
+    def later(self, states: Array) -> Array:
+        """States of a motion after a part of the patience."""
+        waited = self.patience // SOME
+        self.periods += waited + len(states)
+        return self.flow.follow(states[-1], len(states), waited, derivatives=False).states
+
+    def creep(self, states: Array) -> int:
+        """Label of a motion that comes nearer to a stable orbit: slow modes of a train take thousands of periods.
+
+        Exponents over so many periods in so many directions would cost a hundred times as much.
+        """
+        n, _, more = creeping(self.oscillator, self.flow, states, self.longest)
+        if not (n and more):
+            return UNSETTLED
+        orbit = find_orbit(self.oscillator, states[-1], periods=n, tolerance=orbit_tolerance(self.flow))
+        self.iterations += orbit.cost.iterations
+        return self.note(orbit, self.flow.follow(orbit.state, orbit.periods, derivatives=False).states)
 
     def polish(self, states: Array, n: int) -> int:
         """Label of a motion that nearly repeats after n periods, if Newton's method finds its orbit."""

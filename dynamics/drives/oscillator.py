@@ -182,7 +182,7 @@ class DriveOscillator(PeriodicOscillator):
         rest = float(np.max(np.abs(self.rest_state())))
         return natural_size(self.floor, rest, largest(self.error_series))
 
-    @property
+    @cached_property
     def cells(self) -> float:
         """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
         at = self.coordinates
