@@ -90,13 +90,19 @@ def signed(value: float) -> str:
 def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     """Decisions among the results of stages, in the order in which they were made."""
     plan, series = values.get("plan"), values.get("fourier")
-    order = None if series is None else order_decision(series, values.get("diagram"))
+    train = values.get("drive") is not None
+    order = None if series is None else order_decision(series, values.get("diagram"), train)
     later = (values.get("heat in the film"), order)
     return (*(() if plan is None else plan.decisions), *(one for one in later if one is not None))
 
 
-def order_decision(series: MeshSeries, diagram: SpeedDiagram | None = None) -> Decision | None:
-    """Order of a Fourier series, what it leaves out, and what its jump speeds err by; None for a given series."""
+def order_decision(
+    series: MeshSeries, diagram: SpeedDiagram | None = None, train: bool = False
+) -> Decision | None:
+    """Order of a Fourier series, what it leaves out, and what its jump speeds err by; None for a given series.
+
+    An order that was to be found counts the motion of the pair on rigid shafts, also for a drive `train`: that is said.
+    """
     if (found := series.left_out) is None:
         return None
     order, share = series.order, series.share
@@ -112,6 +118,8 @@ def order_decision(series: MeshSeries, diagram: SpeedDiagram | None = None) -> D
         why += f", below its share of {per_cent(share)}"
         if order > 1 and not series.tried:
             why += f"; order {order - 1} would leave {_left_out(found, order - 1)}"
+    if train:
+        why += "; that is of the pair on rigid shafts: the drive train's own jumps did not choose it"
     tried = tuple(
         Candidate(str(n), float(found.largest[n]), None)
         for n in range(max(1, order - 1), min(order + 1, most) + 1)

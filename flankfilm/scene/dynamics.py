@@ -131,7 +131,10 @@ class DynamicsSection(Section):
     }
 
     fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = key(
-        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows', 1, example="auto"
+        'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows (with shafts by the pair on rigid '
+        "ones)",
+        1,
+        example="auto",
     )
     stiffness: Literal["secant", "tangent"] = key(
         "force over deflection, or the slope for small vibration", "secant", shown=True

@@ -209,13 +209,21 @@ def test_what_a_dropped_harmonic_does_to_the_motion(frequency):
     assert expected[2] == pytest.approx(true, rel=0.2)
 
 
-def chosen(found: LeftOut, share: float) -> tuple[int, Decision]:
+def chosen(found: LeftOut, share: float, train: bool = False) -> tuple[int, Decision]:
     order = least_order(found, share)
     stiffness = FourierStiffness(1.0, (0.0,) * order, (0.0,) * order)
     series = MeshSeries("secant", "", stiffness, None, None, None, found, share, Cost(0.0))
-    decision = order_decision(series)
+    decision = order_decision(series, None, train)
     assert decision is not None
     return order, decision
+
+
+def test_a_drive_train_takes_the_order_of_the_pair_and_says_so():
+    found = left_out(0.1 / np.arange(1, 90) ** 2, None, 0.05)
+    (order, plain), (same, decision) = (chosen(found, 0.005, train) for train in (False, True))
+    assert same == order
+    assert "of the pair on rigid shafts" in decision.reason
+    assert decision.reason.startswith(plain.reason)
 
 
 def test_the_least_order_is_found_and_said():
@@ -226,6 +234,7 @@ def test_the_least_order_is_found_and_said():
         assert found.curve[order] <= share < found.curve[order - 1]
         assert f"order {order - 1} would leave" in decision.reason
         assert decision.choice == str(order)
+        assert "rigid shafts" not in decision.reason
     order, decision = chosen(found, 1e-6)
     assert order == 50
     assert "no series of up to 50" in decision.reason
