@@ -167,7 +167,12 @@ def faults_of(judge):
 
 def told_well(faults):
     """Whether every fault says where and what is allowed, and the list can be read."""
-    return 0 < len(faults) <= 100 and all(f.where and f.allowed and len(str(f)) < 2000 for f in faults)
+    said = [f for f in faults if f.allowed != "is not an output"]  # which lists all of them
+    return (
+        0 < len(faults) <= 100
+        and all(f.where and f.allowed for f in faults)
+        and all(len(str(f)) < 2000 for f in said)
+    )
 
 
 def judged(text):
