@@ -3,7 +3,8 @@
 Run with ``python tests/validation/studies/face_moving.py`` (half a minute, between walls). Each row: contacts that
 stay, those that move, and by how much deflection and tangent change; then the same with other ways for tilt and motion
 to follow the load along the face (by each cell alone as slices do, by the mean over the face), and with the corners of
-the tips met by all cells as by the one that touches first.
+the tips met by all cells as by the one that touches first; nan where cells that tilt by themselves yield less than
+nothing to short waves of load.
 """
 
 from __future__ import annotations
@@ -31,18 +32,22 @@ BEFORE_E = 0.01
 
 
 def solved(bodies: fem.Compliance, position: float, torque: float, face: dict, moving: bool) -> Solution:
-    """One position, its contacts staying or moving."""
+    """One position, its contacts staying or moving, whether it is to be believed or not."""
     pair = bodies.pair
     over = face_setting(pair, face.get("alignment"), face.get("cells", 64), face.get("model", "walls"))
     given = Setting(pair, 1, moving_contact=moving, face=over).at(np.array([position]))
     force = np.array([torque / pair.base_radii[0]])
-    found = solve(given, bodies, force, None, EdgeTables(given, bodies))
-    assert not found.refusal(0), found.refusal(0)
-    return found
+    return solve(given, bodies, force, None, EdgeTables(given, bodies))
+
+
+def deflection(found: Solution) -> float:
+    """Deflection from where the gears touch [um]; nan where there is no solution."""
+    return float("nan") if found.refusal(0) else figures(found)[0]
 
 
 def figures(found: Solution) -> tuple[float, float, float, float]:
     """Deflection from where the gears touch [um], tangent [N/um], face-load factor, greatest force on a cell."""
+    assert not found.refusal(0), found.refusal(0)
     forces = found.face.forces[0, 0, 0] / found.kappa[0][:, None]
     return (
         1e6 * float(found.share.transmission_error[0, 0, 0]),
@@ -69,7 +74,7 @@ def rows(name: str, bodies: fem.Compliance, position: float, torque: float, **fa
     others, smoothing = [], moving_face.tooth_smoothing
     for how in (np.eye, lambda n: np.full((n, n), 1 / n)):
         moving_face.tooth_smoothing = following(how)
-        others.append(100 * (figures(solved(bodies, position, torque, face, True))[0] / stays[0] - 1))
+        others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
     moving_face.tooth_smoothing = smoothing
     cells = moving_face.moving_cells
 
@@ -78,7 +83,7 @@ def rows(name: str, bodies: fem.Compliance, position: float, torque: float, **fa
         return replace(found, along=np.zeros_like(found.along))
 
     moving_face.moving_cells = together
-    others.append(100 * (figures(solved(bodies, position, torque, face, True))[0] / stays[0] - 1))
+    others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
     moving_face.moving_cells = cells
     print(
         f"{name:42s} D {stays[0]:8.3f} {change[0]:+.3f} %  tangent {stays[1]:8.2f} {change[1]:+.3f} %  "
