@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +15,13 @@ from dynamics.up_and_down import up_and_down
 from flankfilm.coupling.carried import greatest, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.resonance import vibrations
+from flankfilm.coupling.resonance import Vibrations, vibrations
 from flankfilm.coupling.speed_ranges import standard_factors
+from flankfilm.coupling.swept_truncation import LEAST_HARMONICS, checked_values, motion_changes
+from flankfilm.coupling.truncation import longer_motion
+
+if TYPE_CHECKING:
+    import dynamics
 
 
 @record
@@ -84,13 +90,19 @@ class DynamicMap:
     sampling_error: float = quantity(
         "1", "largest relative change of factors, forces and torques with half as many samples"
     )
+    truncation: float | None = quantity(
+        "1",
+        "largest relative change of factors, forces and torques by a longer series, at a dozen speeds of every torque "
+        "where that has the same motion; None for given series",
+        no_error=ITSELF,
+    )
     cost: Cost
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = ""
 
     @property
     def error(self) -> float:
-        """Relative error of the factors by samples; what the series leaves out is not in it."""
+        """Relative error of the factors by samples; what the series leaves out is `truncation`."""
         return self.sampling_error
 
     @property
@@ -146,17 +158,18 @@ def dynamic_map(
         if not loads:
             faults.add("torques", "none", "must be at least one", "give a list of torques")
     rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso", "parts")}
-    resonances, lost, off, used = [], 0, 0.0, 0
+    resonances, changed, lost, off, used = [], list[Array](), 0, 0.0, 0
     for torque in loads:
         motion = motion_at(torque)
         assert motion.scales is not None
         values = np.array([motion.scales.frequency(one) for one in at.tolist()])
-        both = []
-        for way, swept in up_and_down(motion.oscillator, "frequency", values).items():
+        both, ways = [], up_and_down(motion.oscillator, "frequency", values)
+        for way, swept in ways.items():
             shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
             rows[way].append(shaken.force)
             both.append(shaken)
             off, used, lost = max(off, shaken.change), used + swept.cost.periods, lost + (not swept.converged)
+        changed += _changed(motion, ways, both)
         rows["separated"].append(np.fmax(*(one.separated for one in both)))
         rows["parts"].append(np.fmax(*(one.parts for one in both)))
         rows["iso"].append(standard_factors(motion.rigid, values))
@@ -173,7 +186,21 @@ def dynamic_map(
         found["iso"],
         **part_figures(motion.outputs, {"": found["parts"][:, :, 2], "_swing": found["parts"][:, :, 1]}),
         sampling_error=off,
+        truncation=greatest(np.concatenate([np.empty(0), *changed])),
         cost=Cost(watch.seconds, periods=used),
         converged=lost == 0,
         message="" if lost == 0 else "some motions grow without bound; their factors are nan",
     )
+
+
+def _changed(
+    motion: PairOscillator | PairDrive, ways: Mapping[str, dynamics.SweepResult], shaken: Sequence[Vibrations]
+) -> list[Array]:
+    """What a longer series changes of factors and of what parts carry; nothing for a given one."""
+    values = next(iter(ways.values())).values
+    longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
+    if longer is None:
+        return []
+    at = checked_values(len(values), {way: one.force for way, one in zip(ways, shaken, strict=True)})
+    found = [motion_changes(longer, motion, swept, at) for swept in ways.values()]
+    return [part for one in found for part in (one.force, one.parts[:, 1:].ravel())]

@@ -99,8 +99,11 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
         "ISO 6336-1, B, there [-]",
         "most time without contact [%]",
     )
-    note = said("dynamic_map", error=percent(stage.sampling_error))
-    notes = (note,) if stage.converged else (note, stage.message)
+    notes = [said("dynamic_map", error=percent(stage.sampling_error))]
+    if stage.truncation is not None:
+        notes.append(said("dynamic_map_order", changed=percent(stage.truncation)))
+    if not stage.converged:
+        notes.append(stage.message)
     carried = carried_table(
         stage,
         ("at [rpm]", "at [N m]"),
@@ -110,7 +113,11 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
     drawn = pictures(results, "dynamic_map", *(["drive_map"] if carried else []))
     tables = (Table(heads, tuple(rows)), *carried)
     return Part(
-        "dynamic-map", "Dynamic factor over speed and torque", figures=drawn, tables=tables, notes=notes
+        "dynamic-map",
+        "Dynamic factor over speed and torque",
+        figures=drawn,
+        tables=tables,
+        notes=tuple(notes),
     )
 
 

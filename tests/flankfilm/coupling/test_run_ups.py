@@ -9,8 +9,8 @@ import pytest
 
 import flankfilm as ff
 from base import InputError
-from flankfilm.coupling import given_series, speed_sweep
-from gears import Gear, GearPair
+from flankfilm.coupling import drive_sweep, given_series, mesh_cycle, mesh_series, pair_drive, speed_sweep
+from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(50e-6)
 SERIES = given_series(4e8, [0.2])
@@ -62,6 +62,20 @@ def test_each_cell_of_the_map_is_the_greatest_force_of_the_sweeps_there():
         swept = speed_sweep(motion_at(torque), speeds)
         greatest = np.fmax(*swept.force_factor.values())
         assert found.factor[k] == pytest.approx(greatest, rel=1e-12)
+    assert found.truncation is None
     # a given stiffness does not know the load
     assert found.resonance[0] == pytest.approx(found.resonance[1], rel=1e-12)
     assert found.greatest == found.factor.max()
+
+
+@pytest.mark.filterwarnings("ignore:Sainsot")
+def test_what_a_longer_series_changes_of_a_map_is_what_it_changes_of_the_sweeps():
+    """Of a drive train's force factors, bearing forces and torques, where the motion is the same."""
+    cycle = mesh_cycle(PAIR, 100.0, model="potential-energy")
+    shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
+    drive = pair_drive(PAIR, mesh_series(cycle, order=1), 100.0, 500.0, shafts=(shaft, shaft))
+    speeds = np.array([500.0, 600.0])
+    found, swept = ff.dynamic_map(lambda torque: drive, [100.0], speeds), drive_sweep(drive, speeds)
+    changes = [float(one[np.isfinite(one)].max()) for one in swept.force_change.values()]
+    assert found.truncation == pytest.approx(max(*changes, swept.truncation), rel=1e-9)
+    assert found.truncation > 10.0 * found.sampling_error
