@@ -81,4 +81,4 @@ def test_random_pairs(seed):
     # cells that bear in part change where they bear, which neither tangent counts
     assert _off(moves) < 1.5 * _off(stays) + 2e-4
     bent = torque / pair.base_radii[0] * (1 / found.secant_stiffness - 1 / stays[1].secant_stiffness)
-    assert np.abs(bent).max() < 0.06 * np.abs(found.force / found.secant_stiffness).max()
+    assert np.abs(bent).max() < 0.04 * np.abs(found.force / found.secant_stiffness).max()
