@@ -79,7 +79,8 @@ def test_twice_as_many_cells_are_within_the_error(bodies, roots, name, model):
         for kind in ("greatest_tension_Pa", "greatest_compression_Pa"):
             told, value = one.errors[kind], getattr(true, kind)
             off = abs(getattr(one, kind) / value - 1.0)
-            assert off < told < 1.0
+            assert off < told
+            assert told < 0.2 or name == "one cell"  # of which nothing much is known, and that is told
             print(f"{kind} of the {gear} {1e-6 * value:.4g} MPa, changed by {off:.4f}, told {told:.4f}")
         peak, face = true.greatest_tension, true.face
         print(
