@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, InputError, Stopwatch
-from dynamics.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, UNBOUNDED, Branch, SpecialPoint
-from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Steps
+from dynamics.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, SMALL, UNBOUNDED, Branch, SpecialPoint
+from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps
 from dynamics.crossings import find_crossings
 from dynamics.meetings import meeting
 from dynamics.shooting import floquet_multipliers, is_stable, motion_label
@@ -25,7 +25,9 @@ from dynamics.step_rules import (
     JUMP,
     LONGER,
     PATIENT,
+    ROUND,
     STRAIGHT,
+    hides,
 )
 from dynamics.tracing import Tracer, both_ways, joined
 
@@ -83,11 +85,12 @@ class _Walker(Tracer):
         progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
-        self.progress, self.size = progress, problem.scale
+        self.progress, self.size = progress, max(problem.scale, problem.oscillator.floor)
         self.states = [start.u[: start.size] * problem.scale]
         self.special: list[SpecialPoint] = []
         self.tangent, self.bend = start.tangent(along), np.zeros(len(along))
         self.half = self._half(start)
+        self.behind = (math.inf, math.inf)
         self.refused = ""
         self.meeting: SpecialPoint | None = None
         self.missed: list[float] = []
@@ -96,11 +99,11 @@ class _Walker(Tracer):
     def stride(self, left: int) -> bool:
         """Take steps that need no look many at a time, where the flow has a loop for that."""
         heading = Heading(self.tangent, self.bend, self.half, self.step)
-        largest = min(LARGE, ENDLESS * self.size / self.problem.scale)
-        taken = self.problem.march(self.points[-1], heading, self.steps, self.phases, largest, left)
+        taken = self.problem.march(self.points[-1], heading, self.steps, self.phases, self.sizes, left)
         if taken is None:
             return False
         self.tangent, self.bend, self.half, self.step = taken.heading
+        self.behind = (math.inf, math.inf)
         values = taken.values.tolist()
         pairs = map(floquet_multipliers, taken.traces.tolist(), taken.determinants.tolist())
         counts = map(tuple, taken.counts.tolist())
@@ -114,33 +117,59 @@ class _Walker(Tracer):
                 self.progress(number, value)
         return bool(taken.whole)
 
+    @property
+    def sizes(self) -> Sizes:
+        """Sizes of motions that the scale serves."""
+        least = SMALL if self.problem.driven < SMALL else 0.0
+        return Sizes(least, min(LARGE, ENDLESS * self.size / self.problem.scale))
+
     def attempt(self, last: MapPoint) -> _Step | None:
         """Next point with what lies before it; at a bound, the point on it."""
-        size = max(abs(x) for x in last.u[: last.size].tolist())
+        size = self.problem.size_of(last.u)
         if size * self.problem.scale > ENDLESS * self.size:
             self.ended = UNBOUNDED
             return None
-        if size > LARGE:
+        if not self.sizes.least <= size <= self.sizes.most:
             last = self._magnified(last, size)
         aim = self.aimed(last, last.u + self.step * (self.tangent + self.step * self.bend))
         if aim is None:
             return None
         self.refused = "Newton's method did not arrive"
-        new = self.problem.correct(*aim)
+        patient = self.step > PATIENT * self.steps.least
+        new, ahead = self.problem.correct(*aim), None
+        if new is None and not patient:  # a corner of more than a right angle: on with the parameter
+            ahead = math.copysign(1.0, self.tangent[-1]) * self.problem.flat
+            new = self.problem.correct(aim[0], ahead)
         if new is None or new.iterations > ITERATIONS:
             return None
         chord = new.u - last.u
-        if math.sqrt(chord @ chord) > ASTRAY * self.step and aim[1] is self.tangent:
+        astray = ASTRAY if patient else ROUND  # behind a corner
+        if math.sqrt(chord @ chord) > astray * self.step and aim[1] is self.tangent:
             return None
-        tangent = new.tangent(chord)
-        patient = self.step > PATIENT * self.steps.least
+        tangent = new.tangent(chord if ahead is None else ahead)
         self.refused = "the branch has a corner"
         if tangent @ self.tangent < CORNER and patient:
             return None
         self.refused = "the multipliers jump"
         if abs(new.trace - last.trace) > JUMP * max(1.0, abs(last.trace)) and patient:
             return None
-        return self._between(last, new, tangent, patient)
+        self.refused = "special points lie close together"
+        half = self._half(new)
+        if patient and not self._met(half) and self._hides(last, new, tangent):
+            return None
+        return self._between(last, new, tangent, half, patient)
+
+    def _hides(self, last: MapPoint, new: MapPoint, tangent: Array) -> bool:
+        """Whether two special points of one kind may lie between neighbours.
+
+        Slopes are asked for where a function of the multipliers is less than its last changes.
+        """
+        at, there, length = _tests(last), _tests(new), math.dist(new.u, last.u)
+        swings = (abs(a - b) + abs(a - c) for a, b, c in zip(at, there, self.behind, strict=True))
+        if all(min(abs(a), abs(b)) > swing for a, b, swing in zip(at, there, swings, strict=True)):
+            return False
+        rise, climb = self.problem.trends(last, self.tangent), self.problem.trends(new, tangent)
+        return any(hides(*ends, length) for ends in zip(at, rise, there, climb, strict=True))
 
     def _end_at(self, point: SpecialPoint | None) -> None:
         """Note where the branch ends; a saddle node there is the doubling itself, at which a multiplier is 1 too."""
@@ -182,7 +211,9 @@ class _Walker(Tracer):
         self.tangent = again.tangent(self.tangent * shrink)
         return again
 
-    def _between(self, last: MapPoint, new: MapPoint, tangent: Array, patient: bool) -> _Step | None:
+    def _between(
+        self, last: MapPoint, new: MapPoint, tangent: Array, half: Array, patient: bool
+    ) -> _Step | None:
         """The step with its special points; None if one is not located and a shorter step may help."""
         crossings, explained = find_crossings(last, new)
         if not explained and patient:
@@ -192,7 +223,6 @@ class _Walker(Tracer):
         self.refused = "a special point was not located"
         if not arrived and patient:
             return None
-        half = self._half(new)
         if self._met(half):
             self.refused = "the branch of half the period is near"
             if not patient or float(np.max(np.abs(self.half))) < MET:
@@ -200,6 +230,9 @@ class _Walker(Tracer):
             return None
         chord = new.u - last.u
         found = [p for p, _ in looked if p is not None]
+        self.refused = "special points lie close together"
+        if patient and _astride(last, new, found):
+            return None
         found.sort(key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord))
         return _Step(new, tangent, half, found, explained and arrived)
 
@@ -213,6 +246,7 @@ class _Walker(Tracer):
         self.points.append(new)
         self.states.append(new.u[: new.size] * self.problem.scale)
         self.iterations += new.iterations
+        self.behind = _tests(last)
         # half the curvature, for the predictor: none from so short a step that the difference is rounding
         self.bend = (
             0.5 / length * (found.tangent - self.tangent) if length > STRAIGHT else 0.0 * found.tangent
@@ -222,6 +256,22 @@ class _Walker(Tracer):
             self.step = min(LONGER * self.step, self.steps.most)
         if self.progress is not None:
             self.progress(len(self.points), new.value)
+
+
+def _tests(point: MapPoint) -> tuple[float, float]:
+    """Functions of the multipliers that are zero at saddle nodes and at period doublings."""
+    return point.fold, point.flip
+
+
+def _astride(last: MapPoint, new: MapPoint, found: list[SpecialPoint]) -> bool:
+    """Whether special points of one kind lie on either side of a grazing between neighbours, which show none."""
+    sides = [_tests(last), _tests(new)]
+    for point in found:
+        if point.kind == "grazing":
+            signs = (float(np.prod(1.0 + sign * point.multipliers).real) for sign in (-1.0, 1.0))
+            if any(a * b > 0.0 > a * c for a, b, c in zip(*sides, signs, strict=True)):
+                return True
+    return False
 
 
 def _off(one: Array, other: Array) -> float:

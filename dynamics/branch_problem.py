@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults
-from dynamics.branch import SpecialPoint
+from dynamics.branch import WIDTH, SpecialPoint
 from dynamics.limits import MAX_POINTS, STEP, ordered
 from dynamics.shooting import floquet_multipliers
 from dynamics.step_rules import NEAR
@@ -201,6 +201,22 @@ class BranchProblem(ABC):
             here = here.with_parameter(name, float(value))
         return here
 
+    @cached_property
+    def rest(self) -> Array:
+        """State at rest over the scale, from which motions in much play are measured."""
+        return np.asarray(self.oscillator.rest_state() / self.scale)
+
+    @cached_property
+    def driven(self) -> float:
+        """Least size of a motion in play, by what drives it, over the scale."""
+        return float(WIDTH * self.oscillator.driven_size / self.scale)
+
+    def size_of(self, u: Array) -> float:
+        """Size of a motion through a state, as of `dynamics.sizes`, over the scale."""
+        state: list[float] = u[: self.size].tolist()
+        away: float = max(abs(a - b) for a, b in zip(state, self.rest.tolist(), strict=True))
+        return min(max(map(abs, state)), max(self.driven, WIDTH * away))
+
     def unknowns(self, state: Array, values: npt.ArrayLike) -> Array:
         """Unknowns of a state and the parameter values."""
         fraction = (np.atleast_1d(np.asarray(values, dtype=np.float64)) - self.low) / (self.high - self.low)
@@ -210,8 +226,12 @@ class BranchProblem(ABC):
     def correct(self, guess: Array, across: Array) -> Any:
         """Orbit in the plane across . (u - guess) = 0; None if Newton's method does not arrive."""
 
+    @abstractmethod
+    def trends(self, point: Any, tangent: Array) -> tuple[float, float]:
+        """Slopes of `fold` and `flip` along the branch of one parameter."""
+
     def march(
-        self, last: Any, heading: Heading, steps: Steps, places: list[list[float]], largest: float, wanted: int
+        self, last: Any, heading: Heading, steps: Steps, places: list[list[float]], sizes: Sizes, wanted: int
     ) -> Any:  # fmt: skip
         """Steps from a point on that need no look, as of `dynamics.marching`; None if the flow has no loop for that."""
         return None
@@ -240,6 +260,19 @@ class BranchProblem(ABC):
     def magnified(self, factor: float) -> Self:
         """The same with a larger scale."""
         return replace(self, scale=factor * self.scale)
+
+
+class Sizes(NamedTuple):
+    """Sizes of motions, as of `BranchProblem.size_of`, between which the scale stands.
+
+    Attributes
+    ----------
+    least, most : float
+        Over the scale.
+    """
+
+    least: float
+    most: float
 
 
 class Heading(NamedTuple):

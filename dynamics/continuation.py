@@ -17,7 +17,7 @@ from dynamics.flows import flow_of, unserved
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Oscillator
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.states import scale_of
+from dynamics.sizes import size_of
 from dynamics.stepwise.flow import TOLERANCE
 from dynamics.stepwise.oscillator import SmoothOscillator
 from dynamics.stepwise.problem import FlowProblem
@@ -92,7 +92,7 @@ def continue_branch(
         if not orbit.converged:
             faults.add("orbit", orbit.message, "must be a converged orbit", "find the orbit first")
         steps.check(faults)
-    scale = scale_of(orbit.oscillator, orbit.state)
+    scale = size_of(orbit.oscillator, orbit.state, orbit.periods, orbit.nodes, orbit.tolerance)
     problem = orbits_over(orbit.oscillator, parameter, orbit.periods, (low, high), scale, orbit.tolerance)
     return follow(problem, orbit.state, value, steps, progress)
 
@@ -176,9 +176,9 @@ def doubled_orbit(
     if point.kind != "period-doubling":
         raise InputError.at("point", point.kind, "must be a period-doubling", "take one from Branch.special")
     n = point.periods
-    scale = scale_of(oscillator, point.state)
-    problem = orbits_over(oscillator, parameter, 2 * n, bounds, scale, tolerance)
     here = oscillator.with_parameter(parameter, point.parameter)
+    scale = size_of(here, point.state, n, tolerance=tolerance)
+    problem = orbits_over(oscillator, parameter, 2 * n, bounds, scale, tolerance)
     values, vectors = np.linalg.eig(flow_of(here, tolerance).follow(point.state, n).jacobian)
     along = np.append(np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]), 0.0)
     along /= np.linalg.norm(along)

@@ -99,6 +99,11 @@ class OrbitProblem(BranchProblem):
         """
         return self._corrected(guess, across, refinement, limit)
 
+    def trends(self, point: Point, tangent: Array) -> tuple[float, float]:
+        """Slopes of `fold` and `flip` along the branch of one parameter, exact."""
+        shrinking, turning = float(point.determinant_slope @ tangent), float(point.trace_slope @ tangent)
+        return shrinking - turning, shrinking + turning
+
     def states(self, point: MapPoint) -> Array:
         """X and V over the scale after each period."""
         flow = tabulated(self._packed(point.u), self._cells(point.u, 1))

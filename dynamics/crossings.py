@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.branch import SpecialPoint
-from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Steps, match_extrema
+from dynamics.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps, match_extrema
 from dynamics.corrector import OrbitProblem, Point
 from dynamics.marching import March, march
 from dynamics.protocol import EPS
@@ -109,10 +109,10 @@ class ExactBranch(OrbitProblem):
         return special, True
 
     def march(
-        self, last: Point, heading: Heading, steps: Steps, places: list[list[float]], largest: float, wanted: int
+        self, last: Point, heading: Heading, steps: Steps, places: list[list[float]], sizes: Sizes, wanted: int
     ) -> March:  # fmt: skip
         """Steps in a compiled loop."""
-        return march(self, last, heading, steps, places, largest, wanted)
+        return march(self, last, heading, steps, places, sizes, wanted)
 
     def _error(self, point: Point, condition: Condition) -> float:
         """Change of the parameter with tables of half the cell."""

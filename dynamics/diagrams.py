@@ -12,7 +12,7 @@ from dynamics.arrays import AsArray
 from dynamics.branch import KINDS, NEIMARK_SACKER, Branch, SpecialPoint, Stretch, of_kind, stretches
 from dynamics.branch_tree import BranchTree, Origin
 from dynamics.finding import find_orbits
-from dynamics.limits import ordered
+from dynamics.limits import SEARCHED, ordered, whole_numbers
 from dynamics.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import PeriodicOscillator, periodic_only
@@ -107,7 +107,7 @@ def diagram(
     parameter: str = "frequency",
     bounds: tuple[float, float] = (0.1, 2.1),
     *,
-    periods: Sequence[int] = (1, 2, 3),
+    periods: int | Sequence[int] = (1, 2, 3),
     searches: int = 9,
     swept: int = 100,
     max_period: int = 8,
@@ -134,7 +134,7 @@ def diagram(
         As in `GearOscillator.with_parameter`.
     bounds : tuple of float
         Range of the parameter.
-    periods : sequence of int
+    periods : int or sequence of int
         Periods searched for.
     searches : int
         Values of the parameter at which orbits are searched for, at the middles of equal intervals.
@@ -176,6 +176,7 @@ def diagram(
     watch = Stopwatch()
     with Faults() as faults:
         low, high = ordered(faults, "bounds", bounds)
+        wanted = whole_numbers(faults, "periods", periods, SEARCHED)
         number = faults.whole("searches", searches, 1, 10_000, "9 is usual")
         longest = faults.whole("max_period", max_period, 1, 1000, "8 shows three doublings")
         steps = faults.whole("swept", swept, 0, 10**6, "100 is usual")
@@ -183,7 +184,7 @@ def diagram(
     builder = BranchTree(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
     at = [low + (k + 0.5) / number * (high - low) for k in range(number)]
     unsure = (
-        _follow_searched(builder, oscillator, periods, at) if isinstance(oscillator, GearOscillator) else []
+        _follow_searched(builder, oscillator, wanted, at) if isinstance(oscillator, GearOscillator) else []
     )
     for value, state, known in starts:
         if low <= value <= high:

@@ -4,32 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from base import Array, Cost, Faults, Stopwatch, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.flow import tables
 from dynamics.flows import flow_of
 from dynamics.index import index_at_infinity
+from dynamics.limits import SEARCHED, whole_numbers
 from dynamics.manifolds import carried
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, PeriodicOscillator, exact_only
 from dynamics.shooting import Orbit, find_orbit
-from dynamics.states import Region, apart, checked_region
+from dynamics.states import Region, checked_region
 from dynamics.sweeps import settling_periods
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 PLAIN = 25  # Newton iterations from a start without deflation
-LEAST = 20  # batches at least, and twice as many as the last new orbit took
+LEAST = 18  # batches at least, and twice as many as the last new orbit took
 PASSED = 6  # periods that every second batch has gone on for, at most
 GOLDEN = (
     0.7548776662466927,
     0.5698402909980532,
 )  # shifts of a sequence that fills the plane evenly, after Roberts
-RECURRENT = 160  # points of long motions that are tried as starts: chaos passes near its unstable orbits
+GROWTHS = 4  # searches of a region that grows, at most
+WHOLE = 40  # periods of long motions that are looked at all the time, by so many samples
+SAMPLES = 32
+RECURRENT = 120  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
 @record
@@ -81,7 +86,7 @@ class OrbitSet:
 @exact_only
 def find_orbits(
     oscillator: GearOscillator,
-    periods: Sequence[int] = (1, 2, 3, 4),
+    periods: int | Sequence[int] = (1, 2, 3, 4),
     region: Region | None = None,
     *,
     starts: int = 10,
@@ -102,10 +107,11 @@ def find_orbits(
     ----------
     oscillator : GearOscillator
         The oscillator.
-    periods : sequence of int
+    periods : int or sequence of int
         Periods, in excitation periods.
     region : ((x0, x1), (v0, v1)), optional
-        Starts. Left out: somewhat more than what long motions cover.
+        Starts. Left out: somewhat more than what long motions cover, at all times of the period and not at tau = 0
+        alone; it grows, and the search is repeated, while orbits found reach beyond it.
     starts : int
         Starts along each side of the region.
     batches : int
@@ -131,25 +137,19 @@ def find_orbits(
     """
     watch = Stopwatch()
     with Faults() as faults:
-        wanted = sorted({faults.whole("periods", n, 1, 1000, "give excitation periods") for n in periods})
+        wanted = whole_numbers(faults, "periods", periods, SEARCHED)
         side = faults.whole("starts", starts, 1, 1000, "10 is usual")
         most = faults.whole("batches", batches, 0, 100_000, "48 is usual")
         if region is not None:
             region = checked_region(faults, region)
     search = _Search(oscillator, region)
-    counts = []
-    for n in wanted:
-        for fineness in (1, 2, 4):
-            search.run(n, side * fineness)
-            search.twins(n)
-            met = search.spread(n, side * fineness, most)
-            search.twins(n)
-            count = replace(search.count(n), **met)
-            if count.expected is None or count.found == count.expected:
-                break
-        counts.append(count)
+    for _ in range(GROWTHS):
+        counts = [search.all_of(n, side, most) for n in wanted]
+        beyond = search.grows()
+        if not beyond:
+            break
     orbits = tuple(sorted(search.orbits, key=lambda o: (o.periods, float(o.state[0]))))
-    good = all(c.found == c.expected and c.once == 0 for c in counts)
+    good = all(c.found == c.expected and c.once == 0 for c in counts) and not beyond
     said = [f"{len(orbits)} orbits"]
     said += [
         f"the indices of period {c.periods} add up to {c.found}, not {c.expected}: search more starts"
@@ -161,6 +161,8 @@ def find_orbits(
         for c in counts
         if c.once
     ]
+    if beyond:
+        said.append("orbits reach beyond the region that was searched: give a larger region")
     if any(c.expected is None for c in counts):
         said.append("the sum of the indices is not known for this oscillator")
     cost = Cost(watch.seconds, 2, 0, search.periods)
@@ -174,16 +176,56 @@ class _Search:
     def __init__(self, oscillator: GearOscillator, region: Region | None) -> None:
         self.oscillator, self.table = oscillator, tables(oscillator)
         self.orbits: list[Orbit] = []
+        self.places, self.owners = np.empty((0, 2)), list[int]()  # states of all orbits, and whose they are
         self.motion, self.periods = _long_motions(oscillator, self.table)
-        size = np.max(np.abs(self.motion), axis=0, initial=1e-9)
-        self.region = region if region is not None else _around(size)
+        self.grown, self.seen = region is None, 0
+        self.region = region if region is not None else _around(self._reach(self.motion[-3:], WHOLE))
         self.scale = float(np.max(np.abs(self.region)))
+        met = _around(np.max(np.abs(self.motion), axis=0, initial=1e-9))
+        self.inner = self.region if region is not None else met
+
+    def all_of(self, n: int, side: int, most: int) -> IndexCount:
+        """Search for orbits of so many periods, with a finer grid as long as indices are missing, twice."""
+        for fineness in (1, 2, 4):
+            self.run(n, side * fineness)
+            self.twins(n)
+            met = self.spread(n, side * fineness, most)
+            self.twins(n)
+            count = replace(self.count(n), **met)
+            if count.expected is None or count.found == count.expected:
+                break
+        return count
+
+    def grows(self) -> bool:
+        """Whether an orbit reaches beyond the region, which grows then; not if the region was given."""
+        if not self.grown:
+            return False
+        new, self.seen = self.orbits[self.seen :], len(self.orbits)
+        reach = [self._reach(orbit.state[None], orbit.periods) for orbit in new]
+        size = np.max([np.array(self.region)[:, 1], *reach], axis=0)
+        if np.all(size <= np.array(self.region)[:, 1]):
+            return False
+        self.region = _around(size)
+        self.scale = float(np.max(np.abs(self.region)))
+        return True
+
+    def _reach(self, states: Array, periods: int) -> Array:
+        """Largest X and V of motions from some states at tau = 0, at all times; of those that can be followed."""
+        size = np.max(np.abs(states), axis=0, initial=1e-9)
+        for state in states:
+            with suppress(InputError):
+                size = np.maximum(
+                    size, np.max(np.abs(self.table.sampled(state, periods, SAMPLES)[0]), axis=0)
+                )
+            self.periods += periods
+        return np.asarray(size)
 
     def run(self, n: int, side: int) -> None:
         """Search for fixed points of the n-period map from a grid and from long motions."""
-        (x0, x1), (v0, v1) = self.region
-        grid = np.stack(np.meshgrid(np.linspace(x0, x1, side), np.linspace(v0, v1, side)), axis=-1)
-        starts = np.concatenate([self.motion[-RECURRENT:], grid.reshape(-1, 2)])
+        grids = [_grid(self.inner, side)]
+        if self.region != self.inner:
+            grids.append(_grid(self.region, max(side // 2, 1)))
+        starts = np.concatenate([self.motion[-RECURRENT:], *grids])
         deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
         self._hunt(starts, n, 40, np.concatenate([np.empty((0, 2)), *deflated]))
 
@@ -194,27 +236,26 @@ class _Search:
         """
         from dynamics.kernels.searching import hunt
 
-        (x0, x1), (v0, v1) = self.region
+        boxes = [(self.inner, side**2)]
+        if self.region != self.inner:
+            boxes.append((self.region, max(side**2 // 2, 1)))
         met: list[int] = [0] * len(self.orbits)
-        point, none = np.empty((n, 2)), 0
+        point, none, space = np.empty((n, 2)), 0, self.table.space()
         once, unseen, used, last_new = 0, 0.0, 0, 0
         for batch in range(most):
-            at = (0.5 + np.outer(np.arange(used + 1, used + side**2 + 1), GOLDEN)) % 1.0
-            starts = np.array([x0, v0]) + at * np.array([x1 - x0, v1 - v0])
+            parts = []
+            for region, number in boxes:
+                at = (0.5 + np.outer(np.arange(used + 1, used + number + 1), GOLDEN)) % 1.0
+                low, high = np.array(region).T
+                parts.append(low + at * (high - low))
+                used += number
+            starts = np.concatenate(parts)
             if batch % 2:  # what has gone on for a while lies nearer to orbits
                 starts = carried(self.table, starts, batch // 2 % PASSED + 1)
-            used += side**2
             known = len(self.orbits)
-            for k in range(side**2):
+            for k in range(len(starts)):
                 last, periods = hunt(
-                    self.table.arrays,
-                    self.table.space(),
-                    starts[k : k + 1],
-                    n,
-                    PLAIN,
-                    self.scale,
-                    point,
-                    none,
+                    self.table.arrays, space, starts[k : k + 1], n, PLAIN, self.scale, point, none
                 )
                 self.periods += int(periods)
                 if last:
@@ -229,10 +270,10 @@ class _Search:
 
     def _meet(self, point: Array, n: int, met: list[int]) -> None:
         """Count that a start has come to a point of an orbit, which may be new."""
-        for k, orbit in enumerate(self.orbits):
-            if apart(point, orbit.points) < 1e-7 * self.scale:
-                met[k] += 1
-                return
+        k = self._known(point)
+        if k is not None:
+            met[k] += 1
+            return
         self._keep(find_orbit(self.oscillator, point, periods=n))
         if len(self.orbits) > len(met):
             met.append(1)
@@ -266,7 +307,7 @@ class _Search:
         )
         self.periods += int(used)
         for point in found[len(deflated) : last]:
-            if not self._knows(point):
+            if self._known(point) is None:
                 self._keep(find_orbit(self.oscillator, point, periods=n))
 
     def count(self, n: int) -> IndexCount:
@@ -280,12 +321,19 @@ class _Search:
         return IndexCount(n, number, total, index_at_infinity(self.oscillator, n))
 
     def _keep(self, orbit: Orbit) -> None:
-        if orbit.converged and not self._knows(orbit.state):
+        if orbit.converged and self._known(orbit.state) is None:
             self.orbits.append(orbit)
+            self.places = np.vstack([self.places, orbit.points])
+            self.owners += [len(self.orbits) - 1] * orbit.periods
 
-    def _knows(self, state: Array) -> bool:
-        """Whether a state lies on one of the orbits."""
-        return any(apart(state, orbit.points) < 1e-7 * self.scale for orbit in self.orbits)
+    def _known(self, state: Array) -> int | None:
+        """Which of the orbits a state lies on."""
+        if not self.owners:
+            return None
+        off = np.abs(self.places - state)
+        gaps = np.maximum(off[:, 0], off[:, 1])
+        nearest = int(gaps.argmin())
+        return self.owners[nearest] if gaps[nearest] < 1e-7 * self.scale else None
 
 
 def reach(oscillator: PeriodicOscillator) -> Region:
@@ -312,6 +360,12 @@ def _long_motions(oscillator: PeriodicOscillator, flow: Flow) -> tuple[Array, in
         if not image.message and float(np.max(np.abs(image.states))) < 1e6:
             parts.append(image.states)
     return (np.stack(parts, axis=1).reshape(-1, len(rest)) if parts else np.array([rest])), used
+
+
+def _grid(region: Region, side: int) -> Array:
+    """States at equal distances, so many along each side."""
+    x, v = (np.linspace(*ends, side) for ends in region)
+    return np.stack(np.meshgrid(x, v), axis=-1).reshape(-1, 2)
 
 
 def _around(size: Array) -> Region:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +43,8 @@ class Whole(NamedTuple):
 
 PERIODS = Whole(1, 10**9, "give a positive number of periods")
 ORBIT_PERIODS = Whole(1, 100_000, "give the number of excitation periods")
+SEARCHED = Whole(1, 1000, "give excitation periods")
+"""Periods of orbits that are searched for."""
 AVERAGED = Whole(BATCHES, 10**9, "10 000 gives two digits in chaos")
 TRANSIENT = Whole(0, 10**9, "give 0 or more")
 PATIENT = Whole(1, 10**7, "give more")
@@ -65,6 +67,12 @@ def ordered(
     if not low < high:
         faults.add(where, tuple(given), "must have the lower value first", remedy)
     return low, high
+
+
+def whole_numbers(faults: Faults, where: str, given: int | Sequence[int], limit: Whole) -> list[int]:
+    """Different whole numbers in order, of a sequence or one alone; faults are noted."""
+    several = given if isinstance(given, Sequence | np.ndarray | Set) else [given]
+    return sorted({faults.whole(where, number, *limit) for number in several})
 
 
 def checked_grid(faults: Faults, where: str, given: npt.ArrayLike) -> Array:

@@ -16,8 +16,8 @@ from dynamics.locus_tracing import DoublePoint, LocusTracer
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import exact_only
 from dynamics.shooting import floquet_multipliers, motion_label
+from dynamics.sizes import size_of
 from dynamics.special_orbits import Condition, special_orbit
-from dynamics.states import scale_of
 from dynamics.tracing import both_ways, joined
 
 CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazing", "double grazing")
@@ -134,7 +134,9 @@ def continue_locus(
         steps = Steps(step, max_step, min_step, max_points)
         steps.check(faults)
     low, high = np.array(ranges).T
-    problem = OrbitProblem(start, parameters, point.periods, low, high, scale_of(start, point.state))
+    problem = OrbitProblem(
+        start, parameters, point.periods, low, high, size_of(start, point.state, point.periods)
+    )
     condition = Condition.of(start, point)
     guess = problem.unknowns(point.state, [start.get(name) for name in parameters])
     first = special_orbit(problem, condition, guess, np.array([0.0, 0.0, 0.0, 1.0]))

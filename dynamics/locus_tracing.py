@@ -49,14 +49,18 @@ class LocusTracer(Tracer):
         steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
-        self.condition, self.progress, self.size = condition, progress, problem.scale
+        self.condition, self.progress, self.size = (
+            condition,
+            progress,
+            max(problem.scale, problem.oscillator.floor),
+        )
         self.double: list[DoublePoint] = []
         self.tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3])) * sign
         self.null = _cusp(start, np.ones(2))[1]
 
     def attempt(self, last: Point) -> Point | None:
         """Next point; at a bound, the point on it."""
-        size = float(np.max(np.abs(last.u[:2])))
+        size = self.problem.size_of(last.u)
         if size * self.problem.scale > ENDLESS * self.size:
             self.ended = UNBOUNDED
             return None

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from base import Array, Integers
-from dynamics.branch_problem import Heading, Steps
+from dynamics.branch import WIDTH
+from dynamics.branch_problem import Heading, Sizes, Steps
 from dynamics.corrector import LIMIT, ROOM, OrbitProblem, Point
 from dynamics.flow import Tables
 from dynamics.step_rules import (
@@ -24,6 +25,8 @@ from dynamics.step_rules import (
     NEAR,
     PATIENT,
     STRAIGHT,
+    SWAY,
+    hides,
 )
 
 BLOCK = 64  # steps after which it is said how far a branch is
@@ -67,7 +70,7 @@ class March(NamedTuple):
 
 def march(
     problem: OrbitProblem, last: Point, heading: Heading, steps: Steps, places: Sequence[Sequence[float]],
-    largest: float, wanted: int,
+    sizes: Sizes, wanted: int,
 ) -> March:  # fmt: skip
     """Take steps from a point for as long as nothing lies between neighbours.
 
@@ -86,15 +89,15 @@ def march(
         How far to step.
     places : sequence of (float, float, float)
         Unknowns of the first orbit, taken from each of its periods on.
-    largest : float
-        State, over the scale, beyond which no step begins.
+    sizes : Sizes
+        Of motions, outside which no step begins.
     wanted : int
         Steps, at most; no more than a block is taken.
     """
     course = _Course(problem, last, heading, places)
     least, wanted = PATIENT * steps.least, min(wanted, BLOCK)
     while len(course.passed) < wanted:
-        if course.step <= least or max(abs(course.u[0]), abs(course.u[1])) > largest:
+        if course.step <= least or not sizes.least <= course.size() <= sizes.most:
             break
         verdict = course.attempt()
         if verdict == LEAVE:
@@ -129,15 +132,25 @@ class _Course:
 
         self.problem, self.first, self.places, self.corrected = problem, last, places, correct
         self.low, self.high = problem.reach(last.u)
+        self.rest: list[float] = problem.rest.tolist()
+        self.driven = problem.driven
         self.tables, self.two = problem.rooms(last.u), len(last.levels) == 2
         number = max(ROOM * problem.periods, len(last.extrema))
         self.known, self.tried = _Room(number), _Room(number)
-        self.u, self.tangent, self.bend = last.u.tolist(), heading.tangent.tolist(), heading.bend.tolist()
+        self.u: list[float] = last.u.tolist()
+        self.tangent, self.bend = heading.tangent.tolist(), heading.bend.tolist()
         self.half, self.step = heading.half.tolist(), heading.step
         self.trace, self.determinant, self.play = last.trace, last.determinant, float(last.levels[0])
+        self.trends = problem.trends(last, heading.tangent)
         self.counts, self.extrema = list(last.counts), last.extrema.tolist()
         self.passed: list[tuple[float, float, float, float, float, int, int, int]] = []
         self.found: Any = None
+
+    def size(self) -> float:
+        """Size of the motion through the last point, over the scale, as of `BranchProblem.size_of`."""
+        x, v, _ = self.u
+        away: float = WIDTH * max(abs(x - self.rest[0]), abs(v - self.rest[1]))
+        return min(max(abs(x), abs(v)), max(self.driven, away))
 
     def attempt(self) -> int:
         """Try a step; what is to be done with it."""
@@ -168,18 +181,37 @@ class _Course:
             return SHORTEN
         if abs(trace - self.trace) > JUMP * max(1.0, abs(self.trace)):
             return SHORTEN
-        return self._look(u, tangent, trace, square)
+        turning = shrinking = 0.0
+        for along, ((aa, ab), (ba, bb)) in zip(tangent, room.bend.tolist(), strict=True):
+            turning += along * (aa + bb)
+            shrinking += along * ((e + 1.0) * aa + (a + 1.0) * bb - d * ab - b * ba)
+        trends = shrinking - turning, shrinking + turning
+        return self._look(u, tangent, trace, trends, square)
 
-    def _look(self, u: list[float], tangent: list[float], trace: float, square: float) -> int:
+    def _look(
+        self, u: list[float], tangent: list[float], trace: float, trends: tuple[float, float], square: float
+    ) -> int:  # fmt: skip
         """Whether anything lies between the last point and the one that is tried."""
         problem, room, (x, v, p) = self.problem, self.tried, self.u
         at = self.tables[5][2]
         packed = at.tolist()
         play, determinant = packed[6], problem.determinant(packed, float(room.clock[0]))
-        det, old = self.determinant, self.trace
-        if (1.0 + det - old) * (1.0 + determinant - trace) < 0.0:
-            return LEAVE
-        if (1.0 + det + old) * (1.0 + determinant + trace) < 0.0 or (det - 1.0) * (determinant - 1.0) < 0.0:
+        half = self.half
+        if problem.periods % 2 == 0:
+            half = self._half_way(at)
+            fallen = max(abs(half[0]), abs(half[1])) < FALLEN * max(abs(self.half[0]), abs(self.half[1]))
+            if fallen or half[0] * self.half[0] + half[1] * self.half[1] < 0.0:
+                return LEAVE
+        det, old, length = self.determinant, self.trace, math.sqrt(square)
+        fold, flip = 1.0 + det - old, 1.0 + det + old
+        folded, flipped = 1.0 + determinant - trace, 1.0 + determinant + trace
+        rise, climb = self.trends, trends
+        reach = SWAY * length * (max(abs(rise[0]), abs(rise[1])) + max(abs(climb[0]), abs(climb[1])))
+        if min(abs(fold), abs(folded), abs(flip), abs(flipped)) < reach and (
+            hides(fold, rise[0], folded, climb[0], length) or hides(flip, rise[1], flipped, climb[1], length)
+        ):
+            return SHORTEN
+        if fold * folded < 0.0 or flip * flipped < 0.0 or (det - 1.0) * (determinant - 1.0) < 0.0:
             return LEAVE
         extrema, counts = room.turns[: room.turned, :3].tolist(), room.counts.tolist()
         if not self.two or (self.play > 0.0 and play > 0.0):
@@ -190,13 +222,7 @@ class _Course:
         for place in self.places:
             if (place[0] - x) ** 2 + (place[1] - v) ** 2 + (place[2] - p) ** 2 <= FAR * square:
                 return LEAVE
-        half = self.half
-        if problem.periods % 2 == 0:
-            half = self._half_way(at)
-            fallen = max(abs(half[0]), abs(half[1])) < FALLEN * max(abs(self.half[0]), abs(self.half[1]))
-            if fallen or half[0] * self.half[0] + half[1] * self.half[1] < 0.0:
-                return LEAVE
-        self.found = u, tangent, trace, determinant, play, counts, extrema, half, math.sqrt(square)
+        self.found = u, tangent, trace, trends, determinant, play, counts, extrema, half, length
         return TAKE
 
     def _half_way(self, packed: Array) -> list[float]:
@@ -209,11 +235,11 @@ class _Course:
 
     def accept(self, most: float) -> None:
         """Take the step that was tried, choose the next."""
-        u, tangent, trace, determinant, play, counts, extrema, half, length = self.found
+        u, tangent, trace, trends, determinant, play, counts, extrema, half, length = self.found
         bent = 0.5 / length if length > STRAIGHT else 0.0
         self.bend = [bent * (n - t) for n, t in zip(tangent, self.tangent, strict=True)]
         self.u, self.tangent, self.half = u, tangent, half
-        self.trace, self.determinant, self.play = trace, determinant, play
+        self.trace, self.trends, self.determinant, self.play = trace, trends, determinant, play
         self.counts, self.extrema = counts, extrema
         self.known, self.tried = self.tried, self.known
         spent = self.known.iterations

@@ -33,18 +33,22 @@ def meeting(problem: BranchProblem, last: MapPoint) -> SpecialPoint | None:
     start = parent.correct(guess, parent.flat)
     if start is None:
         return None
-    for way in (1.0, -1.0):
-        before, off = start, FIRST
-        while off < LAST:
-            there = _beside(parent, start, before, way * off)
+    before: dict[float, MapPoint] = {1.0: start, -1.0: start}
+    off = FIRST
+    while off < LAST and before:  # the nearest doubling, whichever side it is on
+        for way, near in list(before.items()):
+            there = _beside(parent, start, near, way * off)
             if there is None:
-                break
-            if before.flip * there.flip <= 0.0:
-                found, arrived = parent.locate(before, there, DOUBLING)
+                del before[way]
+                continue
+            if near.flip * there.flip <= 0.0:
+                found, arrived = parent.locate(near, there, DOUBLING)
                 if found is not None and arrived:
                     return found
-                break
-            before, off = there, WIDER * off
+                del before[way]
+                continue
+            before[way] = there
+        off *= WIDER
     return None
 
 

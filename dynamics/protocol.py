@@ -223,9 +223,14 @@ class Oscillator(ABC):
         return self.dimension
 
     @property
-    @abstractmethod
     def natural_size(self) -> float:
         """Size of the displacements that go in."""
+        return natural_size(self.floor, self.driven_size)
+
+    @property
+    @abstractmethod
+    def driven_size(self) -> float:
+        """Size of the displacements that the forces and the error make, without the play."""
 
     @abstractmethod
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
@@ -309,9 +314,9 @@ class PlanarOscillator(Oscillator):
         return self.damping_ratio
 
     @property
-    def natural_size(self) -> float:
-        """Size of the displacements that go in."""
-        return natural_size(self.floor, self.mean_force, largest(self.error_series))
+    def driven_size(self) -> float:
+        """The mean force, over a stiffness of 1, or the error."""
+        return natural_size(self.mean_force, largest(self.error_series))
 
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
         """X and V."""

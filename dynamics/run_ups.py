@@ -21,7 +21,7 @@ from dynamics.arrays import AsArray
 from dynamics.flows import flow_of
 from dynamics.limits import POSITIVE, Whole
 from dynamics.motions import share_below
-from dynamics.protocol import PeriodicOscillator, periodic_only
+from dynamics.protocol import EPS, PeriodicOscillator, periodic_only
 from dynamics.states import checked_outputs, checked_state
 from dynamics.sweeps import settling_periods
 
@@ -51,12 +51,17 @@ class RunUp(AsArray):
 
     frequency: Array = quantity("1", "mean frequency of each block", "block", no_error=EXACT)
     tau: Array = quantity("1", "time at which each block begins", "block", no_error=EXACT)
-    rms: Array = quantity("1", "root mean square of X about its mean in each block", "block", error="error")
-    peak: Array = quantity("1", "greatest X of each block", "block", error="error")
-    force_rms: Array = quantity(
-        "1", "root mean square of the mesh force k f(X) about its mean, dimensionless", "block", error="error"
+    rms: Array = quantity(
+        "1", "root mean square of X about its mean in each block", "block", error="rms_error"
     )
-    force_peak: Array = quantity("1", "greatest mesh force of each block", "block", error="error")
+    peak: Array = quantity("1", "greatest X of each block", "block", error="peak_error")
+    force_rms: Array = quantity(
+        "1",
+        "root mean square of the mesh force k f(X) about its mean, dimensionless",
+        "block",
+        error="rms_error",
+    )
+    force_peak: Array = quantity("1", "greatest mesh force of each block", "block", error="peak_error")
     separated: Array = quantity(
         "1", "part of each block without contact of the driving flanks", "block", shown="%", error="error"
     )
@@ -83,10 +88,22 @@ class RunUp(AsArray):
         "of a drive train with its slowest decay; where it is small the motion follows",
         no_error=EXACT,
     )
-    error: float = quantity(
+    rms_error: Array = quantity(
         "1",
-        "median relative difference of the blocks' root mean square, of X or of the output that differs most, from a "
+        "relative difference of each block's root mean square, of X, the force or the output that differs most, from a "
         "run with steps twice as long",
+        "block",
+    )
+    peak_error: Array = quantity(
+        "1",
+        "the same of each block's greatest X, force or output, or what may lie above its samples if that is more",
+        "block",
+    )
+    greatest_error: float = quantity(
+        "1", "the same of the greatest X, force or output of the whole run that differs most"
+    )
+    error: float = quantity(
+        "1", "greatest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
     )
     cost: Cost
     converged: bool = quantity("1", "whether the motion stayed bounded")
@@ -156,8 +173,7 @@ def run_up(
     held = 1 if oscillator.is_exact else HELD
     fine = _ramp(oscillator, (first, last), number, at, held, rows)
     coarse = _ramp(oscillator, (first, last), number, at, 2 * held, rows)
-    swings = [0, *range(5, 5 + len(rows))]
-    off = np.abs(coarse[0] - fine[0])[:, swings] / np.maximum(fine[0][:, swings], 1e-300)
+    rms_error, peak_error, greatest_error = _errors(fine[0], coarse[0], fine[4])
     good = bool(np.all(np.isfinite(fine[0])))
     decay = max(oscillator.decay, 1e-300)
     change = abs(last**2 - first**2) / (4.0 * math.pi * number * BLOCK)  # dw/dtau = w dw/dtheta
@@ -187,11 +203,41 @@ def run_up(
         fine[3],
         number * BLOCK,
         rate,
-        float(np.max(np.nanmedian(off, axis=0))) if np.any(np.isfinite(off)) else math.inf,
+        rms_error,
+        peak_error,
+        greatest_error,
+        float(np.max([rms_error, peak_error])),
         Cost(watch.seconds, periods=2 * number * BLOCK),
         good,
         said,
     )
+
+
+def _errors(fine: Array, coarse: Array, above: Array) -> tuple[Array, Array, float]:
+    """Errors of each block's root mean squares and peaks, and of the greatest peaks, infinite where motions are lost.
+
+    Parameters
+    ----------
+    fine, coarse : ndarray, shape (blocks, 5 + 2 outputs)
+        Figures as of `_ramp`, and those of a run with longer steps.
+    above : ndarray, shape (blocks, 2 + outputs)
+        What may lie above the peaks, between samples.
+    """
+    outputs = above.shape[1] - 2
+    swings = [0, 2, *range(5, 5 + outputs)]
+    peaks = [1, 3, *range(5 + outputs, 5 + 2 * outputs)]
+    swing, peak = fine[:, swings], fine[:, peaks]
+    size = np.maximum(np.max(np.abs([swing, peak]), axis=0), 1e-300)
+    least = EPS * np.max(size, axis=0, initial=0.0)
+    off = np.abs(coarse - fine)
+    by_rms = off[:, swings] / np.maximum(swing, 64.0 * least)
+    by_peak = np.maximum(off[:, peaks], above) / size
+    change = np.abs(np.max(coarse[:, peaks], axis=0) - np.max(peak, axis=0))
+    missed = np.take_along_axis(above, np.argmax(peak, axis=0)[None], axis=0)[0]
+    greatest = np.maximum(change, missed) / np.max(size, axis=0)
+    known = [np.where(np.isfinite(part), part, np.inf).max(axis=1) for part in (by_rms, by_peak)]
+    most = float(np.max(greatest))
+    return known[0], known[1], most if math.isfinite(most) else math.inf
 
 
 def _ramp(
@@ -201,10 +247,10 @@ def _ramp(
     state: Array,
     held: int,
     rows: Array,
-) -> tuple[Array, Array, Array, Array]:
-    """Figures (blocks, 5 + 2 outputs), lines (blocks, 2, orders), starts of the blocks and last state.
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Figures (blocks, 5 + 2 outputs), lines (blocks, 2, orders), starts of the blocks, last state, rest of peaks.
 
-    Each frequency is held for so many periods.
+    Each frequency is held for so many periods; the last is what may lie above the greatest samples.
     """
     first, last = bounds
     turns = held * (np.arange(number * BLOCK // held) + 0.5) / (number * BLOCK)
@@ -214,6 +260,7 @@ def _ramp(
     stiffness = oscillator.contact_stiffness(angle)
     figures = np.full((number, 5 + 2 * len(rows)), np.nan)
     lines = np.full((number, 2, HIGHEST * BLOCK), np.nan)
+    above = np.full((number, 2 + len(rows)), np.nan)
     starts, tau, before, flow = np.zeros(number), 0.0, first, None
     for block in range(number):
         starts[block], parts, states = tau, [], []
@@ -234,9 +281,16 @@ def _ramp(
         free = share_below(x - oscillator.half_backlash)
         figures[block, :5] = np.std(x), np.max(x), np.std(force), np.max(force), free
         figures[block, 5:] = *np.std(carried, axis=0), *np.max(np.abs(carried), axis=0)
+        above[block] = [_above(curve) for curve in (x, force, *np.abs(carried.T))]
         for row, values in zip(lines[block], (x, force), strict=True):
             row[:] = 2.0 / len(x) * np.abs(np.fft.rfft(values))[1 : HIGHEST * BLOCK + 1]
-    return figures, lines, starts, at
+    return figures, lines, starts, at, above
+
+
+def _above(curve: Array) -> float:
+    """What may lie above the greatest sample: the height of a parabola whose top is halfway to the next one."""
+    k = min(max(int(np.argmax(curve)), 1), len(curve) - 2)
+    return float(abs(2.0 * curve[k] - curve[k - 1] - curve[k + 1]) / 8.0)
 
 
 LOST = 1e6

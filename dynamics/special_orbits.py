@@ -12,6 +12,7 @@ from dynamics.branch import SpecialPoint
 from dynamics.branch_problem import BranchProblem, MapPoint
 from dynamics.corrector import OrbitProblem, Point, rounding
 from dynamics.oscillator import GearOscillator
+from dynamics.protocol import EPS
 
 PRODUCTS = {"saddle-node": "fold", "period-doubling": "flip", "neimark-sacker": "torus"}
 """Kinds that a function of the multipliers singles out, and the attribute of a point that holds it."""
@@ -76,6 +77,11 @@ class Condition:
         return slope
 
 
+def noise_of(u: Array, periods: int) -> float:
+    """What is left of an orbit and its condition over the stretch of the map: more of a small motion far out."""
+    return max(1e-11, 64.0 * EPS * periods * float(np.max(np.abs(u))))
+
+
 def special_orbit(
     problem: OrbitProblem,
     condition: Condition,
@@ -89,7 +95,7 @@ def special_orbit(
     With one parameter the orbit is isolated. With two, it is sought in the plane across . (u - guess) = 0. Every
     derivative is exact, so that convergence is quadratic away from grazings.
     """
-    u = guess
+    u, noise = guess, noise_of(guess, problem.periods)
     best, kept = np.inf, None
     for iteration in range(limit):
         point = problem.evaluate(u, refinement)
@@ -108,7 +114,7 @@ def special_orbit(
         closed = point.residual <= rounding(point, problem.periods)
         if size < best or (closed and kept is not None and kept.residual > rounding(kept, problem.periods)):
             best, kept = size, point
-        elif best < 1e-11 and kept is not None and kept.residual <= rounding(kept, problem.periods):
+        elif best < noise and kept is not None and kept.residual <= rounding(kept, problem.periods):
             break
         try:
             step = np.linalg.solve(matrix, -off)
@@ -117,11 +123,11 @@ def special_orbit(
         length = float(np.max(np.abs(step)))
         if not length < 0.3:
             return None
-        if closed and (length < 1e-15 or (best < 1e-11 and length < 1e-13)):
+        if closed and (length < 1e-15 or (best < noise and length < 0.01 * noise)):
             break
         u = u + step
         if iteration > 4 and best > 1e-3:
             return None
-    if kept is None or not (best < 1e-11 and kept.residual <= rounding(kept, problem.periods)):
+    if kept is None or not (best < noise and kept.residual <= rounding(kept, problem.periods)):
         return None
     return kept

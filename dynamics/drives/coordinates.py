@@ -37,7 +37,8 @@ class Coordinates:
     push : ndarray, shape (m, n)
         :math:`\hat F` of F.
     drift : ndarray, shape (r, n)
-        Load of each of r free rotations of F, which must be zero.
+        Load of each of r free rotations of F, which must be zero; its square is part of
+        :math:`F^T M^{-1} F`, the rest of which is that of `push` over `gain`.
     gain : float
         :math:`\gamma^2`, one over the mass that the mesh feels.
     """

@@ -13,7 +13,7 @@ from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import REASONS
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, lost_motion
 
-# of motions expanded about the start of a cell, half a radian of every time scale long
+# of motions expanded about the start of a cell, a radian of every time scale long: 1/17! is rounding
 DEGREE = 16
 Arrays = tuple[Array, Array, Array, Array, Array, Array]
 

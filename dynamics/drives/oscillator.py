@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -27,7 +27,7 @@ from dynamics.protocol import PeriodicOscillator
 from dynamics.stiffness import FourierStiffness, check_stiffness
 
 MAX_ENTRIES = 20_000_000  # of the tables: 160 MB
-UNBALANCED = 1e-9  # of the load, along a free rotation
+UNBALANCED = 1e-9  # of the root of F' M^-1 F, along a free rotation
 MATRICES, VECTORS = ("mass", "damping", "stiffness"), ("direction", "mean_force")
 
 
@@ -127,8 +127,8 @@ class DriveOscillator(PeriodicOscillator):
         for name, value in values.items():
             object.__setattr__(self, name, value)
         force = values["mean_force"]
-        drift = np.max(np.abs(self.coordinates.drift @ force), initial=0.0)
-        if drift > UNBALANCED * np.max(np.abs(self.coordinates.drift) @ np.abs(force), initial=0.0):
+        free = float(np.linalg.norm(self.coordinates.drift @ force))
+        if free > UNBALANCED * math.hypot(free, *(self.load / math.sqrt(self.coordinates.gain)).tolist()):
             allowed = "must balance over a rotation that nothing holds"
             remedy = (
                 "moments of motor and load are in the ratio of their speeds; or hold the train by a stiffness"
@@ -182,9 +182,15 @@ class DriveOscillator(PeriodicOscillator):
         rest = float(np.max(np.abs(self.rest_state())))
         return natural_size(self.floor, rest, largest(self.error_series))
 
+    @property
+    def driven_size(self) -> float:
+        """Largest displacement at rest without play, or the error."""
+        rest = replace(self, half_backlash=0.0).rest_state()
+        return natural_size(float(np.max(np.abs(rest))), largest(self.error_series))
+
     @cached_property
     def cells(self) -> float:
-        """Cells of a period, before rounding up: half a radian at most of every time scale in each."""
+        """Cells of a period, before rounding up: a radian of every time scale, half a one of every harmonic."""
         at = self.coordinates
         stiff, drag = at.stiffness.copy(), at.damping.copy()
         stiff[0, 0] += at.gain * (
@@ -193,7 +199,7 @@ class DriveOscillator(PeriodicOscillator):
         drag[0, 0] += at.gain * max(self.dampings)
         highest = highest_harmonic(self.mesh_stiffness.order, self.error_series[0, 1:])
         fastest = max(math.sqrt(float(np.linalg.norm(stiff, 2))), float(np.linalg.norm(drag, 2)))
-        return 2.0 * max(self.period * fastest, 2.0 * math.pi * highest)
+        return max(self.period * fastest, 4.0 * math.pi * highest)
 
     @cached_property
     def decay(self) -> float:

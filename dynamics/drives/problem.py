@@ -13,10 +13,12 @@ from base import Array, InputError
 from dynamics.branch_problem import MapPoint
 from dynamics.drives.flow import DriveFlow, tabulated
 from dynamics.drives.oscillator import DriveOscillator
+from dynamics.protocol import MapResult
 from dynamics.shooting import multipliers_of
 from dynamics.stepwise.problem import PeriodMap
 
-ASIDE = 3e-6  # of the parameter's range: central differences, whose error only slows Newton's method down
+# of the parameter's range: differences, whose error only slows Newton's method down; the shorter ones beside impacts
+ASIDE = (3e-6, 3e-8, 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ class DriveProblem(PeriodMap):
         state = u[: self.size] * self.scale
         flow = self._flow(here)
         image = flow.follow(state, self.periods)
-        slope = self._slope(u, image.state, flow.cells)
+        slope = self._slope(u, image, flow)
         if image.message or slope is None:
             return None
         turns = flow.sampled(state, self.periods, 0)[1]
@@ -108,18 +110,40 @@ class DriveProblem(PeriodMap):
     def _flow(self, here: DriveOscillator) -> DriveFlow:
         return tabulated(here, math.ceil(here.cells) * self.refinement)
 
-    def _slope(self, u: Array, image: Array, cells: int) -> Array | None:
-        """Derivative of the image by the parameter, over its range; to one side where the other is not allowed."""
-        found = []
-        for way in (ASIDE, -ASIDE):
-            beside = u.copy()
-            beside[-1] += way
-            try:
-                there = self.at(beside)
-            except InputError:  # the end of what the parameter may be
-                found.append((0.0, image))
-                continue
-            state = u[: self.size] * self.scale
-            found.append((way, tabulated(there, cells).follow(state, self.periods, derivatives=False).state))
-        (ahead, high), (back, low) = found
-        return None if ahead == back else np.asarray((high - low) / (ahead - back))
+    def _slope(self, u: Array, image: MapResult, flow: DriveFlow) -> Array | None:
+        """Derivative of the image by the parameter, over its range.
+
+        A central difference; to one side where the other is not allowed. Where impacts on the way are others, or lie
+        in another period, the map has a corner: such a side is left out, too, and tried nearer if both are.
+        """
+        state = u[: self.size] * self.scale
+        course = self._course(flow.oscillator, state, image)
+        central: list[tuple[float, Array]] = []
+        for aside in ASIDE:
+            sides, alike = [], []
+            for way in (aside, -aside):
+                beside = u.copy()
+                beside[-1] += way
+                try:
+                    there = self.at(beside)
+                except InputError:  # the end of what the parameter may be
+                    continue
+                moved = tabulated(there, flow.cells).follow(state, self.periods, derivatives=False)
+                sides.append((way, moved.state))
+                if self._course(there, state, moved) == course:
+                    alike.append(sides[-1])
+            central = central or sides
+            if alike or not sides:
+                central = alike
+                break
+        if not central:
+            return None
+        (ahead, high), (back, low) = [*central, (0.0, image.state)][:2]
+        return np.asarray((high - low) / (ahead - back))
+
+    def _course(self, here: DriveOscillator, state: Array, image: MapResult) -> list[int]:
+        """Impacts of a motion and the flanks that it begins and ends on, 1, 0 or -1."""
+        ends = np.array([0.0, self.periods * here.period])
+        y = here.contact_motion(ends, np.stack([state, image.state]))[0]
+        sides = np.sign(here.deflection(y)).astype(int)
+        return [*image.counts.sum(axis=0).tolist(), *sides.tolist()]

@@ -15,6 +15,7 @@ from dynamics.crossings import Crossing, bracketed_orbit, special_point
 from dynamics.stepwise.flow import NOISE, StepwiseFlow
 from dynamics.stepwise.oscillator import SmoothOscillator
 
+AHEAD = 1e-6  # along a branch, for slopes of its multipliers
 XTOL = 1e-14  # width of the bracket of a special point, over the chord
 
 
@@ -30,6 +31,13 @@ class PeriodMap(BranchProblem):
     @abstractmethod
     def evaluate(self, u: Array) -> MapPoint | None:
         """Image of the unknowns; None where there is none."""
+
+    def trends(self, point: MapPoint, tangent: Array) -> tuple[float, float]:
+        """Slopes of `fold` and `flip` along the branch of one parameter, by a difference; 0 where the map ends."""
+        beside = self.evaluate(point.u + AHEAD * tangent)
+        if beside is None:
+            return 0.0, 0.0
+        return (beside.fold - point.fold) / AHEAD, (beside.flip - point.flip) / AHEAD
 
     def refined(self) -> PeriodMap:
         """The same map, more accurately, for an error estimate."""
@@ -66,8 +74,9 @@ class PeriodMap(BranchProblem):
             except np.linalg.LinAlgError:
                 return None
             length = float(np.max(np.abs(step)))
-            small = residual <= self.noise
-            if small and (residual >= 0.5 * before or length < 1e-14 or residual <= 0.02 * self.noise):
+            noise = self.noise * max(1.0, float(np.max(np.abs(u))))  # a small motion may lie far out
+            small = residual <= noise
+            if small and (residual >= 0.5 * before or length < 1e-14 or residual <= 0.02 * noise):
                 return replace(point, iterations=iteration + 1)
             if not length < 0.3:
                 return None

@@ -221,6 +221,12 @@ def test_extremum_slopes_carry_a_touch(first_branch):
     assert map_derivatives(lubricated(), point.state, ("frequency",)).slope.shape == (2, 1)
 
 
+def test_one_number_of_periods_may_stand_alone():
+    assert [c.periods for c in find_orbits(lubricated(), 2, starts=2, batches=0).counts] == [2]
+    found = diagram(lubricated(), bounds=(0.8, 0.9), periods=1, searches=1, swept=0, max_period=1)
+    assert [branch.periods for branch in found.branches] == [1]
+
+
 def test_bad_input(first_branch):
     with pytest.raises(InputError) as error:
         find_orbits(lubricated(), (0,), ((1.0, 0.0), (0.0, np.nan)), starts=0)

@@ -14,6 +14,7 @@ from dynamics import (
     continue_branch,
     doubled_orbit,
     find_orbit,
+    sweep,
     trajectory,
 )
 from tests.dynamics.test_drives import chain, same_as
@@ -87,3 +88,22 @@ def test_grazing_of_a_chain():
     turns = trajectory(here, touch.state, 1, 1).extrema[:, 1]
     assert branch.converged
     assert np.min(np.abs(turns - here.half_backlash)) < 1e-13
+
+
+@pytest.mark.parametrize(("free", "frequency", "swing"), [(0.5, 0.7, ()), (2.0, 0.9, (0.1,))])
+def test_an_impact_that_passes_the_start_of_the_period_ends_no_branch(free, frequency, swing):
+    """Damping that jumps at the impact: the map has a corner there, the branch one of up to 107 degrees."""
+    gear = GearOscillator(
+        FourierStiffness(1.0, swing, (0.3,) * len(swing)), 0.05, 0.1, 0.2, 1.0, 0.2, free_damping_ratio=free
+    )
+    states = sweep(gear, "frequency", np.linspace(1.0, frequency, 30), direction="down").states
+    gear = gear.with_parameter("frequency", frequency)
+    orbit = find_orbit(gear, states[-1, -1])
+    assert orbit.label == "1-1-0"
+    train = find_orbit(same_as(gear), orbit.state + np.array([0.2, 0.0]))
+    ours, theirs = (continue_branch(start, "error_phase", (-3.2, 3.2)) for start in (train, orbit))
+    assert ours.ended == theirs.ended == ("bound", "bound")
+    assert ours.converged
+    assert theirs.converged
+    assert ours.multipliers[[0, -1]] == pytest.approx(theirs.multipliers[[0, -1]], abs=1e-8)
+    assert np.all(np.diff(ours.values) > 0.0)  # never back at a corner

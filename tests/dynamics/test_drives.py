@@ -12,6 +12,7 @@ from scipy.linalg import expm
 import dynamics
 from base import InputError
 from dynamics import DriveOscillator, FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
+from dynamics.drives.coordinates import coordinates_of
 
 SERIES = FourierStiffness(1.0, (0.18, 0.05), (0.3, 1.0))
 ERROR, PHASE = (0.2, 0.03), (0.4, 1.0)
@@ -137,6 +138,40 @@ def test_one_freedom_is_the_gear_oscillator(gear):
     assert np.column_stack([mine.x, mine.v]) == pytest.approx(other.states, abs=1e-13)
     assert mine.events == pytest.approx(other.events, abs=1e-12)
     assert mine.extrema == pytest.approx(other.extrema, abs=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-18, 1e18])
+def test_free_rotations_are_those_of_the_train_in_any_unit(size):
+    """Stiffness and damping of any size beside each other: a held train has none, one that nothing holds has one."""
+    mass, n = np.diag([2.0, 0.9, 1.3, 3.0]), 4
+    joint = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    free = np.kron(np.eye(2), 0.7 * joint)  # two shafts that turn freely but for the mesh
+    held = free + np.diag([0.05, 0.0, 0.0, 0.1])
+    g = np.array([0.0, 1.0, 1.0, 0.0])
+    for stiffness, left_out in ((held, 0), (free, 1)):
+        found = coordinates_of(mass, 0.01 * stiffness, size * stiffness, g)
+        assert found.down.shape == (n - left_out, n)
+        assert found.drift.shape == (left_out, n)
+
+
+@pytest.mark.parametrize("apart", [False, True])
+@pytest.mark.parametrize("one_sided", [False, True])
+def test_a_drive_rests_where_forces_balance(one_sided, apart):
+    """Static balance of the train: forces that pull the flanks apart are held by the second flank, if there is one."""
+    force = np.array([0.1, 0.0, 0.0, 0.12]) * (-1.0 if apart else 1.0)
+    drive = chain(one_sided=one_sided, mean_force=force, error_amplitude=0.0, error_phase=0.0)
+    q, speed = drive.rest_state().reshape(2, 4)
+    g = np.asarray(drive.direction)
+    y, d = float(g @ q), drive.half_backlash
+    push = drive.mesh_stiffness.mean * (max(y - d, 0.0) if one_sided else y - np.clip(y, -d, d))
+    assert np.asarray(drive.stiffness) @ q + push * g == pytest.approx(force, abs=1e-12)
+    assert np.sign(push) == (-(not one_sided) if apart else 1.0)
+    assert not speed.any()
+    uneven = chain(one_sided=one_sided, mean_force=force)
+    tau = np.array([0.0, 1.3])
+    at, rate = uneven.contact_motion(tau, uneven.balanced(tau))
+    assert at == pytest.approx([y, y], abs=1e-12)  # at rest about the error
+    assert rate == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -272,6 +307,22 @@ def test_free_train_is_the_oscillator_of_its_mesh():
     assert len(dynamics.lyapunov_exponents(free, 40, transient=0).exponents) == 2
     turned = orbit.state + np.array([1.0, 1.0, 0.5, 0.5])
     assert period_map(free, turned).state == pytest.approx(orbit.state, abs=1e-12)
+
+
+@pytest.mark.parametrize("rounding", [1e-18, -1e-15, 1e-11])
+def test_a_free_rotation_may_carry_the_rounding_of_the_load(rounding: float):
+    """A rotation that is a coordinate: nothing cancels in its load, which is measured by that of the others."""
+
+    def turning(load: float) -> DriveOscillator:
+        return DriveOscillator(
+            np.eye(2), np.diag([0.0, 0.1]), np.diag([0.0, 0.5]), [0.0, 1.0], SERIES, 0.05, [load, 0.2], 0.1, 0.7, 0.2
+        )  # fmt: skip
+
+    assert turning(rounding).directions == 2
+    assert np.array_equal(turning(rounding).rest_state(), turning(0.0).rest_state())
+    for load in (1e-3, 1e-8):
+        with pytest.raises(InputError, match="must balance over a rotation"):
+            turning(load)
 
 
 @pytest.mark.parametrize(

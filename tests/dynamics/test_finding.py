@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,38 @@ def test_random_oscillators_against_brute_force(seed: int):
     found = find_orbits(osc, (1, 2, 3))
     gaps = sum(missing(found, osc, n, 60) for n in (1, 2, 3))
     assert gaps == 0 or not found.converged
+
+
+# a 1-1-1 of ten times the size of the 1-1-0 that motions from rest come to
+RESONANT = GearOscillator(
+    FourierStiffness(1.0, (0.2266,), (2.7565,)), 0.0088, 0.367, (0.3634, 0.1604), 0.9497, 0.8619,
+    free_damping_ratio=0.0708,
+)  # fmt: skip
+
+
+def later(osc: GearOscillator, angle: float) -> GearOscillator:
+    """The same oscillator, tau = 0 an angle of the excitation later."""
+    errors, stiffness = osc.error_series, osc.stiffness
+    turned = tuple(p + j * angle for j, p in enumerate(stiffness.phases, 1))
+    phases = errors[1] + angle * np.arange(1, errors.shape[1] + 1)
+    moved = replace(osc, stiffness=replace(stiffness, phases=turned))
+    return replace(moved, error_amplitude=tuple(errors[0]), error_phase=tuple(phases))
+
+
+@pytest.mark.parametrize("part", [0.125, 0.5, "half a cell"])
+def test_orbits_do_not_hang_on_where_the_period_begins(part):
+    """The region covers motions at all times of the period, and grows with the orbits found."""
+    angle = np.pi / np.ceil(RESONANT.cells) if part == "half a cell" else 2.0 * np.pi * part
+    here, there = (find_orbits(osc, (1, 2, 3)) for osc in (RESONANT, later(RESONANT, angle)))
+    assert here.converged
+    assert there.converged
+    assert sorted(o.label for o in here.orbits) == ["1-1-0", "1-1-1", "U1-1-1"]
+    assert sorted(o.label for o in there.orbits) == ["1-1-0", "1-1-1", "U1-1-1"]
+    assert np.array(there.region) == pytest.approx(np.array(here.region), rel=1e-2)
+    for mine, other in zip(*(sorted(r.orbits, key=lambda o: o.label) for r in (here, there)), strict=True):
+        assert mine.multipliers == pytest.approx(other.multipliers, abs=1e-9)
+
+
+def test_a_region_that_is_given_stays():
+    found = find_orbits(RESONANT, 1, ((-0.3, 0.3), (-0.3, 0.3)), starts=3, batches=0)
+    assert found.region == ((-0.3, 0.3), (-0.3, 0.3))

@@ -286,3 +286,21 @@ def test_fifty_harmonics_of_the_error_are_the_sum_of_their_answers():
     orbit = find_orbit(osc, osc.rest_state())
     assert orbit.state[0] == pytest.approx(0.6 + np.sum(response.real), rel=1e-12)
     assert orbit.state[1] == pytest.approx(np.sum((1j * j * w * response).real), rel=1e-10, abs=1e-14)
+
+
+@pytest.mark.parametrize("share", [1e-2, 1e-5])
+def test_a_pair_at_next_to_no_load_between_far_flanks(share: float):
+    """Load and error a hundredth and 1e-5 of usual: the equation is the same with all lengths in proportion."""
+
+    def points(size: float, **changes) -> list[tuple[str, float]]:
+        osc = GearOscillator(
+            FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1 * size, 0.2 * size, 0.6, half_backlash=10.0, **changes
+        )  # fmt: skip
+        branch = continue_branch(find_orbit(osc, osc.rest_state()), "frequency", (0.45, 1.2))
+        assert branch.converged
+        assert branch.ended == ("bound", "bound")
+        return [(p.kind, p.parameter) for p in branch.points]
+
+    full, light = points(1.0, one_sided=True), points(share)
+    assert [kind for kind, _ in light] == [kind for kind, _ in full]
+    assert [at for _, at in light] == pytest.approx([at for _, at in full], abs=1e-8)
