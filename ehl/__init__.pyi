@@ -11,6 +11,7 @@ from .flash import blok_flash_temperature as blok_flash_temperature
 from .frequency import FilmResponse as FilmResponse
 from .frequency import film_response as film_response
 from .lubricant import Lubricant as Lubricant
+from .measured import MeasuredViscosity as MeasuredViscosity
 from .mixed import solve_mixed as solve_mixed
 from .mixed_film import MixedFilm as MixedFilm
 from .mixed_thermal import MixedThermalFilm as MixedThermalFilm
@@ -40,5 +41,7 @@ from .thermal import Losses as Losses
 from .thermal import ThermalFilm as ThermalFilm
 from .thermal import solve_thermal as solve_thermal
 from .thermal_slopes import with_load_slopes as with_load_slopes
+from .traction import TractionCurve as TractionCurve
+from .traction import traction_curve as traction_curve
 from .transient import TransientFilm as TransientFilm
 from .transient import solve_transient as solve_transient

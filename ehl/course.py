@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array
 from ehl.contact import LineContact
-from ehl.levels import Figures, Level
+from ehl.levels import Figures, Level, spike_of
 from ehl.stepping import Laying, Moment, advance, extrapolated, steady
 
 FIRST = 1e-3
@@ -26,6 +26,8 @@ MOST_STEPS = 20000
 
 BREAKS = "under a load that falls faster than the bodies part the oil breaks, which is not computed"
 
+_NARROWEST = 5e-6  # width of spikes at the pressures where they can still be resolved [half-widths]
+_CELLS = 3.0  # across a spike that a grid resolves
 _GROWTH = 1.6
 _SAFETY = 0.85
 _TRANSIT = 2.0  # times it, after which what a step did wrong has left the contact
@@ -47,6 +49,7 @@ class Shot:
     pressure: Array
     thickness: Array
     balance: float  # net flux into a node that is left, over the flux
+    halvings: float  # of the cells at the spike until they resolve the narrowest one; 0 where they do
 
     @classmethod
     def of(cls, moment: Moment) -> Shot:
@@ -55,7 +58,18 @@ class Shot:
         x = level.grid.nodes * level.groups.length
         found = level.found
         curves = (x, moment.pressure, moment.film)
-        return cls(moment.time, moment.unit, level.contact, moment.figures, *curves, found.flux_error)
+        left = halvings_left(level)
+        return cls(moment.time, moment.unit, level.contact, moment.figures, *curves, found.flux_error, left)
+
+
+def halvings_left(level: Level) -> float:
+    """How often the cells at the pressure spike would have to be halved to resolve it; 0 without one or resolved."""
+    tip = spike_of(level)
+    if tip is None:
+        return 0.0
+    X = level.grid.nodes * level.grid.ratio
+    cell = float(np.diff(X)[min(int(np.searchsorted(X, tip.position)), X.size - 2)])
+    return 0.0 if tip.width > _CELLS * cell else max(math.log2(cell / _NARROWEST), 0.0)
 
 
 @dataclass

@@ -13,6 +13,10 @@ _SPIKE_SHARE = 0.6  # nodes at a spike for one at the inlet: more of them starve
 _UPSTREAM = 0.7  # more costs accuracy at the neck, less leaves teeth
 _INLET_END = 1.5  # where the inlet ends, behind the edge of the dry contact, over the width of its zone
 _INLET_BLUR = 0.5  # over which it ends, likewise
+_INLET_WIDEST = (
+    0.8  # width of the zone that counts there [half-widths]: of thick films it reaches over the spike,
+)
+_NO_SPIKE = 4.0  # and from this H_c on no spike stands there
 
 
 def default_domain(H_c: float, reach: float = 40.0) -> tuple[float, float]:
@@ -116,7 +120,7 @@ def upstream_share(nodes: Array, H_c: float) -> Array:
     H_c : float
         Expected h R/b^2 at the centre.
     """
-    inlet = clusters(H_c)[0]
+    inlet = min(clusters(H_c)[0], _INLET_WIDEST * max(1.0, H_c / _NO_SPIKE) ** 2)
     behind = 0.5 * (nodes[1:] + nodes[:-1]) + 1.0 - _INLET_END * inlet
     share: Array = 0.5 * _UPSTREAM * (1.0 + np.tanh(behind / (_INLET_BLUR * inlet)))
     return share

@@ -9,10 +9,31 @@ import numpy as np
 from base import Array
 from ehl.heated import Heated
 
+_GAUSS = np.polynomial.legendre.leggauss(12)
+
 
 def traction(oil: Heated) -> float:
-    """Mean shear stress over the load, positive where the first surface is the faster."""
-    return -_along(oil, oil.shear.flow[:, 0]) / oil.contact.load
+    """Mean shear stress over the load, positive where the first surface is the faster; of film and cavity."""
+    return -(_along(oil, oil.shear.flow[:, 0]) + cavity(oil)) / oil.contact.load
+
+
+def cavity(oil: Heated) -> float:
+    """Integral of the mean shear stress of the oil in the cavity [N/m].
+
+    Behind the film's end oil fills the share h_e/h of the gap in streams from wall to wall, h_e the gap at the end. Its
+    stress is that of a full gap there, at ambient pressure. Beyond the outlet the gap is a parabola.
+    """
+    end, gap, stress = oil.last + 1, oil.shear.gap, oil.shear.flow[:, 0]
+    if end >= gap.size:
+        return 0.0
+    behind = stress[end:] * gap[end - 1] / gap[end:]
+    x, h, radius = oil.x[-1], gap[-1], oil.contact.radius
+    part = 0.5 * (_GAUSS[0] + 1.0)  # of x, beyond the outlet: the outlet's over it
+    off = 2.0 * radius * h / x**2 - 1.0  # h = (x^2 + off x_o^2)/(2 R)
+    beyond = (
+        float(x) * (1.0 + float(off)) ** 2 * float(0.5 * _GAUSS[1] @ (part**2 / (1.0 + off * part**2) ** 2))
+    )
+    return float(behind @ oil.lengths[end:]) + float(behind[-1]) * beyond
 
 
 def _along(oil: Heated, values: Array) -> float:
@@ -45,8 +66,9 @@ def losses(oil: Heated) -> dict[str, float]:
     """Where the power of one metre of face goes [W/m]."""
     shear, weights = oil.shear, oil.across.weights
     made = shear.gap * ((shear.across * shear.rate) @ weights)
-    sheared = _along(oil, made)
-    sliding = -_along(oil, shear.flow[:, 0]) * oil.contact.sliding
+    streams = -cavity(oil) * oil.contact.sliding
+    sheared = _along(oil, made) + streams
+    sliding = -_along(oil, shear.flow[:, 0]) * oil.contact.sliding + streams
     if oil.solids is None:
         held = dict.fromkeys(("compression", "first_body", "second_body", "oil", "closure"), math.nan)
         return {"dissipation": sheared, "sliding": sliding, "rolling": sheared - sliding} | held
@@ -56,7 +78,7 @@ def losses(oil: Heated) -> dict[str, float]:
         * oil.contact.lubricant.expansion
     )
     first, second = (_along(oil, row) for row in oil.into)
-    away = _along(oil, made) + _carried_off(oil)
+    away = _along(oil, made) + _carried_off(oil) + streams
     return {
         "dissipation": sheared,
         "sliding": sliding,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -57,6 +58,7 @@ class Heated:
     middles: Array = field(init=False)  # of the cells [m] (n-1,)
     lengths: Array = field(init=False)  # of the cells [m] (n-1,)
     left: Array = field(init=False)  # share of the left cell at the nodes between two (n-2,)
+    inlet_gap: float = INLET_GAP
     first: int = 0  # cell where heat begins to be followed
     last: int = 0  # and where it ends
     unsettled: float = 0.0
@@ -104,6 +106,16 @@ class Heated:
             self.temperature[:, j] += np.interp(at, places, change)
         for mine, change in zip(self.into, new.into - old.into, strict=True):
             mine += np.interp(at, places, change)
+
+    def farther(self, P: Array, H: Array) -> Heated:
+        """Return the oil with heat followed from twice the gap, swept once under the same pressures and gaps."""
+        wider = copy(self)
+        wider.inlet_gap = 2.0 * self.inlet_gap
+        wider.temperature, wider.into, wider.sigma = (
+            values.copy() for values in (self.temperature, self.into, self.sigma)
+        )
+        wider.at(P, H)
+        return wider
 
     def at(self, P: Array, H: Array) -> Fluid:
         """Let flow, shear and heat follow pressures and gaps; give what the flux needs of them."""
@@ -186,10 +198,11 @@ class Heated:
         from ehl.shear_kernels import flow_across
 
         oil, contact, across = self.contact.lubricant, self.contact, self.across
-        ln_ratio, cooling, fall = oil.warmed(0.5 * (ratio[1:] + ratio[:-1])[:, None], self.temperature)
+        middle, pressed = 0.5 * (gap[1:] + gap[:-1]), 0.5 * (p[1:] + p[:-1])
+        between = 0.5 * (ratio[1:] + ratio[:-1])
+        ln_ratio, cooling, fall = oil.warmed(between[:, None], self.temperature, pressed[:, None])
         thermal = 1.0 - oil.expansion * (self.temperature @ across.weights - oil.temperature)
         density = 0.5 * oil.density * (packed[1:] + packed[:-1]) * thermal
-        middle, pressed = 0.5 * (gap[1:] + gap[:-1]), 0.5 * (p[1:] + p[:-1])
         share = oil.limiting_shear_ratio
         limit = (
             np.full(middle.size, _UNLIMITED) if share is None else np.maximum(share * pressed, _LEAST_STRESS)
@@ -221,7 +234,7 @@ class Heated:
         self.gradient = np.diff(p) / self.lengths
         self.response = np.zeros((shear.gap.size, 2))
         first = self.first = max(
-            1, int(np.argmax(shear.gap < INLET_GAP * np.interp(0.0, self.middles, shear.gap)))
+            1, int(np.argmax(shear.gap < self.inlet_gap * np.interp(0.0, self.middles, shear.gap)))
         )
         before = self.temperature.copy()
         back = np.flatnonzero(self.carried.min(axis=1) < 0.0)

@@ -6,11 +6,13 @@ import math
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from base import Array, Faults, Limit, RangeWarning
+from ehl.measured import MeasuredViscosity
 from ehl.rheology import (
     ROELANDS_LN_VISCOSITY,
     Barus,
@@ -72,7 +74,7 @@ class Lubricant:
     compressible : bool
         False keeps the density constant.
     viscosity_law : ViscosityLaw, optional
-        Another law; its slope at ambient pressure has to be ``pressure_viscosity``.
+        Another law; its slope at ambient pressure has to be ``pressure_viscosity``. A table: see `measured`.
     density_law : DensityLaw, optional
         Another law than Dowson and Higginson's.
     temperature : float
@@ -171,6 +173,42 @@ class Lubricant:
             z = roelands_index(math.log(self.viscosity), self.pressure_viscosity)
         return Barus(self.pressure_viscosity) if z == 1.0 else Roelands(self.pressure_viscosity, z)
 
+    @property
+    def table(self) -> MeasuredViscosity | None:
+        """Table that the viscosity is read from; None with a law."""
+        return self.viscosity_law if isinstance(self.viscosity_law, MeasuredViscosity) else None
+
+    @classmethod
+    def measured(cls, table: MeasuredViscosity, density: float = 870.0, **others: Any) -> Lubricant:
+        """Build an oil from a table of its viscosity; numbers and slopes at the table's reference temperature follow.
+
+        Parameters
+        ----------
+        table : MeasuredViscosity
+            Over pressure and temperature.
+        density : float
+            rho0 at ambient pressure and the table's reference temperature [kg/m^3].
+        **others
+            As of the constructor: conductivity, heat_capacity, expansion, eyring_stress and so on.
+
+        Examples
+        --------
+        >>> from ehl import MeasuredViscosity
+        >>> rows = ((0.1, 0.02), (20.0, 1.5), (900.0, 40.0))
+        >>> oil = Lubricant.measured(MeasuredViscosity((0.0, 5e8, 1e9), (313.15, 353.15), rows, at=353.15))
+        >>> round(oil.viscosity, 4), round(oil.at_temperature(313.15).viscosity, 4)
+        (0.02, 0.1)
+        """
+        return cls(
+            table.ambient,
+            table.slope,
+            density,
+            viscosity_law=table,
+            temperature=table.reference,
+            viscosity_slope=table.cooling,
+            **others,
+        )
+
     @cached_property
     def compression(self) -> DensityLaw:
         """The density law in use."""
@@ -201,11 +239,18 @@ class Lubricant:
         C. J. A. Roelands, thesis, Delft (1966).
         """
         ratio, slope = self.law.log_ratio(p)
-        hot, cooling, _ = self.warmed(ratio, T)
+        hot, cooling, _ = self.warmed(ratio, T, p)
         return hot, slope * cooling
 
-    def warmed(self, ratio: ArrayLike, T: ArrayLike) -> tuple[Array, Array, Array]:
-        """Take ln(eta/eta0) at T0 to temperatures [K]; also its derivative by itself and -d ln(eta)/dT [1/K]."""
+    def warmed(self, ratio: ArrayLike, T: ArrayLike, p: ArrayLike) -> tuple[Array, Array, Array]:
+        """Take ln(eta/eta0) at T0 to temperatures [K]; also its derivative by itself and -d ln(eta)/dT [1/K].
+
+        A table is read at the pressures p [Pa]; a law needs them not.
+        """
+        if self.table is not None:
+            hot, here = self.table.read(p, T), self.table.read(p, self.temperature)
+            ln_ratio = hot.ln_viscosity - math.log(self.viscosity)
+            return ln_ratio, hot.by_pressure / here.by_pressure, -hot.by_temperature
         above = math.log(self.viscosity) - ROELANDS_LN_VISCOSITY
         exponent = self.viscosity_slope * (self.temperature - _POLE) / above
         from_pole = np.asarray(T, dtype=float) - _POLE
@@ -227,6 +272,17 @@ class Lubricant:
         """
         if self.temperature == T:
             return self
+        if self.table is not None:
+            law = self.table.at_temperature(T)
+            return replace(
+                self,
+                viscosity=law.ambient,
+                pressure_viscosity=law.slope,
+                viscosity_law=law,
+                density=self.density * (1.0 - self.expansion * (T - self.temperature)),
+                temperature=T,
+                viscosity_slope=law.cooling,
+            )
         ratio, pressure_viscosity = (float(value) for value in self.hot_log_viscosity(0.0, T))
         above = math.log(self.viscosity) - ROELANDS_LN_VISCOSITY
         steeper = (1.0 + ratio / above) * (self.temperature - _POLE) / (T - _POLE)

@@ -2,8 +2,10 @@
 
 Johnson, Greenwood and Poon's load sharing: asperities and film carry the shares s and 1 - s of the load at every
 point alike. The bodies then deform under the film's pressure as a contact of load w (1 - s) and modulus
-E' (1 - s) would: the half-width stays. The film of that contact gives the separation, the asperities their
-pressure at it, and s is where that pressure is what the share asks for at the middle of the contact.
+E' (1 - s) would: the half-width stays. The film of that contact is the mean gap between the surfaces; the mean planes
+of their heights are as far apart as leaves that gap, less than it and at thin films less than nothing. Asperities carry
+their pressure at that distance, and s is where this is what the share asks for at the middle of the contact. So the
+share tends to 1 as films vanish, whatever the load.
 """
 
 from __future__ import annotations
@@ -38,7 +40,8 @@ def central_asperity_pressure(contact: LineContact, roughness: Roughness, share:
     """Pressure on the asperities at the middle of a rough line contact [Pa], by Gelinck and Schipper's fit.
 
     ``p_c = s p_H [1 + (1.558 (n/s R^1.5 beta^0.5)^0.0337 (sigma/R)^-0.442 W^0.4757)^-1.70]^(-1/1.70)``, s the
-    asperities' share of the load: the Hertz pressure of the share, lowered by the spread of a rough contact.
+    asperities' share of the load: the Hertz pressure of the share, lowered by the spread of a rough contact. Where
+    the film ratio decides it is the Hertz pressure of the share.
 
     References
     ----------
@@ -46,6 +49,8 @@ def central_asperity_pressure(contact: LineContact, roughness: Roughness, share:
     International 33 (2000) 175-181. The constants were taken from a secondary source; the bracket is within
     some per cent of one for hard contacts, which limits what an error in them can do.
     """
+    if not roughness.elastic:
+        return share * contact.peak_pressure
     R, sigma = contact.radius, roughness.deviation
     asperities = roughness.density / share * R**1.5 * math.sqrt(roughness.tip_radius)
     spread = 1.558 * asperities**0.0337 * (sigma / R) ** -0.442 * contact.W**0.4757
@@ -95,7 +100,7 @@ def solve_mixed(
     References
     ----------
     K. L. Johnson, J. A. Greenwood and S. Y. Poon, A simple theory of asperity contact in elastohydrodynamic
-    lubrication, Wear 19 (1972) 91-108.
+    lubrication, Wear 19 (1972) 91-108, doi:10.1016/0043-1648(72)90445-0; :func:`ehl.asperities.plane_distance`.
 
     Examples
     --------
@@ -160,8 +165,8 @@ class _Search:
 
     def carried(self, central: float) -> tuple[float, float]:
         """Asperities' pressure at a central thickness [Pa] and its derivative by that [Pa/m]."""
-        pressure, slope = self.roughness.pressure(central, self.contact.reduced_modulus)
-        return float(pressure), float(slope)
+        contact = self.contact
+        return self.roughness.under_film(central, contact.reduced_modulus, contact.peak_pressure)
 
     def asked(self, odds: float, heavier: float = 1.0) -> float:
         """Pressure that the asperities' share asks of them [Pa], at a multiple of the load."""
@@ -189,16 +194,19 @@ class _Search:
             return self.smooth(self.film_at(-math.inf))
         film, share, by = balance.found.film(), _share(balance.odds), balance.by
         pressure, slope = self.carried(film.central_thickness)
-        stiffness = -share * self.contact.load * slope / pressure
+        closer = float(self.roughness.planes(film.central_thickness)[1])  # planes by gap
+        stiffness = -share * self.contact.load * slope / pressure / closer
         # ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw
         left, steep = 1.0 - share, slope / pressure
         asked_by_odds, asked_by_load = self.asked_slopes(balance.odds)
         separation_w, central_w = left * film.separation_slope, left * film.central_slope
+        if not self.roughness.elastic:  # what is carried grows with the Hertz pressure alike
+            asked_by_load = 0.0
         follow = asked_by_load / self.contact.load - steep * central_w
         follow /= steep * by.central - asked_by_odds
-        return self.result(
-            film, share, stiffness, separation_w + by.separation * follow, central_w + by.central * follow
-        )
+        central = central_w + by.central * follow
+        separation = separation_w + by.separation * follow + (closer - 1.0) * central
+        return self.result(film, share, stiffness, separation, central)
 
     def balance(self) -> _Balance | None:
         """Share at which the asperities carry what is asked, by Newton's method in its odds between bounds.
@@ -220,7 +228,9 @@ class _Search:
                 raise _NoFilmError(
                     "the asperities carry all but a millionth of the load: take the contact as dry"
                 )
-            step = max(-_REACH, min(_REACH, -excess / slope))
+            # of a held layer the film's part of the slope is rounding where asperities carry nearly all
+            ahead = -excess / slope if slope < 0.0 else math.copysign(_REACH, excess)
+            step = max(-_REACH, min(_REACH, ahead))
             if high - low < min(abs(step), _CLOSE):
                 low, high = -math.inf, math.inf
             target = max(_NOTHING, min(_ALL, odds + step))

@@ -31,17 +31,22 @@ class RoughFilm:
 
     @described("m", shown="um", error="error")
     def central_thickness(self) -> float:
-        """Distance of the mean planes at x = 0."""
+        """Mean gap at x = 0."""
         return self.film.central_thickness
 
     @described("m", shown="um", error="error")
+    def plane_distance(self) -> float:
+        """Distance of the mean planes at x = 0; negative where heights overlap by more than they leave open."""
+        return float(self.roughness.planes(self.film.central_thickness)[0])
+
+    @described("m", shown="um", error="error")
     def minimum_thickness(self) -> float:
-        """Least distance of the mean planes."""
+        """Least mean gap."""
         return self.film.minimum_thickness
 
     @described("1", error="error")
     def film_ratio(self) -> float:
-        """Lambda, least distance of the mean planes over the standard deviation of heights."""
+        """Lambda, least mean gap over the standard deviation of heights."""
         return self.film.minimum_thickness / self.roughness.deviation
 
 
@@ -52,9 +57,10 @@ class MixedFilm(RoughFilm):
     ``film`` is that of the load and modulus that are left to it; its half-width is that of ``contact``.
     ``cost.counts["films"]`` counts the films solved.
 
-    The stiffnesses are those of springs in parallel, at fixed speed and fixed width of the contact. A contact that
-    asperities carry widens with the load, which makes it stiffer again by up to two: ``separation_slope`` and
-    ``central_slope`` are the derivatives with all of that, -1/slope the whole stiffness.
+    The stiffnesses are those of springs in parallel between the mean planes, at fixed speed and fixed width of the
+    contact. A contact that asperities carry widens with the load, which makes it stiffer again by up to two:
+    ``separation_slope`` (of the mean planes) and ``central_slope`` (of the mean gap) are the derivatives with all of
+    that, -1/separation_slope the whole stiffness.
     """
 
     headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")
@@ -69,8 +75,13 @@ class MixedFilm(RoughFilm):
 
     @described("m", shown="um")
     def separation(self) -> float:
-        """Approach of the dry contact less that with film and asperities."""
-        return self.film.separation
+        """Approach of the dry, smooth contact less that of the mean planes with film and asperities."""
+        return self.film.separation + self.plane_distance - self.central_thickness
+
+    @property
+    def gap_slope(self) -> float:
+        """Derivative of the mean gap by the distance of the mean planes at x = 0 [-]."""
+        return 1.0 / float(self.roughness.planes(self.film.central_thickness)[1])
 
     @described("N/m")
     def asperity_load(self) -> float:
@@ -78,8 +89,8 @@ class MixedFilm(RoughFilm):
         return self.asperity_share * self.contact.load
 
     def film_stiffness(self, definition: str = "approach") -> float:
-        """Stiffness of the film at its own share of the load [N/m per m of face]."""
-        return self.film.stiffness(definition)
+        """Stiffness of the film between the mean planes, at its own share of the load [N/m per m of face]."""
+        return self.film.stiffness(definition) * self.gap_slope
 
     def stiffness(self, definition: str = "approach") -> float:
         """Film and asperities in parallel [N/m per m of face]: goes in series with the tooth.
@@ -89,4 +100,4 @@ class MixedFilm(RoughFilm):
         definition : str
             As for :meth:`ehl.Film.stiffness`, of the film's part.
         """
-        return self.film.stiffness(definition) + self.asperity_stiffness
+        return self.film_stiffness(definition) + self.asperity_stiffness

@@ -179,14 +179,21 @@ class _Search:
 
     def isothermal_slope(self, cold: MixedFilm, share: float) -> float:
         """Derivative of the excess by the odds, from the isothermal film's thickness by its load."""
-        pressure, slope = self.roughness.pressure(cold.central_thickness, self.contact.reduced_modulus)
-        steep = float(slope / pressure) if pressure > 0.0 else 0.0
+        pressure, slope = self.under(cold)
+        steep = slope / pressure if pressure > 0.0 else 0.0
         eased = -share * cold.film.contact.load * cold.film.central_slope
         return min(steep * eased - 1.0, -0.5)
 
     def carried(self, film: ThermalFilm) -> float:
         """Asperities' pressure at a film's central thickness [Pa]."""
-        return float(self.roughness.pressure(film.central_thickness, self.contact.reduced_modulus)[0])
+        return self.under(film)[0]
+
+    def under(self, film: MixedFilm | ThermalFilm) -> tuple[float, float]:
+        """Asperities' pressure at a film's central thickness [Pa] and its derivative by that [Pa/m]."""
+        contact = self.contact
+        return self.roughness.under_film(
+            film.central_thickness, contact.reduced_modulus, contact.peak_pressure
+        )
 
     def excess(self, share: float) -> float:
         """Ln of the asperities' pressure over what their share asks for."""

@@ -52,6 +52,12 @@ class Options:
     def _check(self, contact: object, found: Faults) -> None:
         if not isinstance(contact, LineContact):
             found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
+        elif contact.lubricant.table is not None:
+            last = contact.lubricant.table.pressure[-1]
+            if contact.peak_pressure > last:
+                allowed = f"must have a Hertz pressure of at most {last:g} Pa, where the oil's table ends"
+                pressure = f"{contact.peak_pressure:.4g} Pa"
+                found.add("contact", pressure, allowed, "measure farther, or lower the load")
         if self.nodes is not None:
             found.whole("nodes", self.nodes, *_NODES)
         found.choice("grid", self.grid, GRIDS, "'graded' resolves inlet and pressure spike")

@@ -23,6 +23,7 @@ _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
 _HOTTEST = 1000.0  # [K]
 _DECOMPOSING = 620.0  # [K]
 _STRONGEST = 0.06  # mean shear stress over the greatest pressure
+_CLIMB = (3e7, 5e7, 1e8, 2e8, 5e8)  # Eyring stresses on the way to an oil that yields without thinning [Pa]
 _YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
 _TOLERANCE = Limit.above(0.0, 0.2, remedy="0.01 is 1 %")
 
@@ -70,7 +71,9 @@ class ThermalFilm(Film):
     )
     traction_error: float = unsolved("1", "change of the traction between two grids")
     temperature_error: float = unsolved(
-        "1", "change of the greatest temperature rises between two grids, and what an unresolved spike leaves"
+        "1",
+        "change of the greatest temperature rises between two grids, what an unresolved spike leaves, and heat that is "
+        "missing or ahead of the inlet",
     )
     oils: tuple[Heated, Heated] | None = part("what a next solution starts from", default=None)
 
@@ -157,6 +160,14 @@ def solve_thermal(
         found = search.from_neighbour(start.state, start.oils, nodes)
     if found is None:
         found = search.from_nothing(nodes)
+    oil = contact.lubricant
+    if (
+        found is None
+        and supply is None
+        and oil.eyring_stress is None
+        and oil.limiting_shear_ratio is not None
+    ):
+        found = _yielding(search, nodes)
     layer = supply.thickness if isinstance(supply, OilLayer) else math.inf
     if found is not None and layer < found.fine.flow * (1.0 - found.error):
         search.supply = supply
@@ -170,6 +181,23 @@ def solve_thermal(
     return replace(_film(search, found, watch), supply=supply)
 
 
+def _yielding(search: Search, nodes: int | None) -> Compared | None:
+    """Start an oil that yields at a limiting stress alone from oils that thin as well, at ever larger stresses."""
+    contact, near = search.contact, None
+    bulk = (float(search.bulk[0]), float(search.bulk[1]))
+    for stress in (*_CLIMB, None):
+        oil = replace(contact.lubricant, eyring_stress=stress)
+        thins = Search(replace(contact, lubricant=oil), search.solids, bulk, search.tolerance)
+        if near is None:
+            near = thins.from_nothing(nodes)
+        else:
+            near = thins.from_neighbour(near.state, (near.before, near.oil), nodes)
+        search.iterations += thins.iterations
+        if near is None:
+            return None
+    return near
+
+
 def _warn_of_range(found: Compared) -> None:
     """Warn where oils no longer are what the model takes them for."""
     oil, hottest = found.oil, float(found.oil.temperature.max())
@@ -179,6 +207,13 @@ def _warn_of_range(found: Compared) -> None:
         message = (
             f"mean shear stress of {stress / 1e6:.3g} MPa, {stress / pressure:.2g} of the greatest pressure: "
             f"oils yield at 0.03 to 0.06 of the pressure; {_YIELDING}"
+        )
+        warnings.warn(message, RangeWarning, stacklevel=3)
+    table = oil.contact.lubricant.table
+    if table is not None and (hottest > table.temperature[-1] or pressure > table.pressure[-1]):
+        message = (
+            f"oil at {hottest:.0f} K and up to {pressure / 1e9:.3g} GPa leaves its table, which ends at "
+            f"{table.temperature[-1]:g} K and {table.pressure[-1] / 1e9:g} GPa: its last slopes go on there"
         )
         warnings.warn(message, RangeWarning, stacklevel=3)
     if hottest > _DECOMPOSING:
@@ -207,6 +242,12 @@ def _checked(
             found.add("bulk_temperatures", given, "must be two temperatures", "give both bodies' in K")
         for value in given:
             found.number("bulk_temperatures", value, _TEMPERATURE)
+            table = contact.lubricant.table
+            if table is not None and not table.knows(value):
+                allowed = (
+                    f"must lie in the oil's table, {table.temperature[0]:g} to {table.temperature[-1]:g} K"
+                )
+                found.add("bulk_temperatures", value, allowed, "measure the oil there, or take a law")
         found.number("tolerance", tolerance, _TOLERANCE)
     return (float(given[0]), float(given[1]))
 

@@ -42,7 +42,7 @@ Solved = tuple[Level, Heated]
 def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
     """Return the contact with the oil as it is at the mean bulk temperature, isothermal and Newtonian."""
     oil, mean = contact.lubricant, 0.5 * (bulk[0] + bulk[1])
-    if oil.viscosity_law is not None or mean == oil.temperature:
+    if (oil.viscosity_law is not None and oil.table is None) or mean == oil.temperature:
         return contact
     return replace(contact, lubricant=oil.at_temperature(mean))
 
@@ -62,10 +62,26 @@ class Compared:
         self.temperature_error += self._spike_left() / max(float(warm[0]), 1.0)
         oil = self.oil.contact.lubricant
         cut = 0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / INLET_GAP
+        self.temperature_error += self._heat_ahead()
         lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
         film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
         # what the hottest oil does to film and traction is in these; itself it may stand at the spike
         self.error = max(film, GRID_FACTOR * self.traction_error) + self.inlet + cut + rest
+
+    def _heat_ahead(self) -> float:
+        """Share of the rises that heat ahead of where it is followed would add.
+
+        It falls with the gap from which heat is followed, so that as much again as twice the gap adds is left beyond.
+        What oil that turns back carries off unseen is the heat by which the balance does not close.
+        """
+        if self.before.solids is None:
+            return 0.0
+        found = self.coarse.found
+        with np.errstate(all="ignore"):
+            wider = np.array(rises(self.before.farther(found.P, found.H)))
+        warm = np.array(rises(self.before))
+        ahead = 2.0 * np.abs(wider - warm) / np.maximum(warm, 1.0)
+        return float(np.max(ahead)) + abs(losses(self.oil)["closure"])
 
     def _spike_left(self) -> float:
         """What the oil under the spike may be hotter by than the hottest oil found [K].
@@ -143,7 +159,7 @@ class Search:
     def from_nothing(self, nodes: int | None) -> Compared | None:
         """Start from the isothermal, Newtonian film."""
         tolerance = max(self.tolerance, 0.01)
-        for n in (_FIRST_NODES, None) if nodes is None else (nodes,):
+        for n in (_FIRST_NODES, None) if nodes is None or nodes >= _FIRST_NODES else (nodes,):
             film = solve_checked(self.isothermal, Options(tolerance, n, supply=self.supply), None)
             self.iterations += film.run.iterations
             if film.converged:
@@ -164,24 +180,26 @@ class Search:
 
     def _refine(self, base: Level, old: Neighbour | None, nodes: int | None) -> Compared | None:
         """Double the grid until the estimate meets what is asked; a grid that fails is passed over."""
-        n = 2 * _FIRST_NODES - 1 if nodes is None else nodes
+        sizes = [_MOST_NODES if nodes is None else nodes]
+        while (
+            sizes[0] >= 4 * _FIRST_NODES - 3
+        ):  # a grid that is asked for starts from coarser ones as any does
+            sizes.insert(0, (sizes[0] + 1) // 2)
         known = None if old is None else old.coarse[1]
-        before = self._fed(self._on(self._level(base, (n + 1) // 2), known))
-        while True:
+        before = self._fed(self._on(self._level(base, (sizes[0] + 1) // 2), known))
+        for n in sizes:
             level, oil = (base, known) if before is None else before
             fine = self._level(level, n)
             last = self._fed(self._on(fine, oil, old if before is not None else None, before))
             if before is not None and last is not None:
                 found = Compared(before, last, self.tolerance)
-                if nodes is not None or found.error <= self.tolerance:
+                if n == nodes or (nodes is None and found.error <= self.tolerance):
                     return found
                 self.left = f"error {found.error:.2g} left on {n} nodes"
             if last is None:
                 self.left = "Newton's method did not converge"
-            n = 2 * n - 1
-            if nodes is not None or n > _MOST_NODES:
-                return None
             before, old = last or before, None
+        return None
 
     def _fed(self, solved: Solved | None) -> Solved | None:
         """Move the meniscus of a layer until the film carries away what the layer brings."""

@@ -75,7 +75,9 @@ class TransientFilm:
         no_error=ITSELF,
     )
     pressure_error: float = unsolved(
-        "1", "greatest change of the greatest pressure between two grids", no_error=ITSELF
+        "1",
+        "change of the greatest pressure between two grids, for each halving that the spike's cells need",
+        no_error=ITSELF,
     )
     balance: float = unsolved(
         "1",
@@ -251,6 +253,8 @@ class _Run:
         shown = [_shot(fine, at) for at in self.times.tolist()]
         lowest = min(fine.shots, key=lambda shot: shot.figures.minimum_thickness)
         tops = [np.array([shot.pressure.max() for shot in one.shots]) for one in pair]
+        # a spike narrower than its cells grows by about as much with every halving of them
+        growth = np.abs(tops[0] / tops[1] - 1.0) * (1.0 + np.array([shot.halvings for shot in fine.shots]))
         return TransientFilm(
             contact=fine.shots[0].contact,
             time=self.times,
@@ -269,7 +273,7 @@ class _Run:
             lowest_time=lowest.time,
             grid_error=grid,
             time_error=steps,
-            pressure_error=float(np.max(np.abs(tops[0] / tops[1] - 1.0))),
+            pressure_error=float(np.max(growth)),
             balance=max(one.balance for one in fine.shots),
         )
 

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from base import InputError, RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
-from ehl.asperities import height_integral
+from ehl.asperities import height_integral, plane_distance
 from ehl.levels import figures
 from ehl.mixed import central_asperity_pressure
 from ehl.options import Options
@@ -28,14 +28,15 @@ def quiet(function, *arguments, **options):
 
 
 @pytest.mark.parametrize("n", [0.5, 1.5, 2.5])
-@pytest.mark.parametrize("x", [-1.0, 0.0, 1.3, 4.0, 6.0])
+@pytest.mark.parametrize("x", [-12.0, -3.0, -1.0, 0.0, 1.3, 4.0, 6.0])
 def test_height_integrals_by_quadrature(n, x):
     exact, _ = quad(
         lambda s: (s - x) ** n * math.exp(-(s**2) / 2) / math.sqrt(2 * math.pi),
-        x,
-        x + 12,
+        max(x, -12),
+        max(x + 12, 12),
         epsabs=0,
         limit=400,
+        points=[0.0] if x < 0 else None,
     )
     assert float(height_integral(n, x)) == pytest.approx(exact, rel=1e-6)
 
@@ -45,6 +46,26 @@ def test_the_usual_fit_of_the_height_integral():
     x = np.linspace(0.0, 2.0, 9)
     np.testing.assert_allclose(4.4086e-5 * (4.0 - x) ** 6.804, height_integral(2.5, x), rtol=0.12)
     assert height_integral(2.5, 9.0) == 0.0
+
+
+@pytest.mark.parametrize("t", [-6.0, -2.0, 0.0, 0.7, 3.0, 7.0])
+def test_mean_planes_leave_the_gap_that_a_surface_of_such_heights_leaves(t):
+    gap, _ = quad(lambda z: (t + z) * math.exp(-(z**2) / 2) / math.sqrt(2 * math.pi), -t, 12, epsabs=0)
+    distance, slope = plane_distance(gap)
+    assert float(distance) == pytest.approx(t, abs=1e-8)
+    open_share = 0.5 * math.erfc(-t / math.sqrt(2))  # of the area
+    assert float(slope) == pytest.approx(1 / open_share, rel=1e-6)
+    if t > 3:
+        assert float(distance) == pytest.approx(gap, rel=1e-3)
+
+
+def test_planes_of_gaps_of_every_size():
+    gaps = np.geomspace(1e-200, 50.0, 200)
+    distance, slope = plane_distance(gaps)
+    assert (np.diff(distance) > 0).all()
+    assert (slope >= 1.0).all()
+    assert distance[0] < -25.0
+    np.testing.assert_array_equal(distance[gaps > 8], gaps[gaps > 8])
 
 
 @pytest.mark.parametrize("h", [0.5, 1.5, 3.0])
@@ -112,20 +133,21 @@ def test_central_pressure_of_asperities_by_hand():
     assert central_asperity_pressure(contact, rough, 0.3) == pytest.approx(pressure, rel=1e-6)
 
 
-def test_film_ratio_from_three_to_a_tenth():
+def test_film_ratio_from_three_to_that_of_the_dry_rough_contact():
     speeds = np.geomspace(3.0, 1e-4, 12)
     films = [quiet(solve_mixed, replace(PITCH, entrainment=float(u)), STIFF) for u in speeds]
     assert all(m.converged for m in films)
     ratio = np.array([m.film_ratio for m in films])
     share = np.array([m.asperity_share for m in films])
     assert ratio[0] > 3.0
-    assert ratio[-1] < 0.11
+    assert ratio[-1] == pytest.approx(ratio[-2], rel=1e-3)
+    assert ratio[-1] < 0.4
     assert (np.diff(ratio) < 0).all()
     assert (np.diff(share) > 0).all()
     assert share[0] < 0.01
     # film to nothing: the asperities carry all, at the separation of the dry rough contact
     assert share[-1] > 0.999
-    pressure, slope = STIFF.pressure(films[-1].central_thickness, PITCH.reduced_modulus)
+    pressure, slope = STIFF.pressure(films[-1].plane_distance, PITCH.reduced_modulus)
     assert pressure == pytest.approx(central_asperity_pressure(PITCH, STIFF, share[-1]), rel=1e-6)
     assert films[-1].asperity_stiffness == pytest.approx(-PITCH.load * slope / pressure, rel=1e-3)
     assert films[-1].stiffness() == pytest.approx(films[-1].asperity_stiffness, rel=0.1)
@@ -138,7 +160,7 @@ def test_the_loads_of_film_and_asperities_add_up(rough):
     film = mixed.film
     assert film.contact.load + mixed.asperity_load == pytest.approx(contact.load, rel=1e-12)
     assert film.contact.half_width == pytest.approx(contact.half_width, rel=1e-12)
-    pressure, _ = rough.pressure(mixed.central_thickness, contact.reduced_modulus)
+    pressure, _ = rough.pressure(mixed.plane_distance, contact.reduced_modulus)
     asked = central_asperity_pressure(contact, rough, mixed.asperity_share)
     assert pressure == pytest.approx(asked, rel=1e-6)
     assert mixed.stiffness() == mixed.film_stiffness() + mixed.asperity_stiffness
@@ -164,7 +186,56 @@ def test_parallel_springs_leave_out_that_the_contact_widens():
     # p_a b ~ w with p_a and b each as w^1/2: at s = 1 half of the whole stiffness
     for u, factor in ((1.0, 1.0), (1e-4, 0.5)):
         mixed = quiet(solve_mixed, replace(PITCH, entrainment=u), STIFF)
-        assert mixed.stiffness("tangent") * -mixed.central_slope == pytest.approx(factor, abs=0.1)
+        closer = mixed.central_slope / mixed.gap_slope
+        assert mixed.stiffness("tangent") * -closer == pytest.approx(factor, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "rough",
+    [STIFF, SOFT, Roughness(0.3e-6, 3.3e9, 4e-5), Roughness.from_drawing(0.4e-6, law="greenwood-tripp")],
+)
+@pytest.mark.parametrize("load", [1e5, 3e5, 9e5])
+def test_the_share_tends_to_one_as_the_speed_falls_whatever_the_load(rough, load):
+    """The film vanishes with the speed, and the planes of its gap close without end: the rest falls."""
+    oil = Lubricant(0.05, 18e-9, 860.0)
+    films = [quiet(solve_mixed, LineContact(load, u, 0.012, 2.2e11, oil), rough) for u in (3e-2, 3e-3, 3e-4)]
+    left = 1 - np.array([film.asperity_share for film in films])
+    assert (left[1:] < 0.85 * left[:-1]).all()
+    pressure = rough.pressure([film.plane_distance for film in films], 2.2e11)[0]
+    asked = [central_asperity_pressure(film.contact, rough, film.asperity_share) for film in films]
+    np.testing.assert_allclose(pressure, asked, rtol=1e-5)
+    assert films[-1].plane_distance < films[-1].central_thickness
+
+
+DRAWN = Roughness.from_drawing(0.4e-6)
+
+
+@pytest.mark.parametrize("load", [1e5, 3e5, 9e5])
+def test_the_film_ratio_decides_the_share_of_drawn_surfaces(load):
+    contact = LineContact(load, 3.0, 0.012, 2.2e11, Lubricant(0.05, 18e-9, 860.0))
+    speeds = (30.0, 3.0, 0.3, 3e-2, 3e-3, 3e-4)
+    films = [quiet(solve_mixed, replace(contact, entrainment=u), DRAWN) for u in speeds]
+    shares = [film.asperity_share for film in films]
+    for film, share in zip(films, shares, strict=True):
+        ratio = film.central_thickness / DRAWN.deviation
+        carried = 1.21 * ratio**0.64 / (1 + 0.37 * ratio**1.26) if ratio < 1.9 else 1.0
+        assert 1 - share == pytest.approx(carried, rel=1e-6)
+    assert shares[0] == 0.0
+    assert (np.diff(shares) > 0).all()
+    left = 1 - np.array(shares)
+    assert (left[3:] < 0.6 * left[2:-1]).all()  # towards 1 as the speed falls
+
+
+@pytest.mark.parametrize("u", [3.0, 0.3, 1e-2])
+def test_derivatives_by_the_load_where_the_film_ratio_decides(u):
+    contact, step = replace(PITCH, entrainment=u), 0.02
+    mixed = quiet(solve_mixed, contact, DRAWN, 2e-3)
+    light, heavy = (
+        quiet(solve_mixed, replace(contact, load=contact.load * f), DRAWN, 2e-3) for f in (1 - step, 1 + step)
+    )
+    for figure, slope in (("central_thickness", "central_slope"), ("separation", "separation_slope")):
+        by_difference = (getattr(heavy, figure) - getattr(light, figure)) / (2 * step * contact.load)
+        assert getattr(mixed, slope) == pytest.approx(by_difference, rel=0.02)
 
 
 def test_starved_and_rough():
@@ -173,6 +244,25 @@ def test_starved_and_rough():
     assert starved.converged
     assert starved.film_ratio < 1.0 < flooded.film_ratio
     assert starved.asperity_share > 0.3
+
+
+@pytest.mark.parametrize("fill", [0.5, 0.8, 1.0, 1.5])
+@pytest.mark.parametrize("density", [1e10, 4e10])
+@pytest.mark.parametrize("speed", [0.1, 10.0])
+def test_layers_as_thin_as_the_roughness_are_shared_or_said_to_be_dry(fill, density, speed):
+    """Asperities that ask for more than the load at the layer's own thickness leave none to the film."""
+    oil = Lubricant(0.05, 18e-9, 860.0)
+    contact = LineContact(1e5, speed, 0.012, 2.2e11, oil)
+    rough = quiet(Roughness, 0.3e-6, density, 1e-5)
+    found = quiet(solve_mixed, contact, rough, supply=OilLayer(fill * rough.deviation))
+    held, _ = rough.under_film(fill * rough.deviation, contact.reduced_modulus, contact.peak_pressure)
+    alone = central_asperity_pressure(contact, rough, 1.0)
+    if held > 1.1 * alone:
+        assert not found.converged
+        assert "take the contact as dry" in found.message
+    elif held < 0.5 * alone:
+        assert found.converged
+        assert 0.0 < found.asperity_share < 1.0
 
 
 def test_bad_roughness_is_listed_at_once():
@@ -196,6 +286,9 @@ def test_roughness_of_drawings():
     alike = Roughness.from_drawing(mean=0.4e-6, density=1e11, tip_radius=5e-7)
     assert alike.deviation == pytest.approx(0.4e-6 * np.sqrt(np.pi), rel=1e-12)
     assert (alike.density, alike.tip_radius) == (1e11, 5e-7)
+    assert (rough.law, alike.law) == ("zhu-hu", "greenwood-tripp")
+    with pytest.raises(InputError, match="must be a law of asperities"):
+        rough.pressure(1e-7, 2.2e11)
     with pytest.raises(InputError, match="Ra or Rz, one of them"):
         Roughness.from_drawing()
     with pytest.raises(InputError, match="Ra or Rz in m"):
@@ -236,10 +329,11 @@ def test_a_neighbour_leaves_few_films_to_solve(supply):
     near = quiet(solve_mixed, PITCH, STIFF, supply=supply, start=before)
     alone = quiet(solve_mixed, PITCH, STIFF, supply=supply)
     assert near.cost.counts["films"] <= 4
-    assert near.cost.iterations < 0.6 * alone.cost.iterations
+    # from nothing half the load is the first trial, which behind the meniscus lies near
+    assert near.cost.iterations < (0.8 if isinstance(supply, Meniscus) else 0.6) * alone.cost.iterations
     for figure in ("central_thickness", "asperity_share", "separation"):
         assert getattr(near, figure) == pytest.approx(getattr(alone, figure), rel=2 * alone.error)
-    pressure, _ = STIFF.pressure(near.central_thickness, PITCH.reduced_modulus)
+    pressure, _ = STIFF.pressure(near.plane_distance, PITCH.reduced_modulus)
     asked = central_asperity_pressure(PITCH, STIFF, near.asperity_share)
     assert pressure == pytest.approx(asked, rel=1e-6)
 

@@ -40,7 +40,7 @@ def test_asperities_carry_what_their_share_asks_and_more_than_without_heat(devia
     found = solve_mixed_thermal(SLIDING, roughness, tolerance=0.003)
     assert found.converged
     assert found.film.contact.load == pytest.approx((1 - found.asperity_share) * SLIDING.load, rel=1e-12)
-    carried = float(roughness.pressure(found.central_thickness, SLIDING.reduced_modulus)[0])
+    carried = float(roughness.pressure(found.plane_distance, SLIDING.reduced_modulus)[0])
     asked = central_asperity_pressure(SLIDING, roughness, found.asperity_share)
     # a hundredth of the odds: their pressure and what is asked change by about as much
     assert math.log(carried / asked) == pytest.approx(0.0, abs=0.02)

@@ -52,6 +52,27 @@ def test_random_contacts_have_no_teeth():
     assert max(high) < 1e-3
 
 
+VISCOUS = Lubricant(0.15644730923478653, 2.190920138042559e-08)
+OILY = Lubricant(0.1705819790277453, 1.761521943412465e-08)
+THICK = (
+    LineContact(113112.14776427833, 9.823437028667271, 0.0037491167388096886, 2.2e11, VISCOUS),
+    LineContact(193780.74843619138, 14.429070100186653, 0.00303659280935467, 2.2e11, OILY),
+)
+
+
+@pytest.mark.parametrize("nodes", [129, 257, 513])
+@pytest.mark.parametrize("contact", THICK)
+def test_thick_fast_films_have_no_teeth(contact, nodes):
+    """The inlet zone of films of one to two b^2/R is wider than the contact, and the spike stands in it."""
+    film = sound(quiet(contact, nodes=nodes))
+    top = int(film.pressure.argmax())
+    assert (np.diff(film.pressure)[:top] >= -1e-4 * contact.peak_pressure).all()
+    if nodes == 129:
+        fine = quiet(contact, nodes=1025)
+        assert film.central_thickness == pytest.approx(fine.central_thickness, rel=film.error)
+        assert film.minimum_thickness == pytest.approx(fine.minimum_thickness, rel=film.error)
+
+
 def test_the_estimate_sees_teeth():
     level = quiet(GEAR, nodes=129).state.fine
     clean = pressure_error(level, level)

@@ -8,6 +8,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import STEEL, LineContact, Lubricant, Solid, solve, solve_thermal
+from ehl.thermal_search import Search
 from tests.ehl.films import sound
 from tests.hard.random_contacts import refused
 
@@ -175,3 +176,68 @@ def test_a_spike_that_no_grid_resolves_is_in_the_temperatures_estimate():
     film = sound_enough(solve_thermal(at(12.013e-3, 4.43e5), nodes=129))
     # 7.5 K by an independent solver, and 6.7 to 7.3 K on 129 to 513 nodes
     assert abs(film.oil_temperature_rise / 7.5 - 1.0) < film.temperature_error < 0.25
+
+
+ROLLING = Lubricant(0.05, 18e-9, 860.0, temperature=343.15, viscosity_slope=0.042)
+
+
+@pytest.mark.parametrize("asked", [{"tolerance": 0.008}, {"nodes": 129}, {"nodes": 200}, {"nodes": 257}])
+def test_a_grid_that_is_asked_for_is_solved_as_the_one_that_a_tolerance_takes(asked):
+    """Pure rolling, fast: the isothermal film is too far from the warm one for a fine grid to start from."""
+    contact = LineContact(219348.0, 10.0, 0.012, 2.2e11, ROLLING)
+    film = solve_thermal(contact, **asked)
+    assert film.converged
+    assert film.central_thickness == pytest.approx(1.2479e-6, rel=film.error)
+
+
+@pytest.mark.parametrize(
+    ("load", "speed", "sliding", "wider"),
+    [(219348.0, 10.0, 0.0, 4.0), (2e4, 10.0, 1.0, 2.0), (3e5, 2.0, 0.5, 30.0)],
+)
+def test_heat_ahead_of_the_inlet_is_in_the_error_of_temperatures(load, speed, sliding, wider, monkeypatch):
+    """Heat followed from farther out, as far as that converges."""
+    oil = replace(ROLLING, eyring_stress=5e6 if sliding else None)
+    contact = LineContact(load, speed, 0.012, 2.2e11, oil, sliding=sliding)
+    film, laid = solve_thermal(contact), Search._oil
+
+    def from_farther(*arguments):
+        found = laid(*arguments)
+        found.inlet_gap *= wider
+        return found
+
+    monkeypatch.setattr(Search, "_oil", from_farther)
+    other = solve_thermal(contact)
+    for rise in ("oil_temperature_rise", "surface_temperature_rise"):
+        assert getattr(other, rise) == pytest.approx(getattr(film, rise), rel=film.temperature_error)
+    assert film.temperature_error > abs(film.losses.closure)
+    if sliding == 0.5:
+        assert film.temperature_error < 0.01
+
+
+def test_shear_of_the_cavity_is_that_of_streams_behind_a_rigid_cylinder():
+    """Constant viscosity, stiff bodies: h = h0 + x^2/2R, eta Du h_e/h^2 behind the film's end; 0.19 of all friction."""
+    oil = Lubricant(
+        0.02, 0.0, 860.0, compressible=False, viscosity_slope=0.0, expansion=0.0, eyring_stress=1e9
+    )
+    contact = LineContact(200.0, 3.0, 0.012, 9e13, oil, sliding=0.1)
+    film = solve_thermal(contact, solids=None, tolerance=0.005)
+    lowest, R, end = film.minimum_thickness, contact.radius, film.oils[1].x[film.oils[1].last + 1]
+    root = math.sqrt(2.0 * lowest * R)
+    turned = math.atan(end / root)
+    in_film = (root / lowest) * (turned + math.atan(-film.inlet / root))
+    # int dx/h^2 = (root/h0^2) [t/(1 + t^2) + atan t]/2, t = x/root
+    t = end / root
+    behind = (lowest + end**2 / (2 * R)) * root / lowest**2 * 0.5 * (0.5 * math.pi - t / (1 + t * t) - turned)
+    exact = oil.viscosity * contact.sliding * (in_film + behind) / contact.load
+    assert behind / (in_film + behind) > 0.15
+    assert film.traction_coefficient == pytest.approx(exact, rel=film.traction_error + 2e-3)
+    assert film.losses.sliding == pytest.approx(
+        film.traction_coefficient * contact.load * contact.sliding, rel=1e-12
+    )
+    assert abs(film.losses.sliding + film.losses.rolling - film.losses.dissipation) < 1e-9
+
+
+def test_heat_closes_with_that_of_the_cavity():
+    oil = replace(ROLLING, eyring_stress=5e6)
+    film = solve_thermal(LineContact(3e4, 3.0, 0.012, 2.2e11, oil, sliding=0.5))
+    assert abs(film.losses.closure) < 0.02

@@ -181,3 +181,21 @@ def test_what_is_not_reached_is_not_given():
     assert not film.converged
     assert np.isnan(film.least).all()
     assert "tolerance" in film.message
+
+
+def test_the_error_of_the_greatest_pressure_covers_a_spike_narrower_than_its_cells():
+    """A load that doubles within b/u: its spike grows with every halving of the cells."""
+    contact = LineContact(2e5, 2.0, 0.012, 2.2e11, Lubricant(0.05, 18e-9))
+    unit = contact.half_width / contact.entrainment
+    times = np.linspace(0.0, 4 * unit, 9)
+
+    def on(nodes, load):
+        return solve_transient(contact, load, times, nodes=nodes)
+
+    coarse, fine = (on(n, lambda t: contact.load * (0.5 + 0.5 * min(t / unit, 1))) for n in (65, 257))
+    grown = fine.greatest_pressure.max() / coarse.greatest_pressure.max() - 1
+    assert 0.1 < grown < coarse.pressure_error
+    assert fine.pressure_error > 0.5
+    spikeless = LineContact.from_moes(2.0, 1.0)
+    still = solve_transient(spikeless, lambda _: spikeless.load, times, nodes=129)
+    assert still.pressure_error < 0.01

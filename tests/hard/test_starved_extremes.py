@@ -9,6 +9,7 @@ import pytest
 
 from base import RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
+from ehl.asperities import LAWS
 from ehl.run import DRY
 from tests.ehl.films import sound
 from tests.hard.random_contacts import random_contact, refused
@@ -148,13 +149,14 @@ def check_random_neighbours(number):
             off = abs(near.central_thickness / alone.central_thickness - 1)
             assert off < near.error + alone.error, (contact, fed, other)
             assert near.starved == alone.starved, (contact, fed, other)
-        rough = Roughness.of_deviation(10 ** rng.uniform(-0.5, 0.7) * alone.central_thickness)
+        sigma, law = 10 ** rng.uniform(-0.5, 0.7) * alone.central_thickness, str(rng.choice(LAWS))
+        rough = Roughness.of_deviation(sigma, law=law)
         alone, before = (solve_mixed(c, rough, supply=s) for c, s in ((contact, fed), (other, fed_other)))
         near = solve_mixed(contact, rough, supply=fed, start=before if before.converged else None)
         assert alone.converged == near.converged, (contact, fed, other, rough)
         if alone.converged and alone.asperity_share:
             h = alone.central_thickness
-            pressure, slope = rough.pressure(h, contact.reduced_modulus)
+            pressure, slope = rough.under_film(h, contact.reduced_modulus, contact.peak_pressure)
             allowed = (near.error + alone.error) * (1 - slope * h / pressure)
             assert abs(near.asperity_share / alone.asperity_share - 1) < allowed, (contact, fed, other, rough)
 

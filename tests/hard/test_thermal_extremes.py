@@ -11,6 +11,7 @@ from base import InputError, RangeWarning
 from ehl import Meniscus, OilLayer, solve_thermal
 from tests.ehl.test_thermal import OIL, SLIDING
 from tests.hard.random_contacts import random_gear_contact, refused
+from tests.validation.article import PITCH
 
 
 @pytest.fixture(autouse=True)
@@ -91,3 +92,16 @@ def test_random_gear_contacts_are_solved():
         counted += mild
         solved += mild and good
     assert solved >= counted - 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "part"), [(1.0, 1.0), (2.0, 0.4), (-2.0, 1.0)])
+def test_a_surface_at_rest_and_oil_that_yields_at_a_limiting_stress_alone(ratio, part):
+    """The stress of every cell where the oil is viscous stands at its limit: friction near it, less by heat."""
+    oil = replace(PITCH.lubricant, temperature=353.15, limiting_shear_ratio=0.047)
+    contact = replace(PITCH, load=part * PITCH.load, sliding=ratio * PITCH.entrainment, lubricant=oil)
+    film = solve_thermal(contact)
+    assert film.converged, film.message
+    assert 0.01 < math.copysign(1.0, ratio) * film.traction_coefficient < 0.047
+    thins = solve_thermal(replace(contact, lubricant=replace(oil, eyring_stress=5e8)), start=film)
+    assert film.traction_coefficient == pytest.approx(thins.traction_coefficient, rel=0.01)
