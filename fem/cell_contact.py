@@ -11,6 +11,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.cell_laws import CellLaws, between_middles
 from fem.cell_matrix import cell_coupling
+from fem.face_shafts import HeldShafts, shafts_under_face
 from fem.flamant import hertz_half_width
 from fem.local_law import FilmLaw, PairLaws
 from fem.part_cells import WITHIN, part_cells, rises
@@ -43,6 +44,8 @@ class CellShare:
         Half-widths of strips of pressure over a cell's length (``fem.wide_contact``).
     rise : (torques, pitches, positions, pairs, cells) array
         By how much least gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
+    shafts : HeldShafts or None
+        From whose first touch the share is measured; None where they are rigid.
     """
 
     share: LoadShare
@@ -50,6 +53,7 @@ class CellShare:
     left: Array
     strips: Array
     rise: Array
+    shafts: HeldShafts | None = None
 
     @property
     def forces(self) -> Array:
@@ -72,7 +76,9 @@ class CellContact:
     oil: FilmLaw | None
     levers: Array | None
 
-    def shared(self, face: FaceSetting, near: Array, rise: Array | None = None) -> CellShare:
+    def shared(
+        self, face: FaceSetting, near: Array, rise: Array | None = None, *, held: bool = True
+    ) -> CellShare:
         """Share over cells of a face.
 
         Parameters
@@ -83,6 +89,8 @@ class CellContact:
         rise : (torques, ..., pairs, cells) array, optional
             By how much least gaps of cells fall short of their mean (`rises`) [m]; otherwise cells touch all over or
             nowhere.
+        held : bool
+            Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
         from gears.load_sharing import share_load
 
@@ -94,20 +102,30 @@ class CellContact:
             CellLaws(self.laws, cells),
         )
 
+        shafts = shafts_under_face(face, self.given.pair)
+
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
-        def coupling(strip: float) -> CellCoupling:
-            return cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
+        def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
+            """Of the bodies, and with the shafts."""
+            own = cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
+            return own, own if shafts is None else own.plus(shafts.both, self.kappa)
+
+        @lru_cache(maxsize=1)
+        def law(strip: float, some: tuple[int, ...]) -> DeflectionLaw:
+            return laws if rise is None else part_cells(laws, coupling(strip)[0], _flat(rise)[list(some)])
 
         def share(strip: float, some: Integers) -> LoadShare:
-            stiff, whole, begin = coupling(strip), self.whole[some], start[some]
-            if rise is None:
-                return _unique(share_load(whole, stiff, laws, apart, film, arms, begin), stiff, laws, film)
-            part = part_cells(laws, stiff, _flat(rise)[some])
-            first = apart - part.rise
+            alone, stiff = coupling(strip)
+            own, first = (
+                law(strip, tuple(some.tolist())),
+                apart if rise is None else apart - _flat(rise)[some],
+            )
             least = first.min(axis=-1)
-            found = share_load(whole, stiff, part, first - least[..., None], film, arms, begin)
+            found = share_load(
+                self.whole[some], stiff, own, first - least[..., None], film, arms, start[some]
+            )
             found = replace(found, transmission_error=found.transmission_error + least)
-            return _unique(found, stiff, part, film)
+            return _unique(found, alone, own, film)
 
         def widest(found: LoadShare) -> Array:
             return self._half_widths(_by_cells(found.forces, cells).max(axis=-1) / unit)
@@ -115,16 +133,26 @@ class CellContact:
         mean = self._half_widths(near.sum(axis=-1) / self.given.pair.face_width)
         found, strips = shared_by_width(share, widest, unit, mean)
         bends = np.zeros_like(found.forces)
-        for strip in np.unique(strips):
+        slopes = np.zeros_like(bends), np.zeros_like(bends)
+        for strip in np.unique(strips).tolist():
             some = np.flatnonzero(strips == strip)
             forces = found.forces[some]
-            every = np.ones(forces.shape[:-1], dtype=bool)
-            bends[some] = coupling(float(strip)).applied(forces, every, np.zeros_like(forces))
+            every, nothing = np.ones(forces.shape[:-1], dtype=bool), np.zeros_like(forces)
+            alone, stiff = coupling(strip)
+            bends[some] = stiff.applied(forces, every, nothing)
+            if held and shafts is not None:
+                slope = law(strip, tuple(some.tolist())).slope(forces)
+                slope = slope if film is None else slope - film.slope(forces)
+                by_tilt = nothing + shafts.levers(self.kappa)
+                slopes[0][some], slopes[1][some], _ = alone.solved(slope, by_tilt, forces > 0.0, every)
         left = bends + apart - found.transmission_error[..., None]
         if film is not None:
             left = left - film.approach(np.zeros_like(found.forces))
         bends, left = _by_cells(bends, cells), _by_cells(left, cells)
-        return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise)
+        reached = None
+        if held and shafts is not None:
+            found, reached = shafts.held(found, self.kappa, self.gaps, slopes, 1.0 if arms is None else arms)
+        return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise, reached)
 
     def rises(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the least gap of cells falls short of their mean (torques, ..., pairs, cells) [m].

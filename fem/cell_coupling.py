@@ -93,6 +93,24 @@ class CellCoupling(Coupling):
             one[at, chosen], other[at, chosen] = solve_symmetric(jacobian, sides)
         return unit, response, 1.0
 
+    def plus(self, more: Array, levers: Array) -> CellCoupling:
+        """With a further compliance that couples cells by their place on the face, whatever their pair.
+
+        Parameters
+        ----------
+        more : (cells, cells) array
+            Displacement along the line of action by forces [m/N].
+        levers : (positions, pairs) array
+            kappa of the forces kappa F that are asked for.
+        """
+        n, blocks = len(more), []
+        for chosen, block, lever in zip(self.cells, self.blocks, levers, strict=True):
+            each = lever[chosen[::n] // n]
+            k = len(each)
+            found = block.reshape(k, n, k, n) + more[:, None] / (each[:, None] * each)[:, None, :, None]
+            blocks.append(found.reshape(k * n, k * n))
+        return CellCoupling(self.cells, tuple(blocks), self.unknowns)
+
     def definite(self, slope: Array, active: Booleans, wanted: Booleans) -> bool:
         """Whether cells that bear yield to every change of their forces, with slopes of their laws (..., n) [m/N].
 

@@ -11,7 +11,6 @@ from base import Array, Booleans
 from fem.cell_coupling import CellCoupling
 from fem.face_compliance import pair_ends, pair_waves
 from fem.face_setting import FREE_ENDS, SLICES, FaceSetting
-from fem.face_shafts import shafts_under_face
 from fem.overhang import cosines, overhang
 from fem.solved_gear import Gears
 
@@ -31,7 +30,7 @@ MOST_AT_ONCE = 4_000_000
 def cell_coupling(
     face: FaceSetting, bodies: Compliance, where: ContactCandidates, kappa: Array, matrix: Array
 ) -> CellCoupling:
-    """Compliance between cells of pairs that may touch, arguments as of ``cell_matrix``."""
+    """Compliance of the bodies between cells of pairs that may touch, arguments as of ``cell_matrix``."""
     size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
 
     def cut() -> CellCoupling:
@@ -80,7 +79,7 @@ def cell_matrix(
     matrix: Array,
     gears: Sequence[int] = (0, 1),
 ) -> Array:
-    """Compliance between cells of all pairs (positions, pairs cells, pairs cells) [m/N].
+    """Compliance of the bodies between cells of all pairs (positions, pairs cells, pairs cells) [m/N].
 
     Parameters
     ----------
@@ -111,8 +110,5 @@ def cell_matrix(
         found += (
             pair_ends(bodies, rho, (first, second), pair.face_widths, gears) / levers[:, :, None, :, None]
         )
-    shafts = shafts_under_face(face, pair)
-    if shafts is not None:
-        found += shafts.between.sum(axis=0)[:, None] / levers[:, :, None, :, None]
     size = pairs * cells
     return np.asarray(found.reshape(positions, size, size))

@@ -15,6 +15,7 @@ from fem.cycle_of_solution import cycle_of
 from fem.edge_tables import EdgeTables, edge_tables
 from fem.face_setting import FREE_ENDS, face_setting
 from fem.local_law import Film
+from fem.moving_contact import contacts_move
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES
 from fem.setting import Deviations, Setting
@@ -46,7 +47,7 @@ def mesh_cycle(
     tip_rounding: float | tuple[float, float] = 0.0,
     friction: float = 0.0,
     reference: str = "bore",
-    moving_contact: bool = False,
+    moving_contact: bool | None = None,
     base_pitch_difference: float = 0.0,
     alignment: Alignment | None = None,
     cells: int | None = None,
@@ -96,10 +97,11 @@ def mesh_cycle(
         What D is measured against: the turn of what holds the bores, of the bodies weighted by their inertia
         (what motion needs), or of the root circles (what closed forms describe). No force depends on it
         (``MeshCycle.against``). A compliance that leaves parts out measures its own way at "bore".
-    moving_contact : bool
+    moving_contact : bool or None
         Whether contacts on the path move under load (``fem.moving_contact``), to the first order in the
         deflection over the module; a position is then that of the wheel, and the pinion takes up D. Otherwise
-        contacts stay where undeformed teeth touch. ``model_error`` holds what either leaves out.
+        contacts stay where undeformed teeth touch. None decides by the softer material: plastics move, metals stay
+        (``contacts_move``). ``model_error`` holds what either leaves out.
     base_pitch_difference : float
         Base pitch of the pinion less that of the wheel, such as by unequal temperatures [m]; both have the pair's but
         for that (``gears.warm_pair``).
@@ -112,7 +114,8 @@ def mesh_cycle(
         What couples the cells: bodies with free ends or between frictionless walls, or nothing but the approach.
     shafts : (gears.Shaft or None, gears.Shaft or None), optional
         Shafts of pinion and wheel, left ends at the same side: they bend and twist under the loads on the cells, and
-        open the flanks by as much (``gears.shaft_face``). D is measured between the mid-faces, and counts none of it.
+        open the flanks by as much (``gears.shaft_face``). The transmission error counts it, stiffness is that of the
+        mesh on shafts that are held where the load has brought them (``fem.face_shafts``).
 
     Returns
     -------
@@ -147,7 +150,7 @@ def mesh_cycle(
         first_teeth,
         tip_rounding,
         friction,
-        moving_contact=moving_contact,
+        moving_contact=contacts_move(pair, moving_contact),
         base_pitch_difference=base_pitch_difference,
         face=face_setting(pair, alignment, cells, face_model, shafts),
     )
@@ -163,7 +166,8 @@ def mesh_cycle(
         numbers = np.flatnonzero(chosen)
         if numbers.size:
             asked = np.abs(torque[numbers]) / pair.base_radii[0]
-            for side, contact, which in _solved(replace(given, back=back), bodies, asked, film, tables):
+            side = replace(given, back=back)
+            for contact, which in _solved(side, bodies, asked, film, tables):
                 found.update({int(numbers[k]): (side, contact, n) for n, k in enumerate(which)})
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
@@ -182,18 +186,12 @@ def mesh_cycle(
 
 def _solved(
     given: Setting, bodies: Compliance, force: Array, film: Film | None, tables: EdgeTables
-) -> list[tuple[Setting, Solution, list[int]]]:
-    """Solutions for forces (torques,) [N], each with the numbers of its own; contacts stay where both sides bear."""
+) -> list[tuple[Solution, list[int]]]:
+    """Solutions for forces (torques,) [N], each with the numbers of its own: one by one where one does not settle."""
     contact, every = solve(given, bodies, force, film, tables), list(range(len(force)))
-    if not given.moving_contact or contact.opposite is None:
-        return [(given, contact, every)]
-    bears = np.any(contact.opposite.forces > 0.0, axis=(1, 2, 3))
-    stay = replace(given, moving_contact=False)
-    found = []
-    for side, chosen in ((given, ~bears), (stay, bears)):
-        if which := np.flatnonzero(chosen).tolist():
-            found.append((side, solve(side, bodies, force[which], film, tables), which))
-    return found
+    if contact.settled or len(every) == 1:
+        return [(contact, every)]
+    return [(solve(given, bodies, force[n : n + 1], film, tables), [n]) for n in every]
 
 
 def _check(

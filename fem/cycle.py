@@ -96,18 +96,22 @@ class MeshCycle(PairFigures, MeshFigures):
     transmission_error: Array = quantity(
         "m",
         "loaded static transmission error D, the pinion's turn times its base radius with the wheel held: all "
-        "deflection up to `reference`, relief and deviations, and the backlash where back flanks bear; positive when "
-        "the wheel lags",
+        "deflection up to `reference`, relief and deviations, what shafts under the face give way, and the backlash "
+        "where back flanks bear; positive when the wheel lags",
         "position",
         shown="um",
         error="error",
     )
     stiffness: Array = quantity(
-        "N/m", "tangent dF/dD: small vibration about the load", "position", error="error"
+        "N/m",
+        "tangent dF/dD: small vibration about the load; shafts under the face held",
+        "position",
+        error="error",
     )
     secant_stiffness: Array = quantity(
         "N/m",
-        "F/(D - D_0), D_0 the transmission error without torque; the tangent where there is none",
+        "F/(D - D_0), D_0 the transmission error without torque, on shafts that are held where it has brought them; "
+        "the tangent where there is none",
         "position",
         error="error",
     )
@@ -261,7 +265,8 @@ class MeshCycle(PairFigures, MeshFigures):
     def model_error(self) -> float:
         """Estimated relative error by the model of the contacts, apart from `error`.
 
-        Of transmission error and secant stiffness: large strain, second order, and the motion of contacts that stay.
+        Of transmission error and secant stiffness: large strain, second order, the width of contacts in Hertz's law,
+        and the motion of contacts that stay.
         Of the tangent about twice that. Found when it is first asked for.
         """
         return float("nan") if self.loaded is None else self.loaded.model_error()

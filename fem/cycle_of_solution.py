@@ -18,6 +18,7 @@ from fem.face_loads import face_loads
 from fem.flamant import hertz_half_width
 from fem.local_law import Film
 from fem.model_error import LoadedContacts
+from fem.opposite_flanks import OppositeFlanks
 from fem.references import held_turns
 from fem.setting import Setting
 from fem.sharing import Solution
@@ -26,6 +27,9 @@ __all__ = ["cycle_of"]
 
 LARGE_DEFLECTION = 0.03
 """Part of the module above which a deflection is told."""
+
+LARGE_SHIFT = 0.1
+"""The same of shafts: the path of contact gets shorter by as much, the contact ratio less by a third of it."""
 
 WIDE_CONTACT = 0.07
 """Part of the radius of relative curvature above which a contact's half-width is told."""
@@ -48,7 +52,7 @@ def cycle_of(
     opposite = contact.opposite
     turned = contact.share.forces[number]  # kappa F
     deflection = contact.deflection(number).ravel()
-    moved = contact.share.transmission_error[number].ravel() + contact.touch.ravel()
+    moved = contact.turn(number).ravel()
     stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
@@ -68,6 +72,7 @@ def cycle_of(
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
     both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
+    behind = (opposite.where, opposite.forces[number]) if opposite is not None and both else None
     return MeshCycle(
         torque=torque,
         force=force,
@@ -105,7 +110,7 @@ def cycle_of(
         face=None if refusal else face_loads(given, contact, number, bodies.plane),
         loaded=None
         if refusal
-        else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force),
+        else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force, behind),
         problem=None
         if refusal
         else ContactProblem(
@@ -119,8 +124,20 @@ def cycle_of(
             ends_error=0.0 if contact.face is None else float(contact.face.errors.ends[number]),
         ),
         flank="back" if given.back else "front",
-        opposite=opposite.flanks(number) if opposite is not None and both else None,
+        opposite=_opposite(given, contact, number) if both else None,
     )
+
+
+def _opposite(given: Setting, contact: Solution, number: int) -> OppositeFlanks:
+    """Flanks on the other side under one torque, where they bear."""
+    assert contact.opposite is not None
+    found, back = contact.opposite.flanks(number), contact.back
+    if back is None:
+        return found
+    rho = back.flank_rho(given.pair, number).reshape(found.flank_rho.shape)
+    lost, further = (one.reshape(2, *found.forces.shape) for one in back.lever_loss(number))
+    places = np.where(np.isfinite(found.flank_rho), rho, np.nan)
+    return replace(found, flank_rho=places, lever_loss=lost, further_lever_loss=further)
 
 
 def _on_faces(contact: Solution, number: int) -> Array:
@@ -139,7 +156,12 @@ def _large(given: Setting, contact: Solution, number: int, forces: Array, plane:
     radius = rho1 * rho2 / (rho1 + rho2)
     width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
     wide = np.max(width / radius)
-    found = []
+    found, far = [], contact.shafts_give_way(number)
+    if far > LARGE_SHIFT:
+        found.append(
+            f"the shafts give way by {far:.2g} modules along the line of action; that the path of contact gets shorter "
+            "by as much is left out"
+        )
     if part > LARGE_DEFLECTION:
         found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
     if wide > WIDE_CONTACT:
@@ -185,11 +207,14 @@ def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge
     if opposite is not None and np.any(opposite.forces[number] > 0):
         bearing = np.any(opposite.forces[number] > 0, axis=-1)
         remarks.append(
-            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions, and contacts stay"
+            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions"
         )
     elif opposite is not None:
         clear = 1e6 * np.min(opposite.open[number])
         remarks.append(
             f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
+            if clear >= 0.0
+            else f"back flanks overlap by up to {-clear:.3g} um, which is left out: no load sharing with them "
+            "was found at a deflection of more than a quarter of the module; give more backlash, or reduce the torque"
         )
     return remarks

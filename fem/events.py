@@ -168,7 +168,7 @@ class ContactProblem:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
         share, where, turned = found.share, found.where, found.share.forces[0, 0]
         size, deflection = abs(self.force), found.deflection(0)[0]
-        moved, tangent = share.transmission_error[0, 0] + found.touch[0], share.stiffness[0, 0]
+        moved, tangent = found.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
             rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
@@ -182,11 +182,14 @@ class ContactProblem:
         if self.given.back:
             moved = -(self.given.pair.backlash + moved)
         lost, further = (one[:, 0] for one in found.lever_loss(0))
-        other = found.opposite
-        moments = found.moments(turned, None if other is None else other.forces[0, 0], lost)
+        other, behind = found.opposite, [one[:, 0] for one in found.lever_loss_behind(0)]
+        moments = found.moments(turned, None if other is None else other.forces[0, 0], lost, behind[0])
         moments = moments / size if size else np.zeros_like(moments)
         slopes = found.moments(
-            share.pair_stiffness[0, 0], None if other is None else other.pair_stiffness[0, 0], further
+            share.pair_stiffness[0, 0],
+            None if other is None else other.pair_stiffness[0, 0],
+            further,
+            behind[1],
         )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn)

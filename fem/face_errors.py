@@ -54,6 +54,8 @@ class CellErrors:
         Further one of both by what free ends leave uncertain, alike at all positions.
     scatter : dict of (3, torques) arrays
         As of ``gears.mesh_figures.FewerCells``.
+    shafts, tilt, matrix : (torques,) arrays
+        Of how far shafts give way, of their tilt, and of the mesh between bodies on them; 0 where they are rigid.
     """
 
     factor: Array
@@ -61,6 +63,9 @@ class CellErrors:
     relative: Array
     ends: Array
     scatter: Mapping[str, Array]
+    shafts: Array
+    tilt: Array
+    matrix: Array
 
     def of(self, torque: int) -> dict[str, Scatter]:
         """Scatter of a single torque."""
@@ -82,14 +87,48 @@ def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: C
     both = [_curves(over.whole, one.share) for one in (fine, coarse)]
     for name, curve in both[0].items():
         change = rest * (both[1][name] - curve)
+        if name != "secant_stiffness":
+            relative = np.maximum(relative, _size(change / curve))
+        if name == "transmission_error" and fine.shafts is not None and coarse.shafts is not None:
+            change = change + rest * (coarse.shafts.touch - fine.shafts.touch)
         varying = change - change.mean(axis=(1, 2), keepdims=True)
         size = _size(change)
         scatter[name] = np.stack([size, _size(varying), size / np.sqrt(_stretches(change))])
-        if name != "secant_stiffness":
-            relative = np.maximum(relative, _size(change / curve))
     each = [_load_errors(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
     factor, line_load, ends = np.array(each).T
-    return CellErrors(factor, line_load, relative, ends, scatter)
+    return CellErrors(factor, line_load, relative, ends, scatter, *_shaft_errors(fine, coarse, rest))
+
+
+def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
+    """Errors of what shafts do, of their tilt and of the mesh on them (3, torques), of the greatest over positions."""
+    if fine.shafts is None or coarse.shafts is None:
+        return np.zeros((3, len(fine.forces)))
+    one, other = fine.shafts, coarse.shafts
+    size = np.sqrt(_greatest(one.mesh[..., 0, 0]) * _greatest(one.mesh[..., 1, 1]))
+
+    def error(first: Array, second: Array, over: Array | None = None) -> Array:
+        change, most = rest * _greatest(second - first), _greatest(first) if over is None else over
+        return np.divide(change, most, out=np.zeros_like(most), where=most > 0.0)
+
+    return np.array(
+        [
+            error(one.deflection, other.deflection),
+            np.maximum(error(one.tilt, other.tilt), error(one.tilt_touch, other.tilt_touch)),
+            np.max(
+                [
+                    error(one.mesh[..., 0, 0], other.mesh[..., 0, 0]),
+                    error(one.mesh[..., 1, 0], other.mesh[..., 1, 0], size),
+                    error(one.mesh[..., 1, 1], other.mesh[..., 1, 1]),
+                ],
+                axis=0,
+            ),
+        ]
+    )
+
+
+def _greatest(values: Array) -> Array:
+    """Size over all but torques (torques,)."""
+    return np.asarray(np.abs(values).reshape(len(values), -1).max(axis=1))
 
 
 def _size(change: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from fem.face_setting import FaceSetting
 from gears.hertz import peak_pressure
 
 if TYPE_CHECKING:
+    from fem.face_share import FaceShare
     from fem.setting import Setting
     from fem.sharing import Solution
 
@@ -22,13 +23,16 @@ __all__ = ["FaceLoads", "face_loads"]
 
 HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
+OF_BOTH = "off by matrix_error of the root of stiffness times tilt stiffness: it passes through zero itself"
+
 
 @record
 class FaceLoads(FaceCells):
     """Line loads over the face at the positions of a mesh cycle.
 
     ``error`` and ``line_load_error`` are what more cells would change of the greatest face-load factor and of the
-    greatest line load, and a part of what free ends do.
+    greatest line load, and a part of what free ends do; ``shaft_error``, ``tilt_error`` and ``matrix_error`` of how far
+    shafts give way, of their tilt, and of the mesh between bodies that tilt.
     """
 
     no_error = IN_SINGLE_CELLS
@@ -56,6 +60,46 @@ class FaceLoads(FaceCells):
         "slope: f_sh; zero of rigid shafts",
         "gear position",
         shown="um",
+        error="tilt_error",
+    )
+    shaft_deflection: Array | None = quantity(
+        "m",
+        "how far the shafts give way along the line of action under the load, mean over the face; none of rigid ones",
+        "gear position",
+        shown="um",
+        error="shaft_error",
+        default=None,
+    )
+    shaft_transmission_error: Array | None = quantity(
+        "m",
+        "the shafts' part of the transmission error: both deflections at mid-face; none of rigid ones",
+        "position",
+        shown="um",
+        error="shaft_error",
+        default=None,
+    )
+    tilt_transmission_error: Array | None = quantity(
+        "m",
+        "the tilt's part of the transmission error: what tilt and bend of the shafts over the face move the first "
+        "touch by; none of rigid ones",
+        "position",
+        shown="um",
+        error="tilt_error",
+        default=None,
+    )
+    mesh_matrix: Array | None = part(
+        "the mesh between bodies that turn and tilt, on shafts that are held (positions, 2, 2): force [N] and moment "
+        "about mid-face [N m] by the approach there [m] and its slope along z [rad]; None of rigid ones",
+        default=None,
+    )
+    shaft_error: float | None = quantity(
+        "1", "estimated relative error of how far shafts give way, of the greatest", default=None
+    )
+    tilt_error: float | None = quantity(
+        "1", "estimated relative error of the shafts' tilt and of what it adds, of the greatest", default=None
+    )
+    matrix_error: float | None = quantity(
+        "1", "estimated relative error of the mesh between bodies that tilt, of the greatest", default=None
     )
 
     @described("1", error="error")
@@ -67,6 +111,16 @@ class FaceLoads(FaceCells):
     def greatest_line_load(self) -> float:
         """Greatest line load of all positions, pairs and cells."""
         return float(np.max(self.line_load))
+
+    @described("N", "position", no_error=OF_BOTH)
+    def moment_stiffness(self) -> Array | None:
+        """Moment of the mesh about mid-face per approach there, shafts held; None of rigid ones."""
+        return None if self.mesh_matrix is None else self.mesh_matrix[:, 1, 0]
+
+    @described("N m/rad", "position", error="matrix_error")
+    def tilt_stiffness(self) -> Array | None:
+        """Moment of the mesh about mid-face per tilt of the bodies, shafts held; None of rigid ones."""
+        return None if self.mesh_matrix is None else self.mesh_matrix[:, 1, 1]
 
     @described("Pa", "position pair cell", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
@@ -97,8 +151,6 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
     pair, cells = given.pair, given.face.cells
     forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
-    shafts, loads = over.shafts, forces.sum(axis=-2)
-    bent = np.zeros((2, len(loads))) if shafts is None else shafts.misalignment(loads)
     where, (rho1, rho2) = contact.where, contact.where.rho
     radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
@@ -114,5 +166,23 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
         gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
         error=float(over.errors.factor[number]),
         line_load_error=float(over.errors.line_load[number]),
-        shaft_misalignment=bent,
+        **_shafts(given, over, number),
     )
+
+
+def _shafts(given: Setting, over: FaceShare, number: int) -> dict[str, Any]:
+    """What the shafts do, as fields of the record."""
+    if over.shafts is None:
+        return {"shaft_misalignment": np.zeros((2, over.bent(number).size))}
+    held, error = over.shafts.at(number), over.errors
+    sign = -1.0 if given.back else 1.0
+    return {
+        "shaft_misalignment": held.tilt.T * given.pair.face_width,
+        "shaft_deflection": held.deflection.T,
+        "shaft_transmission_error": sign * held.deflection.sum(axis=-1),
+        "tilt_transmission_error": sign * held.tilt_touch,
+        "mesh_matrix": held.mesh,
+        "shaft_error": float(error.shafts[number]),
+        "tilt_error": float(error.tilt[number]),
+        "matrix_error": float(error.matrix[number] + error.relative[number] + error.ends[number]),
+    }

@@ -12,7 +12,7 @@ from gears.face import ALIGNED, STRAIGHT, Alignment, Lead
 if TYPE_CHECKING:
     from gears import GearPair, Shaft
 
-__all__ = ["FaceSetting", "face_setting"]
+__all__ = ["PLACES", "FaceSetting", "face_setting"]
 
 USUAL = 64
 """Cells of the face unless they are given."""
@@ -54,8 +54,8 @@ class FaceSetting:
 
     @property
     def coupled(self) -> tuple[Any, ...]:
-        """What decides how cells are coupled, whatever stands between the flanks."""
-        return self.cells, self.model, self.strip, self.shafts
+        """What decides how bodies couple cells, whatever stands between the flanks and under the gears."""
+        return self.cells, self.model, self.strip
 
     @property
     def slope(self) -> float:
@@ -94,8 +94,12 @@ class FaceSetting:
 
     def least_gap(self, pair: GearPair) -> float:
         """Least of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
+        return float(np.min(self.gaps_along(pair)))
+
+    def gaps_along(self, pair: GearPair) -> Array:
+        """Gaps at PLACES along the face by straight leads and what lies in the plane of action (PLACES,) [m]."""
         z = np.linspace(-0.5, 0.5, PLACES) * pair.face_width
-        return float(np.min(self._gaps_at(pair, z, np.array(np.inf))))
+        return self._gaps_at(pair, z, np.array(np.inf))
 
     def gaps(self, pair: GearPair, radius: Array) -> Array:
         """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears."""

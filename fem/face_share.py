@@ -12,6 +12,7 @@ whose law holds tooth and body, change by W as those of a flank at its corner do
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ import numpy as np
 from base import Array, record
 from fem.cell_contact import CellContact
 from fem.face_errors import CellErrors, cell_errors, half_as_many
-from fem.face_shafts import ShaftsUnderFace, shafts_under_face
+from fem.face_shafts import HeldShafts
 from fem.local_law import Film, FilmLaw, PairLaws, film_yielding
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class FaceShare:
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
     errors : CellErrors
         By the cells, and of the face-load factor by free ends.
-    shafts : ShaftsUnderFace or None
+    shafts : HeldShafts or None
         None where they are rigid.
     strips, rise
         As of ``fem.cell_contact.CellShare``.
@@ -56,7 +57,7 @@ class FaceShare:
     forces: Array
     left: Array
     errors: CellErrors
-    shafts: ShaftsUnderFace | None
+    shafts: HeldShafts | None
     strips: Array
     rise: Array
     least: float
@@ -67,20 +68,19 @@ class FaceShare:
         """Least gap that is left along the face (torques, pitches, positions, pairs) [m]."""
         return np.asarray(self.left.min(axis=-1))
 
-    def turned(self, number: int, kappa: Array) -> Array:
-        """By how much more than D the pinion turns (pitches, positions) [m]: to close gaps, and to bend shafts.
+    def bent(self, number: int) -> Array:
+        """By how much more the pinion turns before flanks touch (pitches, positions) [m], by what the shafts do.
 
         Parameters
         ----------
         number : int
             Of the torque.
-        kappa : (positions, pairs) array
-            Levers of the normals in whose forces these are.
         """
-        bent = 0.0
-        if self.shafts is not None:
-            bent = (self.forces[number] / kappa[..., None]).sum(axis=-2) @ self.shafts.middle.sum(axis=0)
-        return np.asarray(self.least + bent + np.zeros(self.forces.shape[1:3]))
+        return np.zeros(self.forces.shape[1:3]) if self.shafts is None else self.shafts.touch[number]
+
+    def turned(self, number: int) -> Array:
+        """By how much more than D the pinion turns (pitches, positions) [m]: to close gaps, and to bend shafts."""
+        return self.least + self.bent(number)
 
 
 def share_over_face(
@@ -110,38 +110,22 @@ def share_over_face(
     over = CellContact(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
     plane = share_load(whole, matrix, laws, gaps, oil, levers)
     few, _ = half_as_many(given.face)
-    coarse = over.shared(few, plane.forces[..., None])
+    coarse = over.shared(few, plane.forces[..., None], held=False)
     coarse = over.shared(few, coarse.forces, over.rises(few, coarse))
     fine = over.shared(given.face, coarse.forces, over.rises(given.face, coarse))
     errors = cell_errors(over, given.face, fine, coarse)
-    shafts = shafts_under_face(given.face, given.pair)
-    share, left = of_pairs(fine.share, given.face.cells, kappa, shafts), settled_gaps(fine.left, fine.forces)
+    share, left = of_pairs(fine.share, given.face.cells), settled_gaps(fine.left, fine.forces)
     return share, FaceShare(
-        fine.forces, left, errors, shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
+        fine.forces, left, errors, fine.shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
     )
 
 
-def of_pairs(found: LoadShare, cells: int, kappa: Array, shafts: ShaftsUnderFace | None) -> LoadShare:
-    """Share of pairs from that of their cells, the deflection measured between the mid-faces of gears on shafts.
-
-    Parameters
-    ----------
-    found : LoadShare
-        Of (..., pairs cells).
-    cells : int
-    kappa : (positions, pairs) array
-        Levers of the normals in whose forces it is.
-    shafts : ShaftsUnderFace or None
-    """
-    from gears.load_sharing import LoadShare
-
-    forces, slopes = (one.reshape(*one.shape[:-1], -1, cells) for one in (found.forces, found.pair_stiffness))
-    pairs = forces.sum(axis=-1)
-    share = LoadShare(pairs, found.transmission_error, found.stiffness, slopes.sum(axis=-1), found.iterations)
-    if shafts is None:
-        return share
-    loads, by_slope = ((one / kappa[..., None]).sum(axis=-2) for one in (forces, slopes))
-    return shafts.measured_between(share, loads, by_slope)
+def of_pairs(found: LoadShare, cells: int) -> LoadShare:
+    """Share of pairs from that of their cells (..., pairs cells)."""
+    forces, slopes = (
+        one.reshape(*one.shape[:-1], -1, cells).sum(axis=-1) for one in (found.forces, found.pair_stiffness)
+    )
+    return replace(found, forces=forces, pair_stiffness=slopes)
 
 
 def settled_gaps(left: Array, forces: Array) -> Array:

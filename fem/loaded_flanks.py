@@ -16,7 +16,7 @@ from fem.setting import Setting
 if TYPE_CHECKING:
     from fem.bodies import Compliance
 
-__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "loaded_flanks"]
+__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "greatest_force", "loaded_flanks"]
 
 
 @record
@@ -97,13 +97,20 @@ def loaded_flanks(
     matrix /= kappa[..., :, None] * kappa[..., None, :]
     on_path = where.touchable & ~where.edge
     middle = 0.5 * float(given.pair.points.A + given.pair.points.E)
-    if (overlap := -float(np.min(where.back_gap))) > 0.0:  # presses both sides without a torque
-        force += overlap / float(bodies.own(np.array([middle]))[0])
     # contacts that move have a law of their own near the corner
-    near = () if given.moving_contact else cut_offs(given, bodies, where, force)
+    near = (
+        () if given.moving_contact else cut_offs(given, bodies, where, greatest_force(bodies, where, force))
+    )
     place = np.where(on_path, where.place, middle)
     laws = PairLaws(bodies.hertz(place, where.curvature, kappa), where.edge, table, near)
     return LoadedFlanks(where, kappa, placed.oil, placed.levers, matrix, laws, largest)
+
+
+def greatest_force(bodies: Compliance, where: ContactCandidates, force: float) -> float:
+    """Greatest force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
+    overlap, points = -float(np.min(where.back_gap)), bodies.pair.points
+    middle = np.array([0.5 * float(points.A + points.E)])
+    return force + (overlap / float(bodies.own(middle)[0]) if overlap > 0.0 else 0.0)
 
 
 def _levers(given: Setting, where: ContactCandidates) -> Array:

@@ -11,8 +11,8 @@ from base import Array, record
 from fem.contact_candidates import REACHES
 from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import loaded_flanks
-from fem.moving_contact import contact_moves, model_error
-from fem.sharing import one_sided
+from fem.moving_contact import ContactMoves, contact_moves, model_error
+from fem.sharing import one_sided, solve
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
@@ -37,6 +37,8 @@ class LoadedContacts:
         Deflection [m].
     load : float
         Torque over the pinion's base radius [N].
+    behind : (ContactCandidates, array) or None
+        The flanks on the other side and their forces, where they bear.
     """
 
     given: Setting
@@ -45,31 +47,53 @@ class LoadedContacts:
     force: Array
     approach: Array
     load: float
+    behind: tuple[ContactCandidates, Array] | None = None
 
     def model_error(self) -> float:
         """Estimate what the model of the contacts leaves out, as ``moving_contact.model_error``.
 
-        With what the motion changes in all, by solutions of the loaded flanks with and without it: beside the corners
-        that is more than along the flanks.
+        With what the motion changes in all, by solutions with and without it: beside the corners, and where flanks on
+        both sides bear, that is more than along the flanks.
         """
-        moves = contact_moves(self.bodies, self.where)
-        if self.given.beyond_path:
-            ends = contact_moves(self.bodies, self.where, corners=True)
-            moves = replace(moves, cubic=ends.cubic, local=ends.local)
-        moving = self.given.moving_contact
-        return model_error(moves, self.force, self.approach, moving, self._changed())
+        moving, found = self.given.moving_contact, 0.0
+        if self.behind is not None:
+            where, force = self.behind
+            law = np.abs(self._moves(where).thrust(force, 1)[0])
+            borne = self.force.sum(axis=-1) * self.approach
+            found = float(np.max(np.sum(force * law, axis=-1) / borne))
+        return found + model_error(
+            self._moves(self.where), self.force, self.approach, moving, self._changed()
+        )
+
+    def _moves(self, where: ContactCandidates) -> ContactMoves:
+        moves = contact_moves(self.bodies, where)
+        if not self.given.beyond_path:
+            return moves
+        ends = contact_moves(self.bodies, where, corners=True)
+        return replace(moves, cubic=ends.cubic, local=ends.local)
 
     def _changed(self) -> float:
-        """Greatest change of D by the motion over a base pitch; the whole of it where there is no solution."""
-        if not (self.given.beyond_path and self.load):
+        """Greatest change of D by the motion over a base pitch; the whole of it where there is no solution.
+
+        Half the change of the mean tangent, if that is more: near the end of the first order, where strained teeth
+        stiffen without bound, it grows first.
+        """
+        both = self.behind is not None
+        if not both and not (self.given.beyond_path and self.load):
             return 0.0
         force, found = np.array([abs(self.load)]), []
         for moving in (False, True):
-            given = replace(self.given, moving_contact=moving, pitches=1, both=False)
+            given = replace(self.given, moving_contact=moving, pitches=1, both=both)
             tables = EdgeTables(given, self.bodies)
-            flanks = loaded_flanks(given, self.bodies, None, REACHES[0], float(force[0]), tables)
-            solution = one_sided(given, self.bodies, force, flanks, tables)
+            if both:
+                solution = solve(given, self.bodies, force, None, tables)
+            else:
+                flanks = loaded_flanks(given, self.bodies, None, REACHES[0], float(force[0]), tables)
+                solution = one_sided(given, self.bodies, force, flanks, tables)
             if not solution.settled:
                 return 1.0
-            found.append(solution.share.transmission_error)
-        return float(np.max(np.abs(found[1] / found[0] - 1)))
+            found.append(solution.share)
+        stays, moves = found
+        tangent = abs(float(moves.stiffness.mean() / stays.stiffness.mean()) - 1)
+        deflection = np.abs(moves.transmission_error / stays.transmission_error - 1)
+        return max(float(np.max(deflection)), 0.5 * tangent)

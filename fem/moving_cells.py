@@ -46,7 +46,7 @@ class MovingCells:
         Of the cells.
     clear : (torques, pitches, positions, n) array
         Gaps at the first touch of each cell [m], without those of corners that move; 0 where there is no contact.
-    along : (positions, n) array
+    along : (..., positions, n) array
         By how much less than D each cell has closed beside its pair's own gap [m].
     least : float
         Turn at which the first cell touches, from where straight, aligned gears do [m].

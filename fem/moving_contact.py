@@ -33,17 +33,51 @@ if TYPE_CHECKING:
     from fem.elasticity import PlaneElasticity
     from fem.local_law import FilmLaw, PairLaws
     from fem.moving_corners import MovedFlanks
-    from gears import LoadShare
+    from gears import GearPair, LoadShare
 
 __all__ = [
     "ContactMoves",
     "MovingPairs",
+    "answers",
     "contact_moves",
+    "contacts_move",
     "model_error",
     "moved_places",
     "moved_share",
     "moving_pairs",
 ]
+
+SPREAD = 2.0
+"""How often the curved answer of the teeth over a contact's width is counted for all that its width leaves out."""
+
+BESIDE = 0.16
+"""Distance from the corner [modules] within which this stays the same."""
+
+COMPLIANT = 30e9
+"""Young's modulus below which contacts move unless it is said [Pa]: plastics, not metals."""
+
+
+def contacts_move(pair: GearPair, asked: bool | None) -> bool:
+    """Whether contacts on the path move under load: the one default of `moving_contact`, by the softer material.
+
+    With metals their motion changes the stiffness by 0.1 %, no more than the law of the material leaves open, and what
+    corners of the tips do just inside the path counts for more, which only contacts that stay have; with a plastic
+    gear it is 1 to 5 %.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    asked : bool or None
+        What was asked for; None decides by the material: plastics move, metals stay.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> contacts_move(pair, None), contacts_move(pair, True)
+    (False, True)
+    """
+    return min(one.youngs_modulus for one in pair.materials) < COMPLIANT if asked is None else asked
 
 
 @record
@@ -58,12 +92,16 @@ class ContactMoves:
         U_3 = cubic F^3 + local F^2.5; the second row is what Hencky's law adds [m/N^2], [m/N^1.5].
     shift : (2, ..., pairs) array
         Growth of rho on pinion and wheel per force, but for the roll by D [m/N].
+    slide, spread : (..., pairs) arrays
+        What Hertz's law at a held place leaves out of D over the force's square (`_of_the_width`) [m/N^2].
     """
 
     roll: Array
     cubic: Array
     local: Array
     shift: Array
+    slide: Array
+    spread: Array
 
     def thrust(self, force: Array, law: int = 0) -> tuple[Array, Array]:
         """U_3'(F) [m] and U_3''(F) [m/N], or what Hencky's law adds."""
@@ -111,7 +149,7 @@ def contact_moves(bodies: Compliance, where: ContactCandidates, corners: bool = 
             (radius * (tilt[0] - tilt[1]) - along[1]) * radii[1] / rho[1],
         ]
     )
-    roll = np.zeros((*on_path.shape, on_path.shape[-1]))
+    roll, held = np.zeros((*on_path.shape, on_path.shape[-1])), _of_the_width(bodies, rho, tilt, along, a)
     hertz = -sum(1 / law.plane_modulus for law in laws) / np.pi * rho[1] / (rho[0] * (rho[0] + rho[1]))
     count, pinion = on_path.shape[-1], bodies.pinion
     for i in range(count):
@@ -125,7 +163,30 @@ def contact_moves(bodies: Compliance, where: ContactCandidates, corners: bool = 
         np.where(on_path, cubic, 0.0) / width**2,
         np.where(on_path, local, 0.0) / width**1.5,
         np.where(flat, shift, 0.0) / width,
+        *(np.where(flat, one, 0.0) / width**2 for one in held),
     )
+
+
+def _of_the_width(
+    bodies: Compliance, rho: Array, tilt: list[Array], along: list[Array], half_width: Array
+) -> tuple[Array, Array]:
+    """What Hertz's law at a held place leaves out of D, over the line load's square [m per (N/m)^2].
+
+    A pressure that is resolved slides by itself to where the teeth are stiffer, even with normals and levers of the
+    undeformed flanks: with K' = 2 (tau_1 - tau_2 - t_2/R) along the pinion's normals, by R K' w/2, which takes
+    (3/8) R K'^2 w^2 from D; along the wheel's normals it has t_1 for -t_2. The greater one is given. Over its width
+    the teeth's answer curves, by K'' a^2 w/8, of which ``SPREAD`` times as much holds what is left in resolved
+    contacts, but for a fifth of what they slide (docs/validation/local_law.md).
+    """
+    radius = rho[0] * rho[1] / (rho[0] + rho[1])
+    leaning = [tilt[0] - tilt[1] - along[1] / radius, tilt[0] - tilt[1] + along[0] / radius]
+    slide, curved = 1.5 * radius * np.maximum(leaning[0] ** 2, leaning[1] ** 2), np.zeros_like(radius)
+    for gear, place, base in zip((bodies.pinion, bodies.wheel), rho, bodies.pair.base_radii, strict=True):
+        # nearer to the corner the law is that of strips, if any
+        last = np.sqrt(max(gear.rho_end**2 - 2 * base * BESIDE * gear.module, 0.0))
+        at = np.minimum(place, last)
+        curved = curved + (base / at) ** 2 * (gear.own_bend(at) - gear.own_slope(at) / at)
+    return slide, SPREAD * np.abs(curved) * half_width**2 / 8
 
 
 def _energies(parts: Array, law: PlaneElasticity) -> Array:
@@ -178,16 +239,13 @@ class MovingPairs:
             stiff = np.sum(np.where(loads > 0, more.stiff, 0.0), axis=-1)
         return Linearised(residual, reach, self.levers - (1 - reach), carried, stiff, slope)
 
+    def bulk_at(self, approach: Array) -> Array:
+        """Compliance (..., pairs, pairs) [m/N] where the pinion has rolled on by D (...) [m]."""
+        return np.asarray(self.bulk + approach[..., None, None] * self.moves.roll)
+
     def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
         """As of ``MovingForces``."""
-        jacobian = self.bulk + approach[..., None, None] * self.moves.roll
-        jacobian = jacobian + at.own[..., None] * np.eye(active.shape[-1])
-        both = active[..., :, None] & active[..., None, :]
-        scale = np.abs(jacobian).max()
-        matrix = np.where(both, jacobian / scale, np.eye(active.shape[-1]))
-        sides = np.stack([np.where(active, at.reach, 0.0), np.where(active, at.residual, 0.0)], axis=-1)
-        solved = np.linalg.solve(matrix, sides / scale)
-        return solved[..., 0], solved[..., 1]
+        return answers(self.bulk_at(approach), at, active)
 
     def unloaded(self, loads: Array, approach: Array) -> Array:
         """As of ``MovingForces``."""
@@ -195,6 +253,17 @@ class MovingPairs:
         found = (self.bulk @ loads[..., None])[..., 0] + clear
         found += approach[..., None] * (self.moves.rolled(loads) - 1)
         return np.asarray(found if self.own is None else found + self.own.opened(approach[..., None]))
+
+
+def answers(bulk: Array, at: Linearised, active: Booleans) -> tuple[Array, Array]:
+    """Answers of the forces in contact to the turn and to the residual (..., n), all of one compliance."""
+    jacobian = bulk + at.own[..., None] * np.eye(active.shape[-1])
+    both = active[..., :, None] & active[..., None, :]
+    scale = np.abs(jacobian).max()
+    matrix = np.where(both, jacobian / scale, np.eye(active.shape[-1]))
+    sides = np.stack([np.where(active, at.reach, 0.0), np.where(active, at.residual, 0.0)], axis=-1)
+    solved = np.linalg.solve(matrix, sides / scale)
+    return solved[..., 0], solved[..., 1]
 
 
 def moving_pairs(
@@ -236,8 +305,9 @@ def model_error(
 ) -> float:
     """Estimate what the model of the contacts leaves out, relative to the deflection, greatest over the positions.
 
-    What Hencky's law would change, plus the square of what the moving contact changes to the first order; plus
-    that itself where contacts stay.
+    What Hencky's law would change, and what the width of contacts leaves out of Hertz's law, plus the square of what
+    the moving contact changes to the first order; plus that itself where contacts stay, or what a resolved pressure
+    takes from D by sliding, if that is more.
 
     Parameters
     ----------
@@ -256,5 +326,8 @@ def model_error(
     turn = np.sum(part * moves.rolled(force), axis=every)
     thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=every) / approach for k in (0, 1))
     change = np.maximum(np.abs(1.5 * turn - thrust), changed)
-    whole = np.abs(law) + change**2 + (0.0 if moving else change)
+    slide, wide = (
+        np.sum(part * one * force**2, axis=every) / approach for one in (moves.slide, moves.spread)
+    )
+    whole = np.abs(law) + wide + change**2 + (0.0 if moving else np.maximum(change, slide))
     return float(np.max(whole))

@@ -31,7 +31,7 @@ def cell_roll(
     face: FaceSetting, bodies: Compliance, where: ContactCandidates, moves: ContactMoves
 ) -> CellCoupling:
     """C' between cells of pairs that may touch [1/N], kept for loads and alignments that follow."""
-    held = replace(face, strip=0.0, shafts=(None, None))  # neither changes with the place
+    held = replace(face, strip=0.0)  # which does not change with the place
     arrays = (where.rho, where.touchable, moves.roll)
     laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
     pair = bodies.pair

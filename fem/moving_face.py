@@ -11,6 +11,7 @@ from base import Array, Integers
 from fem.cell_contact import along_cells
 from fem.cell_laws import CellLaws
 from fem.cell_matrix import cell_coupling
+from fem.face_shafts import joined, shafts_under_face
 from fem.face_share import FaceShare, of_pairs, settled_gaps
 from fem.moving_cells import MovingCells
 from fem.moving_coupling import cell_roll, other_pairs, tooth_smoothing
@@ -61,24 +62,41 @@ def moved_over_face(
     shares: list[LoadShare] = []
     shape, lost_shape = stays.forces.shape, (2, *stays.forces.shape[:-1])
     forces, left, lost = np.zeros(shape), np.zeros(shape), (np.zeros(lost_shape), np.zeros(lost_shape))
-    order = []
+    order, held = [], []
+    shafts = shafts_under_face(given.face, given.pair)
+    gaps = flanks.where.gap - flanks.where.gap.min(axis=-1, keepdims=True)
     for strip in np.unique(stays.strips):
         some = np.flatnonzero(stays.strips == strip)
         rise = stays.rise[some]
-        cells = moving_cells(given, bodies, flanks, kappa, pairs, rise, float(strip))
+        still = moving_cells(given, bodies, flanks, kappa, pairs, rise, float(strip))
+        cells = still
+        if shafts is not None:  # corners are met by what the flanks close, which shafts leave open
+            bent = shafts.bent(stays.forces[some], flanks.kappa).sum(axis=-2)[..., None, :] / kappa[..., None]
+            still = replace(still, along=still.along + bent.reshape(*bent.shape[:-2], -1))
+            cells = replace(still, coupling=still.coupling.plus(shafts.both, kappa))
         found = _found(cells, whole[some], stays.forces[some])
         if found is None:
             return None
         forces[some] = cells.split(found.forces)
         open_ = np.where(cells.touchable, cells.unloaded(found.forces, found.transmission_error), np.inf)
         left[some] = settled_gaps(cells.split(open_) + rise, forces[some])
-        losses = cells.lever_losses(found.forces, found.pair_stiffness, found.transmission_error)
+        turn = found.transmission_error
+        if shafts is not None:
+            at = still.linearised(found.forces, turn)
+            by_tilt = np.zeros_like(found.forces) + shafts.levers(kappa)
+            slopes = still.solved(replace(at, residual=by_tilt), turn, found.forces > 0.0)
+            found, brought = shafts.held(found, kappa, gaps, slopes, at.arms)
+            found = replace(found, stiffness=found.stiffness - at.stiff)
+            held.append(brought)
+        losses = cells.lever_losses(found.forces, found.pair_stiffness, turn)
         for every, one in zip(lost, losses, strict=True):
             every[:, some] = one
-        shares.append(of_pairs(found, given.face.cells, kappa, stays.shafts))
+        shares.append(of_pairs(found, given.face.cells))
         order.append(some)
-    share = _in_order(shares, np.argsort(np.concatenate(order)))
-    return share, replace(stays, forces=forces, left=left, lost=lost)
+    back = np.argsort(np.concatenate(order))
+    share = _in_order(shares, back)
+    reached = joined(held, back) if held else None
+    return share, replace(stays, forces=forces, left=left, lost=lost, shafts=reached)
 
 
 def _found(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:

@@ -97,6 +97,9 @@ def moved_forces(problem: MovingForces, whole: Array, loads: Array, approach: Ar
     from gears.load_sharing import LoadShare
 
     active, start = loads > 0, np.full(loads.shape, problem.start)
+    size = np.maximum(
+        whole, np.max(loads, axis=-1)
+    )  # teeth that are pressed together have forces without a torque
     for iteration in range(1, ITERATIONS + 1):
         at = problem.linearised(loads, approach)
         unit, response = problem.solved(at, approach, active)
@@ -112,9 +115,9 @@ def moved_forces(problem: MovingForces, whole: Array, loads: Array, approach: Ar
         unloaded = problem.unloaded(kept, approach)
         released = negative & (unloaded >= 0)
         taken = problem.touchable & ~active & (unloaded < -ROUNDING * np.abs(approach)[..., None])
-        settled = np.all(np.abs(step) <= CLOSE * whole[..., None])
+        settled = np.all(np.abs(step) <= CLOSE * size[..., None])
         loads = np.where(negative & ~released, 0.1 * loads, kept)
-        loads = np.where(taken, start * whole[..., None], loads)
+        loads = np.where(taken, start * size[..., None], loads)
         start = np.where(taken, 0.1 * start, start)
         active = (active & ~released) | taken
         if not (np.all(np.isfinite(loads)) and np.all(tangent > 0)):

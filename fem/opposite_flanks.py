@@ -16,22 +16,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, Integers, quantity, record
+from base import Array, Booleans, Integers, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import FlanksInPlace, LoadedFlanks, loaded_flanks
 from fem.local_law import Film
 from fem.setting import Setting
 from gears import LoadShare
+from gears.errors import LoadSharingError
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
     from gears.load_sharing import DeflectionLaw
 
-__all__ = ["OppositeFlanks", "OppositeShare", "between", "share_with_opposite"]
+__all__ = ["BothSides", "OppositeFlanks", "OppositeShare", "between", "both_sides", "share_with_opposite"]
 
 ROUNDING = 1e-12
 """Overlap over the deflection that is none."""
+
+NOTHING = 1e-14
+"""Overlap that is rounding [m]."""
+
+FAR_TOO_DEEP = 0.25
+"""Deflection in modules from which the other side is left out, and that said, where there is no solution with it."""
 
 
 @record
@@ -49,6 +56,8 @@ class OppositeFlanks:
         "1", "lever of the normal about the axes, over the base radii", "gear position pair"
     )
     gap: Array = quantity("m", "gap that is left where no force is", "position pair", shown="um")
+    lever_loss: Array | float = part("as of the cycle, where contacts move", default=0.0)
+    further_lever_loss: Array | float = part("the same of further forces", default=0.0)
 
     def per_deflection(self, slope: Array) -> OppositeFlanks:
         """Measure slopes by another deflection, whose slope by D is given (n,)."""
@@ -70,8 +79,6 @@ class OppositeShare:
     rest : (pitches, positions) array
         Transmission error without torque, from where the loaded flanks touch: not 0 where teeth overlap that are
         pressed together [m].
-    moving : bool
-        Whether contacts were to move.
     cells : bool
         Whether loads were to vary along the face.
     reached : (torques,) array
@@ -86,7 +93,6 @@ class OppositeShare:
     pair_stiffness: Array
     open: Array
     rest: Array
-    moving: bool
     cells: bool
     reached: Array
 
@@ -113,9 +119,7 @@ class OppositeShare:
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
         where, turned = self.where, self.forces[number]
-        if self.moving and np.any(turned > 0.0):
-            return "flanks on both sides bear, which contacts that move do not know; let contacts stay"
-        if self.cells and np.any(turned > 0.0):
+        if self.cells and (np.any(turned > 0.0) or np.any(self.open[number] < -NOTHING)):
             return (
                 "flanks on both sides bear, which know no cells of the face; give more backlash, raise the torque, "
                 "or leave leads, alignment and cells out"
@@ -179,7 +183,7 @@ def _nearest(steps: Integers, teeth: int) -> Integers:
 
 
 @record
-class _BothSides:
+class BothSides:
     """Loaded flanks and those on the other side, one after the other, as ``share_between`` asks for them."""
 
     count: int
@@ -221,7 +225,8 @@ def between(
     return np.swapaxes(found, 1, 2) if given.back else found
 
 
-def _both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: LoadedFlanks) -> _BothSides:
+def both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: LoadedFlanks) -> BothSides:
+    """Put the loaded flanks of a setting and the others together."""
     count, more = len(flanks.where.offset), len(other.where.offset)
     matrix = np.zeros((given.positions, count + more, count + more))
     matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
@@ -230,7 +235,7 @@ def _both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other:
     touch = flanks.where.gap.min(axis=-1, keepdims=True)
     behind = given.pair.backlash + other.where.gap + touch
     oil = None if flanks.oil is None or other.oil is None else _Joined(flanks.oil, other.oil, count)
-    return _BothSides(
+    return BothSides(
         count,
         matrix,
         _Joined(flanks.laws, other.laws, count),
@@ -239,6 +244,14 @@ def _both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other:
         np.repeat([1.0, -1.0], [count, more]),
         np.concatenate([flanks.levers, other.levers], axis=-1) if given.friction else None,
     )
+
+
+def _too_deep(given: Setting, alone: LoadShare | None, torques: int) -> Booleans:
+    """Torques whose deflection without the other side is beyond what any law of the corners covers (torques,)."""
+    if alone is None:
+        return np.zeros(torques, dtype=bool)
+    most = alone.transmission_error.reshape(torques, -1).max(axis=1)
+    return np.asarray(most > FAR_TOO_DEEP * given.pair.module)
 
 
 def share_with_opposite(
@@ -265,7 +278,8 @@ def share_with_opposite(
     alone : LoadShare or None
         Solution without the other side, kept where it lets nothing overlap; None without a torque.
     apart : (torques,) boolean array
-        Torques for which it is kept whatever it lets overlap.
+        Torques for which it is kept whatever it lets overlap; so are those of more than `FAR_TOO_DEEP` for which there
+        is no solution with both sides.
 
     Returns
     -------
@@ -273,7 +287,7 @@ def share_with_opposite(
         Of the loaded flanks and of the others, and the gaps that are left on the loaded side.
     """
     other = loaded_flanks(given.opposite, bodies, film, reach, float(np.max(force)), tables)
-    both = _both_sides(given, bodies, flanks, other)
+    both = both_sides(given, bodies, flanks, other)
     whole, count = force[:, None, None], both.count
     pressed = both.pressed()
     found, clear = alone, np.zeros((len(force), *pressed.shape), dtype=bool)
@@ -286,9 +300,17 @@ def share_with_opposite(
     slopes, rest = np.zeros_like(loads), np.zeros(pressed.shape)
     if alone is not None:
         slopes[..., :count] = alone.pair_stiffness
-    if not clear.all():
+    if not (
+        clear.all() or (alone is not None and given.face is not None)
+    ):  # loads of cells have no both sides
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
-        joint = both.share(asked[:, None, None] + 0.0 * pressed)
+        try:
+            joint = both.share(asked[:, None, None] + 0.0 * pressed)
+        except LoadSharingError:
+            deep = ~apart & _too_deep(given, alone, len(force))
+            if not deep.any():
+                raise
+            return share_with_opposite(given, bodies, force, film, flanks, alone, apart | deep, reach, tables)
         loads = np.where(clear[..., None], loads, joint.forces)
         slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
         moved, tangent = joint.transmission_error, joint.stiffness
@@ -312,7 +334,6 @@ def share_with_opposite(
         slopes[..., count:],
         left[..., count:],
         rest,
-        given.moving_contact,
         given.face is not None,
         closing.max(axis=(1, 2)),
     )

@@ -145,7 +145,10 @@ class PairFigures:
         ]
         if self.opposite is not None:
             other = self.opposite
-            lever = np.where(other.forces > 0, other.lever, 0.0)
-            for total, one in zip(sums, (other.forces, other.pair_stiffness), strict=True):
-                total -= np.sum(lever * one, axis=-1)
+            bears = other.forces > 0
+            for total, one, lost in (
+                (sums[0], other.forces, other.lever_loss),
+                (sums[1], other.pair_stiffness, other.further_lever_loss),
+            ):
+                total -= np.sum(np.where(bears, other.lever - lost, 0.0) * one, axis=-1)
         return sums[0], sums[1]

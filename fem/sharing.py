@@ -16,9 +16,10 @@ from fem.edge_tables import EdgeTables
 from fem.face_share import FaceShare, share_over_face
 from fem.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.local_law import Film
-from fem.moving_contact import ContactMoves, contact_moves, moved_places, moved_share, moving_pairs
-from fem.moving_corners import MovedFlanks, moved_flanks
+from fem.moving_contact import ContactMoves, moved_places, moved_share
+from fem.moving_corners import DEEPEST, MovedFlanks
 from fem.moving_face import moved_over_face
+from fem.moving_sides import BothMoved, MovedSide, both_moved, moved_side
 from fem.opposite_flanks import OppositeShare, share_with_opposite
 from fem.setting import Setting
 
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Solution", "one_sided", "solve"]
 
-FAR_TOO_DEEP = 0.25
-"""Deflection in modules above which no law of contact holds, and the other side is not looked at."""
+FAR_APART = 0.5
+"""Deflection of shafts in modules above which teeth mesh on another path."""
 
 
 @record
@@ -70,7 +71,8 @@ class Solution:
     kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
     closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear. With moving
     contacts that do not settle, share is the one of contacts that stay, and settled is False. opposite: the flanks on
-    the other side, where they were looked at. face: what the cells of the face bear.
+    the other side, where they were looked at; back, where these move: they seen in the mirror, with the turn D' and its
+    slopes; crossing: what loads on the other side take from levers. face: what the cells of the face bear.
     """
 
     where: ContactCandidates
@@ -85,6 +87,9 @@ class Solution:
     opposite: OppositeShare | None = None
     moved: MovedShare | None = None
     face: FaceShare | None = None
+    side: MovedSide | None = None
+    back: Solution | None = None
+    crossing: Array | float = 0.0
 
     @property
     def touch(self) -> Array:
@@ -92,11 +97,16 @@ class Solution:
         return np.asarray(self.where.gap.min(axis=-1))
 
     def deflection(self, number: int) -> Array:
-        """Transmission error under a torque less that without any (pitches, positions) [m]."""
+        """Turn under a torque less that without any, on shafts that are held (pitches, positions) [m]."""
         moved = self.share.transmission_error[number]
         return np.asarray(moved if self.opposite is None else moved - self.opposite.rest)
 
-    def moments(self, loaded: Array, other: Array | None, lost: Array) -> Array:
+    def turn(self, number: int) -> Array:
+        """Turn of the pinion under a torque, from where gears without deviations touch (pitches, positions) [m]."""
+        bent = 0.0 if self.face is None else self.face.bent(number)
+        return np.asarray(self.share.transmission_error[number] + bent + self.touch)
+
+    def moments(self, loaded: Array, other: Array | None, lost: Array, behind: Array | float) -> Array:
         """Sums of forces kappa F, or of their slopes, by their levers about pinion and wheel (2, positions).
 
         Parameters
@@ -105,12 +115,12 @@ class Solution:
             Of the loaded flanks.
         other : (positions, pairs) array or None
             Of those on the other side, which turn the gears the other way.
-        lost : (2, positions, pairs) array
-            Part of the loaded flanks' levers that contacts which move lose.
+        lost, behind : (2, positions, pairs) arrays
+            Parts of the levers of either side that contacts which move lose.
         """
         found = _levered(self.where, self.kappa, loaded, lost)
         if other is not None and self.opposite is not None:
-            found = found - _levered(self.opposite.where, self.opposite.kappa, other)
+            found = found - _levered(self.opposite.where, self.opposite.kappa, other, behind)
         return found
 
     @cached_property
@@ -119,7 +129,7 @@ class Solution:
         if self.moves is None:
             return np.zeros((2, *force.shape)), np.zeros((2, *force.shape))
         if self.face is None or self.face.lost is None:
-            tilted = self.moves.rolled(force)
+            tilted = self.moves.rolled(force) + self.crossing
             half, whole = 0.5 * np.stack([tilted, tilted]), np.stack([tilted, tilted])
             if self.moved is not None:
                 self.moved.add_losses(self, half, whole)
@@ -140,6 +150,13 @@ class Solution:
         first, second = self._lever_losses
         return first[:, number], second[:, number]
 
+    def lever_loss_behind(self, number: int) -> tuple[Array, Array]:
+        """The same of the flanks on the other side."""
+        if self.back is not None:
+            return self.back.lever_loss(number)
+        nothing = np.zeros((2, 1, 1, 1))
+        return nothing, nothing
+
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
         return np.asarray(self.share.forces[number] * (self.levers - self.lever_loss(number)[0][0]))
@@ -151,12 +168,17 @@ class Solution:
         if self.moves is None:
             return rho
         force, approach = share.forces[number], share.transmission_error[number]
-        approach = approach if self.face is None else approach + self.face.turned(number, self.kappa)
+        approach = approach if self.face is None else approach + self.face.turned(number)
         rho = rho + np.where(self.where.edge, 0.0, moved_places(self.moves, force, approach))
         if self.moved is not None:
             rho = np.where(self.where.edge, self.moved.edge_rho(approach), rho)
         ends = [profile.flank_rho for profile in pair.teeth_profiles]
         return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
+
+    def shafts_give_way(self, number: int) -> float:
+        """Greatest deflection of both shafts on the face over the module; 0 of rigid ones."""
+        held = None if self.face is None else self.face.shafts
+        return 0.0 if held is None else float(np.max(held.most[number]))
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
@@ -166,6 +188,17 @@ class Solution:
             return (
                 f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move; reduce the "
                 "torque, or let contacts stay"
+            )
+        if (far := self.shafts_give_way(number)) > FAR_APART:
+            return (
+                f"the shafts give way by {far:.2g} modules along the line of action, on which the teeth no longer mesh "
+                "as they do; give stiffer shafts or bearings, bring them nearer to the gears, or reduce the torque"
+            )
+        deepest = float(np.max(self.share.transmission_error[number]))
+        if self.moved is not None and deepest > DEEPEST * self.moved.given.pair.module:
+            return (
+                f"a deflection of {1e3 * deepest:.2g} mm is more than a quarter of the module, up to which corners "
+                "that move have laws; reduce the torque, or let contacts stay"
             )
         if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
             return "a tip edge presses over more than the strips cover; reduce the torque"
@@ -240,14 +273,12 @@ def one_sided(
         share, over = share_over_face(
             given, bodies, whole, where, flanks.kappa, matrix, laws, gaps, oil, arms
         )
-    moves, settled, own, levers, kappa = None, True, None, flanks.levers, flanks.kappa
+    moves, settled, own, side, levers, kappa = None, True, None, None, flanks.levers, flanks.kappa
     if given.moving_contact:
-        moves = contact_moves(bodies, where, given.beyond_path)
-        if given.beyond_path:
-            own = moved_flanks(given, bodies, flanks, float(np.max(force)), tables)
-            matrix, laws, gaps = own.matrix, own.laws, own.gaps
-            levers, kappa = own.levers, np.ones_like(kappa) if own.surfaces else kappa
-        pairs = moving_pairs(matrix, laws, oil, gaps, levers, moves, own)
+        side = moved_side(given, bodies, flanks, float(np.max(force)), tables)
+        moves, own, pairs, levers, kappa = side.moves, side.own, side.pairs, side.levers, side.kappa
+        if own is not None:
+            matrix, gaps = own.matrix, own.gaps
         if over is None:
             moved = moved_share(share, whole, pairs)
             share, settled = share if moved is None else moved, moved is not None
@@ -266,9 +297,19 @@ def one_sided(
         left = over.open
     closing = share.transmission_error - bodies.turning * whole
     moved_by = None if own is None else MovedShare(own, flanks, given)
-    levers = levers if own is None else flanks.levers * flanks.kappa / kappa
     return Solution(
-        where, share, kappa, levers, flanks.largest, closing, left, moves, settled, moved=moved_by, face=over
+        where,
+        share,
+        kappa,
+        levers,
+        flanks.largest,
+        closing,
+        left,
+        moves,
+        settled,
+        moved=moved_by,
+        face=over,
+        side=side,
     )
 
 
@@ -285,9 +326,7 @@ def _two_sided(
     """Solution with the flanks on both sides, but for torques that are refused with one."""
     apart = np.zeros(len(force), dtype=bool)
     if alone is not None:
-        deep = FAR_TOO_DEEP * given.pair.module
-        moved = alone.share.transmission_error.reshape(len(force), -1).max(axis=1)
-        apart = np.array([bool(alone.refusal(n)) or moved[n] > deep for n in range(len(force))])
+        apart = np.array([bool(alone.refusal(n)) for n in range(len(force))])
         if apart.all():
             return alone
         clear = (
@@ -295,6 +334,10 @@ def _two_sided(
         )
         if clear is not None:
             return replace(alone, opposite=clear)
+    if given.moving_contact and given.face is None:
+        by_itself = None if alone is None else (alone.share, alone.side)
+        found = both_moved(given, bodies, force, film, flanks, by_itself, apart, reach, tables)
+        return _moved_solution(given, bodies, force, found, alone)
     share, opposite, left = share_with_opposite(
         given, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
     )
@@ -314,6 +357,42 @@ def _two_sided(
         settled,
         opposite,
     )
+
+
+def _moved_solution(
+    given: Setting, bodies: Compliance, force: Array, found: BothMoved, alone: Solution | None
+) -> Solution:
+    """Solution with flanks on both sides that move, for forces (torques,) [N]."""
+    problem, share, whole = found.problem, found.share, force[:, None, None]
+    front, back = found.front.flanks, found.back.flanks
+    turn, loads = share.transmission_error, problem.split(share.forces)
+    slopes, open_ = problem.split(share.pair_stiffness), problem.split(problem.unloaded(share.forces, turn))
+    closing = bodies.turning * whole - turn - front.where.gap.min(axis=-1) - given.pair.backlash
+    opposite = OppositeShare(
+        back.where,
+        found.back.kappa,
+        found.back.levers,
+        back.largest,
+        loads[1],
+        slopes[1],
+        open_[1],
+        found.rest,
+        False,
+        closing.max(axis=(1, 2)),
+    )
+    if alone is not None and not opposite.bears:
+        return replace(alone, opposite=opposite, settled=found.settled)
+    turns, signs, settings = (turn, problem.behind(turn)), (1.0, -1.0), (given, given.opposite)
+    crossing, sides = problem.crossed(share.forces), []
+    for k, side in enumerate((found.front, found.back)):
+        part = replace(
+            share, forces=loads[k], transmission_error=turns[k], pair_stiffness=signs[k] * slopes[k]
+        )
+        moved = None if side.own is None else MovedShare(side.own, side.flanks, settings[k])
+        closed = turns[k] - bodies.turning * whole
+        laws = side.kappa, side.levers, side.flanks.largest, closed, open_[k], side.moves, found.settled
+        sides.append(Solution(side.flanks.where, part, *laws, moved=moved, crossing=crossing[k]))
+    return replace(sides[0], opposite=opposite, back=sides[1])
 
 
 def _levered(where: ContactCandidates, kappa: Array, forces: Array, lost: Array | float = 0.0) -> Array:

@@ -31,15 +31,14 @@ class ShaftOverFace:
     ----------
     between : ndarray, shape (n, n)
         Deflection at z by a unit force at z' [m/N].
-    middle : ndarray, shape (n,)
-        Deflection at z = 0 by the same forces [m/N].
     """
 
     between: Array
-    middle: Array
 
 
-def shaft_over_face(shaft: Shaft, z: Array, base_radius: float, offset: float = 0.0) -> ShaftOverFace:
+def shaft_over_face(
+    shaft: Shaft, z: Array, base_radius: float, offset: float = 0.0, face_width: float = 0.0
+) -> ShaftOverFace:
     """Bend and twist a shaft by forces on its gear.
 
     Parameters
@@ -52,6 +51,8 @@ def shaft_over_face(shaft: Shaft, z: Array, base_radius: float, offset: float = 
         Lever of the forces [m].
     offset : float
         Middle of the gear's own face [m], which is at the shaft's ``gear_position``.
+    face_width : float
+        Of the face in contact, whose end on the torque's side does not turn; that of the outermost places if less [m].
 
     Returns
     -------
@@ -62,26 +63,26 @@ def shaft_over_face(shaft: Shaft, z: Array, base_radius: float, offset: float = 
     >>> from gears import Bearing, ShaftSegment
     >>> shaft = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.0, 1e12), Bearing(0.2, 1e12)), 0.1, 0.1)
     >>> found = shaft_over_face(shaft, np.array([-0.02, 0.0, 0.02]), 0.03)
-    >>> f"{1e-6 / found.middle[1]:.1f}"  # N/um under a force at mid-face, as of gears.beams.reduced
+    >>> f"{1e-6 / found.between[1, 1]:.1f}"  # N/um under a force at mid-face, as of gears.beams.reduced
     '46.8'
     """
-    every = np.append(np.asarray(z, dtype=float), 0.0)
-    places = shaft.gear_position - offset + every
+    places = shaft.gear_position - offset + np.asarray(z, dtype=float)
+    middle, half = shaft.gear_position - offset, 0.5 * face_width
+    ends = min(places.min(), middle - half), max(places.max(), middle + half)
     nodes, at = np.unique(np.concatenate([shaft.places, places]), return_inverse=True)
     at = at[len(shaft.places) :]
     loads = np.zeros((2 * len(nodes), len(places)))
     loads[2 * at, np.arange(len(places))] = 1.0
     bent = np.linalg.solve(bending(shaft, nodes)[0], loads)[2 * at]
-    found = 0.5 * (bent + bent.T) + base_radius**2 * _twist(shaft, places)
-    return ShaftOverFace(found[:-1, :-1], found[-1, :-1])
+    return ShaftOverFace(0.5 * (bent + bent.T) + base_radius**2 * _twist(shaft, places, ends))
 
 
-def _twist(shaft: Shaft, places: Array) -> Array:
-    """Turn at places by unit torques at places (n, n) [rad/(N m)], against the end of these that the torque is at."""
+def _twist(shaft: Shaft, places: Array, face: tuple[float, float]) -> Array:
+    """Turn at places by unit torques at places (n, n) [rad/(N m)], against the end of the face on the torque's side."""
     ends = np.concatenate([[0.0], np.cumsum([one.length for one in shaft.segments])])
     polar = np.array([2.0 * one.second_moment for one in shaft.segments])
     turned = np.concatenate([[0.0], np.cumsum(np.diff(ends) / (shaft.material.shear_modulus * polar))])
-    enters = np.clip(shaft.torque_position, places.min(), places.max())
+    enters = np.clip(shaft.torque_position, *face)
     way = np.interp(places, ends, turned) - np.interp(enters, ends, turned)
     same = way[:, None] * way > 0.0
     return np.where(same, np.minimum(np.abs(way)[:, None], np.abs(way)), 0.0)

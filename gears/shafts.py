@@ -21,6 +21,9 @@ BEARING = {
     "damping": Limit(0.0, 1e9, "N s/m", "give the radial damping, or leave it out"),
 }
 
+SAME = 1e-9
+"""Distance of two places over the shaft's length below which they are one: sums of steps are rounded."""
+
 
 @dataclass(frozen=True)
 class ShaftSegment:
@@ -142,7 +145,8 @@ class Shaft:
         ends = np.concatenate([[0.0], np.cumsum([segment.length for segment in self.segments])])
         ends[-1] = self.length
         marks = [self.gear_position, self.torque_position, *(bearing.position for bearing in self.bearings)]
-        return np.unique(np.concatenate([ends, marks]))
+        found = np.unique(np.concatenate([ends, marks]))
+        return np.asarray(found[np.append(True, np.diff(found) > SAME * self.length)])
 
     def segment_at(self, position: float) -> ShaftSegment:
         """Step that holds a place inside it."""

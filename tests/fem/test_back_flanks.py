@@ -19,7 +19,7 @@ from fem.elasticity import PlaneElasticity, stiffness_matrix
 from fem.flank_samples import sample_places
 from fem.line_load import flank_points, line_loads
 from fem.loaded_flanks import loaded_flanks
-from fem.opposite_flanks import _both_sides, share_with_opposite
+from fem.opposite_flanks import both_sides, share_with_opposite
 from fem.ring import ring_of
 from fem.setting import Setting
 from fem.sharing import one_sided, solve
@@ -172,7 +172,7 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
         assert (known is not None) is free
 
 
-def test_both_sides_balance_the_torque(tight):
+def testboth_sides_balance_the_torque(tight):
     pair, bodies = tight
     torques = (-600.0, -50.0, -1.0, 0.0, 1.0, 50.0, 600.0)
     cycles = fem.mesh_cycle(pair, torques, 10, bodies)
@@ -209,7 +209,7 @@ def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight)
     )
 
 
-def test_cells_of_the_face_where_both_sides_bear_are_refused(tight):
+def test_cells_of_the_face_whereboth_sides_bear_are_refused(tight):
     """They were left out without a word: an alignment changed nothing."""
     pair, bodies = tight
     even = fem.mesh_cycle(pair, 10.0, 2, bodies)
@@ -236,7 +236,7 @@ def test_forces_are_those_of_a_convex_program(tight):
     given, force = Setting(pair, 3), 100.0 / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
     flanks, other = (loaded_flanks(one, bodies, None, 0.6, force, tables) for one in (given, given.opposite))
-    both = _both_sides(given, bodies, flanks, other)
+    both = both_sides(given, bodies, flanks, other)
     found = solve(given, bodies, np.array([force]), None)
     forces = np.concatenate([found.share.forces, found.opposite.forces], axis=-1)[0, 0]
     length = 1e-6
@@ -275,7 +275,7 @@ def test_forces_are_those_of_a_convex_program(tight):
         np.testing.assert_allclose(by_scipy.x, forces[row, on] / size, atol=1e-3)
 
 
-def test_tangent_of_both_sides_is_the_derivative(tight):
+def test_tangent_ofboth_sides_is_the_derivative(tight):
     pair, bodies = tight
     less, here, more = fem.mesh_cycle(pair, (99.9, 100.0, 100.1), 10, bodies)
     slope = (more.force - less.force) / (more.transmission_error - less.transmission_error)
@@ -292,7 +292,7 @@ def test_figures_of_pressed_gears(tight):
         assert against.mean_stiffness > cycle.mean_stiffness
 
 
-def test_a_film_presses_both_sides(tight):
+def test_a_film_pressesboth_sides(tight):
     pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04)
     bodies = fem.compliance(pair, tolerance=0.005)
 
@@ -335,21 +335,13 @@ def test_weak_bearings_let_pressed_gears_part():
     assert np.all(weak.bearing_force < 0.8 * rigid.bearing_force)
 
 
-def test_what_both_sides_refuse(tight, loose):
+def test_whatboth_sides_refuse(tight, loose):
     pair, bodies = tight
     with pytest.raises(InputError, match="must not be 0 where no flank bears: there is play of 50 um"):
         fem.mesh_cycle(loose[0], 0.0, 4, loose[1])
     cycle = fem.mesh_cycle(pair, 10.0, 4, bodies)
     with pytest.raises(InputError, match="flanks that bear on both sides"):
         fem.root_stress(pair, cycle, tolerance=0.1)
-
-
-def test_contacts_stay_where_both_sides_bear(tight):
-    pair, bodies = tight
-    moving = fem.mesh_cycle(pair, 10.0, 4, bodies, moving_contact=True)
-    assert not moving.moving_contact
-    assert "and contacts stay" in moving.message
-    np.testing.assert_array_equal(moving.forces, fem.mesh_cycle(pair, 10.0, 4, bodies).forces)
 
 
 def test_back_flanks_on_the_whole_annulus_factorised_at_once():

@@ -9,7 +9,10 @@ import pytest
 
 from base import InputError
 from fem import Compliance, compliance, mesh_cycle
+from fem.cell_matrix import cell_matrix
 from fem.face_compliance import pair_ends, pair_waves
+from fem.face_setting import FaceSetting
+from fem.gear_face import FlankWaves
 from gears import Alignment, Gear, GearPair, Lead, LeadTrace
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
@@ -103,6 +106,50 @@ def test_compliances_are_symmetric_and_free_ends_yield_more(bodies):
     ends = pair_ends(bodies, rho, (edges, edges), (width, width))[0].reshape(24, 24)
     np.testing.assert_allclose(ends, ends.T, atol=1e-12 * np.abs(ends).max())
     assert np.linalg.eigvalsh(ends).min() > -1e-6 * np.abs(ends).max()
+
+
+def test_free_ends_of_a_narrow_face_yield_more_and_alike_at_both_ends(bodies):
+    """What they add to cells between walls is symmetric, mirrored in the middle, and works against no load."""
+    pair = replace(PAIR, face_width=PAIR.module)
+    own, cells = replace(bodies, pair=pair), 8
+    rho1 = np.array([[pair.points.A + 0.2 * pair.base_pitch, pair.points.A + 1.2 * pair.base_pitch]])
+    rho, kappa = np.stack([rho1, pair.line_of_action - rho1]), np.ones((1, 2))
+    walls, free = (
+        cell_matrix(FaceSetting(cells, model=model), own, rho, kappa, own.bulk(rho1))[0]
+        for model in ("walls", "free-ends")
+    )
+    more = free - walls
+    np.testing.assert_allclose(more, more.T, atol=1e-12 * np.abs(more).max())
+    turned = more.reshape(2, cells, 2, cells)[:, ::-1, :, ::-1].reshape(more.shape)
+    np.testing.assert_allclose(more, turned, atol=1e-9 * np.abs(more).max())
+    assert np.linalg.eigvalsh(more).min() > -1e-6 * np.abs(more).max()
+    even = np.repeat([1.0, 0.0], cells) / cells
+    assert 1.05 < (even @ free @ even) / (even @ walls @ even) < 1.0 / (1.0 - 0.3**2)  # nearly plane stress
+    stress = compliance(PAIR, tolerance=0.05, plane="stress")
+    for gear, (load, point) in enumerate((rho[0, 0], rho[1, 0, ::-1])):
+        ends = cell_matrix(FaceSetting(cells), own, rho, kappa, np.zeros((1, 2, 2)), (gear,))[0]
+        flat, thick = ((one.pinion, one.wheel)[gear].cross(1, load, point) for one in (stress, own))
+        change = (flat - thick).item() / pair.face_width  # less on the one gear, more on the other
+        assert even @ ends @ even[::-1] == pytest.approx(change, rel=0.25)
+
+
+def test_waves_on_a_neighbour_are_those_of_the_neighbour_that_is_asked_for():
+    """Chebyshev series over both places, for each of two neighbours by itself, as numpy sums them."""
+    span, chance = (2.0, 4.0), np.random.default_rng(3)
+    cross = chance.normal(size=(2, 3, 3, 2))
+    waves = FlankWaves(span, 5.0, np.zeros((2, 2)), cross)
+    load, point = np.array([2.3, 3.9]), np.array([3.1, 2.2])
+    constant = replace(waves, cross=np.concatenate([cross[..., :1], np.zeros_like(cross[..., 1:])], axis=-1))
+    for tooth in (1, 2):
+        found = constant.cross_at(tooth, load, point, np.array([0.5, 3.0]))
+        wanted = np.polynomial.chebyshev.chebval2d(load - 3.0, point - 3.0, cross[tooth - 1, :, :, 0])
+        np.testing.assert_allclose(found, np.repeat(wanted[:, None], 2, axis=1), rtol=1e-12)
+
+
+@pytest.mark.parametrize("cells", [7, 8.5, 2])
+def test_cells_are_even_and_whole(bodies, cells):
+    with pytest.raises(InputError, match="cells"):
+        mesh_cycle(PAIR, TORQUE, 8, bodies, cells=cells)
 
 
 def test_faults_are_named_together(bodies):

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem import Compliance, compliance, mesh_cycle
-from fem.face_errors import greatest_error
+from fem import Compliance, compliance, face_share, mesh_cycle
+from fem.face_errors import LEFT, cell_errors, greatest_error, half_as_many
+from fem.face_setting import FREE_ENDS, WALLS, FaceSetting
 from gears import Alignment, Gear, GearPair, Lead
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
@@ -46,6 +47,22 @@ def test_a_parabola_that_foresaw_wrongly_is_an_error():
     assert greatest_error(cells, fewer) == pytest.approx(0.25 * (1.0 - 0.95 - 0.05 / 8.0), rel=1e-3)
 
 
+@pytest.mark.parametrize("few", [8, 6, 4])
+def test_a_doubling_that_is_none_is_taken_for_its_part(few):
+    """A load that is linear over the face: the end cell lacks of the whole what its own half does, by any number."""
+    cells, fewer = (_means(n, lambda z: 2.0 * z - 0.5 * z**2) for n in (18, few))
+    error = greatest_error(cells, fewer)
+    assert error == pytest.approx(2.0 / cells.max() - 1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("cells", [4, 6, 8, 10, 16, 64])
+def test_half_as_many_cells_are_even_and_what_they_change_is_counted_by_their_number(cells):
+    """Errors go with the length of a cell: what n/2 change is what n lack, what fewer change is more of it."""
+    few, part = half_as_many(FaceSetting(cells))
+    assert few.cells == {4: 2, 6: 2, 8: 4, 10: 4, 16: 8, 64: 32}[cells]
+    assert part == pytest.approx(LEFT / (cells / few.cells - 1.0))
+
+
 @pytest.fixture(scope="module")
 def bodies() -> Compliance:
     return compliance(PAIR, tolerance=0.02)
@@ -60,6 +77,37 @@ def test_greatest_loads_are_off_by_about_what_is_told(bodies, slope):
     for name, told in (("greatest_face_load_factor", few.error), ("greatest_line_load", few.line_load_error)):
         change = getattr(many, name) / getattr(few, name) - 1.0
         assert 0.5 * change < told < 2.0 * change
+
+
+def test_errors_compare_the_greatest_loads_of_both_numbers_of_cells(bodies):
+    """Walls: the greatest line load and factor of the cycle with half as many, wherever in the cycle they are."""
+    given = {"alignment": Alignment(20e-6), "face_model": "walls"}
+    most = {}
+    for cells in (16, 8):
+        face = mesh_cycle(PAIR, 60.0, 8, bodies, cells=cells, **given).face
+        loads = face.line_load
+        position, pair = np.unravel_index(int(loads.max(axis=-1).argmax()), loads.shape[:-1])
+        summed = loads.sum(axis=-1)
+        bearing = loads[np.arange(len(loads)), summed.argmax(axis=-1)]
+        over_mean = bearing / bearing.mean(axis=-1, keepdims=True)
+        most[cells] = face, loads[position, pair], over_mean[over_mean.max(axis=-1).argmax()]
+    face, load, factor = most[16]
+    assert face.line_load_error == pytest.approx(greatest_error(load, most[8][1]), rel=0.01)
+    assert face.error == pytest.approx(greatest_error(factor, most[8][2]), rel=0.01)
+
+
+def test_ends_that_change_nothing_add_no_error(bodies, monkeypatch):
+    """Cells between walls, looked at as if their ends were free: the same without them, so that errors stay."""
+    seen = []
+    monkeypatch.setattr(face_share, "cell_errors", lambda *given: seen.append(given) or cell_errors(*given))
+    mesh_cycle(PAIR, 60.0, 4, bodies, cells=16, alignment=Alignment(20e-6), face_model="walls")
+    over, face, fine, coarse = seen.pop()
+    walls, free = (
+        cell_errors(over, replace(face, model=model), fine, coarse) for model in (WALLS, FREE_ENDS)
+    )
+    assert free.factor == pytest.approx(walls.factor, abs=1e-4)
+    assert free.line_load == pytest.approx(walls.line_load, abs=1e-4)
+    assert free.ends == pytest.approx(0.0, abs=1e-3)
 
 
 def test_means_feel_less_of_what_changes_sign(bodies):

@@ -102,12 +102,14 @@ def test_an_even_load_moves_the_solid_as_in_the_plane(bodies, prisms):
             assert np.quantile(off, 0.9) < 0.02 * size
 
 
-@pytest.mark.slow
-def test_free_ends_move_the_solid_as_they_move_the_contact(bodies, monkeypatch):
+@pytest.mark.parametrize(
+    ("width", "cells"), [(1.0, 8), pytest.param(PAIR.face_width / PAIR.module, 64, marks=pytest.mark.slow)]
+)
+def test_free_ends_move_the_solid_as_they_move_the_contact(bodies, monkeypatch, width, cells):
     """What they add along the normal at the loaded line is, on the same section, the contact's own compliance."""
     monkeypatch.setattr("fem.face_ends.PLACES", END_PLACES)
-    meshed, width = bodies.meshed[0], PAIR.face_width / PAIR.module
-    edges = np.linspace(-0.5, 0.5, 65) * width
+    meshed = bodies.meshed[0]
+    edges = np.linspace(-0.5, 0.5, cells + 1) * width
     middles = 0.5 * (edges[1:] + edges[:-1])
     forces = 1.0 + 2.0 * middles / width  # most at one end
     over = section_of(meshed, ENDS_SIZES, 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import replace
 
 import numpy as np
@@ -257,6 +258,14 @@ def test_a_wide_gear_is_stressed_beyond_the_face_in_contact(bodies, roots):
     assert found.pinion.face.face_position[[0, -1]] == pytest.approx([-10e-3, 10e-3])
     beyond, within = face.cycle_tension[-1], face.cycle_tension[len(face.face_position) // 2]
     assert 0.0 < beyond < 0.6 * within
+
+
+def test_free_ends_are_those_of_each_gear_and_its_own_face(roots, monkeypatch):
+    module = importlib.import_module("fem.face_fillets")
+    monkeypatch.setattr(module, "_ends", lambda loaded, width, gears: (loaded.shape, width))
+    pair = replace(PAIR, wheel=replace(PAIR.wheel, face_width=PAIR.face_width + 3e-3))
+    ends = face_fillets(roots, pair).ends
+    assert ends == tuple((one.shape, width) for one, width in zip(roots.shapes, (10.0, 11.5), strict=True))
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from fem.contact_candidates import contact_candidates
 from fem.elasticity import PlaneElasticity
 from fem.flank_motion import flank_motion
 from fem.local_law import PairLaws
-from fem.moving_contact import contact_moves, model_error, moved_share, moving_pairs
+from fem.moving_contact import contact_moves, contacts_move, model_error, moved_share, moving_pairs
 from fem.ring import ring_of
 from fem.setting import Setting
 from fem.third_order import densities, half_plane, hertz_rotation
@@ -109,6 +109,22 @@ def test_energy_of_a_gear_that_is_turned_as_a_whole(monkeypatch):
     np.testing.assert_allclose(np.abs(found[0] - found[1]) / (2 * psi), along, rtol=0.01)
 
 
+def test_a_contact_that_rolls_on_yields_by_the_slope_of_its_compliance(plastic):
+    """B' of one pair: the pinion's flank rolls on and the wheel's stays, which changes Hertz's part by ln(R) alone."""
+    moves = alone(plastic, 0.8, 20.0)[2]
+    rho1 = PLASTIC.points.A + 0.8 * PLASTIC.base_pitch
+    rho2, gears = PLASTIC.line_of_action - rho1, (plastic.pinion, plastic.wheel)
+    reduced = 2.0 / sum(1.0 / gear.law.plane_modulus for gear in gears)
+
+    def yielded(rho):
+        a = flamant.hertz_half_width(1e5, rho * rho2 / (rho + rho2), reduced)
+        local = sum(flamant.hertz_indentation(a, gear.law, PLASTIC.module) for gear in gears)
+        return local + float(plastic.pinion.own(np.array([rho]))[0])
+
+    slope = (yielded(rho1 + 1e-7) - yielded(rho1 - 1e-7)) / 2e-7
+    assert moves.roll[0, 0, 0] * PLASTIC.face_width == pytest.approx(slope, rel=1e-4)
+
+
 def test_tangent_is_the_derivative(plastic):
     torque, step = 20.0, 1e-3
     less, same, more = (alone(plastic, 0.8, torque * (1 + s))[1] for s in (-step, 0.0, step))
@@ -137,6 +153,25 @@ def test_both_conventions_differ_by_the_slope_of_the_stiffness(plastic):
     slope = np.log(ends[0].transmission_error / ends[1].transmission_error) / away
     between = np.log(wheel.transmission_error / pinion.transmission_error)
     np.testing.assert_allclose(between, slope * away, rtol=0.03)
+
+
+@pytest.mark.parametrize("materials", [(STEEL, PA66), (PA66, STEEL), (PA66, PA66), (STEEL, STEEL)])
+def test_the_default_is_by_the_softer_material(materials):
+    pair = replace(PLASTIC, material=materials)
+    assert contacts_move(pair, None) is (materials != (STEEL, STEEL))
+    for asked in (False, True):
+        assert contacts_move(pair, asked) is asked
+
+
+def test_plastics_move_and_metals_stay_for_one_torque_and_for_several(plastic):
+    asked = fem.mesh_cycle(PLASTIC, 10.0, 4, plastic, beyond_path=False, moving_contact=True)
+    plain = fem.mesh_cycle(PLASTIC, 10.0, 4, plastic, beyond_path=False)
+    _, among = fem.mesh_cycle(PLASTIC, (5.0, 10.0), 4, plastic, beyond_path=False)
+    assert plain.moving_contact
+    for cycle in (plain, among):
+        np.testing.assert_allclose(cycle.stiffness, asked.stiffness, rtol=1e-9)
+    steel = replace(PLASTIC, material=STEEL)
+    assert not fem.mesh_cycle(steel, 10.0, 4, fem.compliance(steel, tolerance=0.05)).moving_contact
 
 
 class TestCycle:

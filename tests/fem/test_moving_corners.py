@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,34 @@ def test_nothing_steps_at_A_and_E(plastic, torque):
         before, after = share.transmission_error[0, 0]
         assert after == pytest.approx(before, rel=5e-5)
         assert share.stiffness[0, 0, 1] == pytest.approx(share.stiffness[0, 0, 0], rel=5e-4)
+
+
+def test_nothing_steps_at_A_where_the_flank_goes_on_below_it():
+    """A wheel of few teeth leaves much of the pinion's flank untouched; what that yields changes along it."""
+    pair = GearPair(Gear(60), Gear(18), 2e-3, 20e-3, material=PA66).with_backlash(600e-6)
+    bodies = fem.compliance(pair, tolerance=0.01)
+    assert bodies.pinion.rho_range[0] < pair.points.A - 0.5 * pair.module
+    tables = EdgeTables(Setting(pair, moving_contact=True), bodies)
+    before, after = solved(pair, bodies, tables, [-1e-6, 1e-6], 20.0).share.transmission_error[0, 0]
+    assert after == pytest.approx(before, rel=5e-5)
+
+
+def test_what_the_flank_yields_changes_with_the_roll_on_the_flank_alone(plastic):
+    """Derivatives by D of what the pinion's flank yields, on the flank, beyond its tip and below its end."""
+    pair, bodies, tables = plastic
+    own = solved(pair, bodies, tables, 0.4, 20.0).moved.own
+    low, high = bodies.pinion.rho_range
+    step, force = 1e-8, np.full(own.base.shape, 30.0)
+    for rho in (low - 0.2e-3, 0.5 * (low + high), high + 0.05e-3):
+        some = replace(own, base=np.full_like(own.base, rho), share=np.ones_like(own.share))
+        less, here, more = (some.rolled(force, np.full(own.base.shape, by)) for by in (-step, 0.0, step))
+        scale = force[0, 0, 0] * bodies.pinion.own_slope(np.array([0.5 * (low + high)]))[0]
+        np.testing.assert_allclose(
+            (more.approach - less.approach) / (2 * step), here.less, atol=1e-4 * abs(scale)
+        )
+        np.testing.assert_allclose(
+            (more.push - less.push) / (2 * step), here.stiff, atol=1e-2 * abs(scale) / high
+        )
 
 
 @pytest.mark.parametrize("away", [-0.03, -0.01, 0.02])
@@ -134,6 +164,41 @@ def test_the_lever_of_an_edge_is_in_its_gap(plastic):
     np.testing.assert_allclose(
         1 - (gap[1] - gap[0]) / 2e-7, lever_ratio(pair, where[:, 0], place, 0), atol=1e-3
     )
+
+
+def touched(radii, line, tip, place, rested):
+    """Where a tip edge is pressed into the other flank: tangent length of that flank on the tangent through the edge.
+
+    Of two gears with these base radii and contacts on the line of action, x from the first one's base circle: the
+    first, with its tip at the curvature radius ``tip``, stands as if it touched at ``place``, the second at ``rested``.
+    """
+    turn = (tip - place) / radii[0]
+    edge = np.array(
+        [tip * np.cos(turn) - radii[0] * np.sin(turn), tip * np.sin(turn) + radii[0] * np.cos(turn)]
+    )
+    edge -= np.array([line, sum(radii)])  # from the second gear's axis
+    along = np.sqrt(edge @ edge - radii[1] ** 2)
+    angle = np.arctan2(edge[1], edge[0]) - np.arctan2(-radii[1], -along)
+    return line - rested + radii[1] * ((angle + np.pi) % (2.0 * np.pi) - np.pi)
+
+
+def test_edges_touch_where_gears_that_are_turned_by_the_deflection_do(plastic):
+    """The pinion is turned by D, rigidly: its tip goes on with it, and the wheel's presses into what has come on."""
+    pair, bodies, tables = plastic
+    radii, line = pair.base_radii, pair.line_of_action
+    found = solved(pair, bodies, tables, [end + away for end in ends(pair) for away in (-0.03, 0.03)], 20.0)
+    rho, D = found.flank_rho(pair, 0)[:, 0], found.share.transmission_error[0, 0]
+    known, seen = found.share.forces[0, 0] > 0.0, [0, 0]
+    for i, k in zip(*np.nonzero(found.where.edge & known), strict=True):
+        place, before = float(found.where.place[i, k]), bool(found.where.place[i, k] < pair.points.C)
+        tip = (bodies.wheel if before else bodies.pinion).rho_end
+        if before:
+            wanted = touched(radii[::-1], line, tip, line - place, line - place - D[i])
+        else:
+            wanted = touched(radii, line, tip, place + D[i], place)
+        assert rho[0 if before else 1, i, k] == pytest.approx(wanted, abs=0.02 * D[i])
+        seen[before] += 1
+    assert min(seen) > 0
 
 
 def test_torques_add_up_with_corners_that_move(plastic):

@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 from base import InputError
 from gears import STEEL, Bearing, Shaft, ShaftSegment
-from gears.beams import bending, reduced, torsion
+from gears.beams import bending, halved, reduced, rotary, shaft_nodes, torsion
 
 E, G, RHO = STEEL.youngs_modulus, STEEL.shear_modulus, STEEL.density
 KAPPA = 6 * 1.3 / (7 + 6 * 0.3)
@@ -89,6 +89,49 @@ def test_slender_beam_vibrates_as_euler_says():
     assert math.sqrt(eigh(k, j, eigvals_only=True)[1]) == pytest.approx(
         math.pi / 2 * math.sqrt(G / RHO), rel=1e-3
     )
+
+
+@pytest.mark.parametrize("bore", [0.0, 0.03])
+def test_thick_beam_vibrates_as_timoshenko_says(bore):
+    """Pinned ends, shear and rotary inertia: (G' k^2 - m w^2)(E I k^2 + G' - r w^2) = (G' k)^2, k = n pi / L.
+
+    A shaft 5 times as long as thick, six modes from above; errors of the second order, and what is left without these.
+    """
+    shaft = plain(diameter=0.05, bore=bore, length=0.25, gear=0.125, ends=(0.0, 0.25))
+    nodes = shaft_nodes(shaft)
+    found = []
+    for at in (nodes, halved(nodes)):
+        stiffness, mass, _ = bending(shaft, at)
+        inner = np.setdiff1d(np.arange(len(mass)), [0, len(mass) - 2])
+        squares = eigh(stiffness[np.ix_(inner, inner)], mass[np.ix_(inner, inner)], eigvals_only=True)
+        found.append(np.sqrt(squares[:6]))
+    step, m2 = shaft.segments[0], (bore / 0.05) ** 2
+    kappa = 6 * 1.3 * (1 + m2) ** 2 / ((7 + 1.8) * (1 + m2) ** 2 + (20 + 3.6) * m2)
+    firm, line, turning = kappa * G * step.area, RHO * step.area, RHO * step.second_moment
+    for n in range(1, 7):
+        k = n * math.pi / 0.25
+        whole = np.poly1d([-line, firm * k**2]) * np.poly1d([-turning, E * step.second_moment * k**2 + firm])
+        exact = math.sqrt(np.min((whole - np.poly1d([(firm * k) ** 2])).roots.real))
+        coarse, fine = (one[n - 1] / exact - 1.0 for one in found)
+        assert 0.0 < fine < coarse
+        assert (4.0 * fine - coarse) / 3.0 == pytest.approx(0.0, abs=5e-4)
+        assert coarse < 6e-5 * n**4
+    whole_mass = rotary(shaft, nodes)
+    tilted = np.tile([0.0, 1.0], len(nodes)) + np.tile([1.0, 0.0], len(nodes)) * np.repeat(nodes, 2)
+    assert tilted @ whole_mass @ tilted == pytest.approx(turning * 0.25, rel=1e-9)
+
+
+def test_free_rod_in_torsion():
+    """n pi / L sqrt(G / rho), and all of the fourth order: half the elements, 16 times the error."""
+    shaft = plain()
+    off = []
+    for elements in (8, 16):
+        k, j = torsion(shaft, shaft_nodes(shaft, elements))
+        found = np.sqrt(eigh(k, j, eigvals_only=True)[1:4])
+        exact = np.arange(1, 4) * math.pi / 0.2 * math.sqrt(G / RHO)
+        off.append(found / exact - 1.0)
+    assert off[0] / off[1] == pytest.approx(np.full(3, 16.0), rel=0.1)
+    assert np.all(off[1] < 1e-4)
 
 
 @pytest.mark.parametrize(
