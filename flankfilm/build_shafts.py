@@ -20,5 +20,7 @@ def drive_arguments(scene: Scene) -> dict[str, Any]:
         "shafts": tuple(one.shaft() for one in each),
         "end_inertias": tuple(one.inertia_kg_m2 for one in each),
         "couplings": tuple(one.value("coupling_stiffness_Nm_per_rad") for one in each),
+        "damping_band": section.damping_band,
+        "reduction_tolerance": section.reduction_tolerance,
         **damping,
     }

@@ -4,31 +4,40 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import dynamics
 import gears
-from base import Array, Cost, Faults, Limit, described, part, quantity, record
+from base import Array, Cost, Stopwatch, described, part, quantity, record
+from base.results import EXACT, ITSELF
 from flankfilm.coupling.carried import DriveOutput
-from flankfilm.coupling.drive_side import Side, drive_side
+from flankfilm.coupling.drive_limits import DAMPING_BAND, checked_arguments
+from flankfilm.coupling.drive_reduced import (
+    gear_masses,
+    mesh_excitation,
+    mesh_frequencies,
+    reduced_change,
+    reduced_oscillator,
+    reduced_outputs,
+)
+from flankfilm.coupling.drive_side import GearBody, drive_side
+from flankfilm.coupling.gyroscopic import gyroscopic_change
 from flankfilm.coupling.oscillator import PairOscillator, pair_oscillator
+from flankfilm.coupling.reduction import MOST_MODES, reduced_train
+from flankfilm.coupling.train import ShaftDamping, Train, joined, lowest_modes, shaft_damping
 from gears.beams import ReducedShaft
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
     from flankfilm.coupling.series import MeshSeries
 
-SIDES = ("pinion", "wheel")
+SECOND_ORDER = 4.0 / 3.0
+"""Error over the change by elements half as long."""
+
 SHAPES = "not estimated: shafts are beams, whose error is not known"
-INERTIA = Limit(0.0, 1e9, "kg m2", "0 where nothing is coupled")
-COUPLING = Limit.above(0.0, 1e15, "N m/rad", "None for a rigid coupling")
-DAMPING = Limit(0.0, 1.0, "", "0.005 to 0.02 for shafts")
-RAYLEIGH = (
-    Limit(0.0, 1e9, "1/s", "10 to 100 damps the lowest modes"),
-    Limit(0.0, 10.0, "s", "1e-6 to 1e-5 damps the highest modes"),
-)
 
 
 @record
@@ -37,16 +46,33 @@ class PairDrive:
 
     headline = ("lowest_frequency", "mesh_frequency")
 
-    oscillator: dynamics.DriveOscillator = part("in the units of `rigid.scales`")
+    oscillator: dynamics.DriveOscillator = part(
+        "of the modes that move, in the units of `rigid.scales`; its displacements are amplitudes of modes"
+    )
     rigid: PairOscillator = part("the pair on rigid shafts and bearings, whose scales these are")
     freedoms: tuple[str, ...] = quantity(
-        "", "names of the oscillator's displacements, along the line of action", "freedom"
+        "",
+        "points whose displacements along the line of action show the modes; of tilt, of an end of the face",
+        "freedom",
     )
+    motion: Array = part("displacements of these points by those of the oscillator, (freedoms, n)")
     natural_frequencies: Array = quantity(
         "Hz",
-        "of the train in contact with the mean mesh stiffness, free rotation left out",
+        "of the train in contact with the mean mesh stiffness, up to the highest that is retained or swept",
         "mode",
-        error="error",
+        error="frequency_error",
+    )
+    retained: Array = quantity(
+        "1", "1 where a mode moves freely, 0 where its static deflection alone counts", "mode", no_error=EXACT
+    )
+    reduction_change: Array = quantity(
+        "1",
+        "relative change of a natural frequency by the reduction, against the unreduced train; 0 if not retained",
+        "mode",
+        no_error=ITSELF,
+    )
+    element_error: Array = quantity(
+        "1", "relative error of a natural frequency by the elements of the shafts", "mode", no_error=ITSELF
     )
     mode_shapes: Array = quantity(
         "1", "displacements of the modes, the largest of each 1", "mode freedom", no_error=SHAPES
@@ -56,6 +82,34 @@ class PairDrive:
     )
     outputs: tuple[DriveOutput, ...] = part("forces of bearings and torques of shafts")
     shafts: tuple[ReducedShaft | None, ReducedShaft | None] = part("what gear and torque feel of the shafts")
+    valid_to: float | None = quantity(
+        "Hz",
+        "mesh frequency up to which modes that are not retained change no swing of a force by more than the tolerance; "
+        "None where all are retained",
+        no_error="not estimated: by the linear response",
+    )
+    reduction_error: float = quantity(
+        "1",
+        "greatest change of the swing of a force by modes that are not retained, of the linear response within the "
+        "speeds; over the swing there, or a tenth of its greatest where that is more",
+        no_error=ITSELF,
+    )
+    gyroscopic_change: float = quantity(
+        "1",
+        "greatest relative change of a natural frequency by gyroscopic moments and the second plane, which are left "
+        "out, at the greatest speed",
+        no_error=ITSELF,
+    )
+    tilt_change: float = quantity(
+        "1",
+        "greatest relative change of a natural frequency by a mesh that resists tilt more, as a stiffness spread "
+        "evenly over its face does",
+        no_error=ITSELF,
+    )
+    damping_band: tuple[float, float] = part(
+        "damping of shafts and bearings that is likely, over the given one"
+    )
+    shaft_damping: ShaftDamping = part("damping of the unreduced train, which it holds")
     cost: Cost = Cost(0.0)
     converged: bool = True
     message: str = ""
@@ -64,6 +118,26 @@ class PairDrive:
     def error(self) -> float | None:
         """Relative error of the mean stiffness; None where it is unknown. Shafts are beams without one."""
         return self.rigid.error
+
+    @described("1", "mode", no_error=ITSELF)
+    def frequency_error(self) -> Array:
+        """Relative error of natural frequencies: reduction, elements, and half that of the stiffness by its share."""
+        stiff = 0.5 * self.mesh_share * (np.nan if self.error is None else self.error)
+        return np.asarray(self.reduction_change + self.element_error + stiff)
+
+    @property
+    def lowest_frequency_error(self) -> float:
+        """Relative error of the lowest natural frequency."""
+        return float(self.frequency_error[0])
+
+    @property
+    def mesh_frequency_error(self) -> float:
+        """Relative error of the frequency of the mode with most energy in the mesh."""
+        return float(self.frequency_error[int(np.argmax(self.mesh_share))])
+
+    def damped(self, factor: float) -> dynamics.DriveOscillator:
+        """Oscillator with so many times the damping of shafts and bearings."""
+        return replace(self.oscillator, damping=factor * np.asarray(self.oscillator.damping))
 
     @property
     def scales(self) -> dynamics.Scaling:
@@ -81,17 +155,17 @@ class PairDrive:
         """Mean force of the mesh."""
         return self.rigid.mean_force
 
-    @described("Hz", error="error")
+    @described("Hz", error="lowest_frequency_error")
     def lowest_frequency(self) -> float:
         """Lowest natural frequency of the train in contact."""
         return float(self.natural_frequencies[0])
 
-    @described("Hz", error="error")
+    @described("Hz", error="mesh_frequency_error")
     def mesh_frequency(self) -> float:
         """Natural frequency of the mode that has most of its elastic energy in the mesh."""
         return float(self.natural_frequencies[int(np.argmax(self.mesh_share))])
 
-    @described("rad/s", "mode", shown="rpm", error="error")
+    @described("rad/s", "mode", shown="rpm", error="frequency_error")
     def resonance_speeds(self) -> Array:
         """Pinion speeds at which the mesh frequency is a natural one."""
         return np.array([self.resonance_speed(one) for one in self.natural_frequencies.tolist()])
@@ -121,12 +195,18 @@ def pair_drive(
     one_sided: bool = False,
     reference: str = "body",
     free_damping_ratio: float | None = None,
+    speeds: tuple[float, float] | None = None,
+    reduction_tolerance: float = 0.05,
+    damping_band: tuple[float, float] = DAMPING_BAND,
+    tilt_stiffness: float = 0.0,
+    load_centre: float = 0.0,
 ) -> PairDrive:
-    """Drive train of a pair: torsion of both shafts, and deflection of the gears along the line of action.
+    """Drive train of a pair: bending and torsion of both shafts, with the modes that the mesh reaches.
 
     Displacements are turns times base radius, positive as the pinion drives, and deflections along the line of action
-    towards the wheel. A shaft is reduced to them by its static deflection (`gears.beams`). The back flanks press along
-    the other line of action; here they press along the same. Free rotation of the train is taken out.
+    towards the wheel. Shafts are beams and torsion bars of many elements (`gears.beams`), gears are rigid bodies that
+    tilt with them; the train is reduced to modes (`flankfilm.coupling.reduction`). The back flanks press along the
+    other line of action; here they press along the same. Free rotation of the train is taken out.
 
     Parameters
     ----------
@@ -144,12 +224,24 @@ def pair_drive(
     damping_ratio : float
         Of the mesh, as of `pair_oscillator`: c = 2 zeta sqrt(k_m m_e) with the equivalent mass of the gears alone.
     shaft_damping_ratio : float or sequence of float
-        Modal ratio of shafts, bearings and couplings without the mesh, one for all modes or one for each from the
-        lowest on; dampers of bearings come on top.
+        Modal ratio of shafts, bearings and couplings without the mesh: one for all modes, or several from the lowest
+        on, of which the last holds for all above. Dampers of bearings come on top.
     rayleigh : (float, float), optional
         Instead of it: damping alpha M + beta K of these with alpha [1/s] and beta [s]; what turns freely is not braked.
     error_amplitude, error_phase, extra_inertia, length_scale, one_sided, reference, free_damping_ratio
         As of `pair_oscillator`.
+    speeds : (float, float), optional
+        Least and greatest speed of the pinion that is looked at [rad/s]; by the natural frequency of the pair on rigid
+        shafts if left out, see `RANGE`.
+    reduction_tolerance : float
+        Of the swing of forces within the speeds, by the modes that are not retained.
+    damping_band : (float, float)
+        Damping of shafts and bearings that is likely, over the given one; counts in the error of peaks.
+    tilt_stiffness : float
+        Tilting moment over tilt of the mesh about the place of its force, linearised about the loaded state
+        [N m/rad]; a stiffness k spread evenly over a face of b has k b^2 / 12. It stays where contact is lost.
+    load_centre : float
+        Place of the mesh force from mid-face [m]; counts as the shafts' positions do.
 
     Raises
     ------
@@ -164,129 +256,77 @@ def pair_drive(
     >>> cycle = mesh_cycle(pair, 600.0, model="potential-energy")
     >>> shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
     >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05))
-    >>> len(drive.freedoms), [output.name for output in drive.outputs][:3]
-    (6, ['pinion bearing 1', 'pinion bearing 2', 'pinion shaft'])
+    >>> drive.freedoms[:4]
+    ('pinion gear', 'pinion end', 'pinion deflection', 'pinion tilt')
+    >>> [output.name for output in drive.outputs][:3]
+    ['pinion bearing 1', 'pinion bearing 2', 'pinion shaft']
+    >>> drive.valid_to > 1.5 * drive.rigid.natural_frequency * 0.999
+    True
     """
-    with Faults() as faults:
-        for side, inertia in zip(SIDES, end_inertias, strict=True):
-            faults.number(f"end_inertias.{side}", inertia, INERTIA)
-        for side, spring, inertia in zip(SIDES, couplings, end_inertias, strict=True):
-            if spring is not None:
-                faults.number(f"couplings.{side}", spring, COUPLING)
-                if not inertia > 0.0:
-                    allowed = "must be more than 0 kg m2 behind a coupling"
-                    faults.add(f"end_inertias.{side}", inertia, allowed, "give that of motor or load")
-        for i, (factor, limit) in enumerate(zip(rayleigh or (), RAYLEIGH, strict=False)):
-            faults.number(f"rayleigh[{i}]", factor, limit)
-        ratios = [
-            faults.number(f"shaft_damping_ratio[{i}]", ratio, DAMPING)
-            for i, ratio in enumerate(
-                np.atleast_1d(np.asarray(shaft_damping_ratio, dtype=np.float64)).tolist()
-            )
-        ]
+    watch = Stopwatch()
+    ratios = checked_arguments(
+        end_inertias, couplings, shaft_damping_ratio, rayleigh, reduction_tolerance, damping_band, tilt_stiffness,
+        load_centre,
+    )  # fmt: skip
     rigid = pair_oscillator(
         pair, stiffness, torque, speed, damping_ratio=damping_ratio, error_amplitude=error_amplitude,
         error_phase=error_phase, extra_inertia=extra_inertia, length_scale=length_scale, one_sided=one_sided,
         reference=reference, free_damping_ratio=free_damping_ratio,
     )  # fmt: skip
-    scales, own = rigid.scales, rigid.oscillator
+    scales = rigid.scales
     assert scales is not None  # a pair has them
-    radii, masses = pair.base_radii, gear_masses(pair)
-    sides = [
-        drive_side(
-            shafts[i], radii[i], rigid.inertias[i], masses[i], end_inertias[i], couplings[i], 1.0 - 2.0 * i
+    gears_of = [
+        GearBody(radius, mass, inertia, 0.5 * alone + mass * width**2 / 12.0, 0.5 * pair.face_width)
+        for radius, mass, inertia, alone, width in zip(
+            pair.base_radii, gear_masses(pair), rigid.inertias, pair.moments_of_inertia, pair.face_widths, strict=True
         )
-        for i in range(2)
-    ]
-    mass, firm, damping = (
-        _diagonal(*(getattr(s, name) for s in sides)) for name in ("mass", "stiffness", "damping")
+    ]  # fmt: skip
+
+    def train_of(refined: bool, tilt: float) -> Train:
+        sides = [
+            drive_side(shafts[i], gears_of[i], end_inertias[i], couplings[i], 1.0 - 2.0 * i, refined)
+            for i in range(2)
+        ]
+        return joined((sides[0], sides[1]), scales.mean_stiffness, tilt, load_centre)
+
+    train, turning = train_of(False, tilt_stiffness), (pair.pinion.teeth, pair.wheel.teeth)
+    ends = mesh_frequencies(pair, scales, speed, speeds)
+    damping = shaft_damping(train, ratios, rayleigh, MOST_MODES, ends[1] ** 2)
+    found = reduced_train(train, damping, mesh_excitation(rigid), ends, reduction_tolerance)
+    if not math.isinf(found.valid_to):  # of the gears' mass: displacements of the size of the train's
+        found = found._replace(shapes=found.shapes * math.sqrt(scales.equivalent_mass))
+    oscillator = reduced_oscillator(rigid, train, damping, found, free_damping_ratio)
+    reached = max(int(np.sum(found.squares <= ends[1] ** 2)), int(np.flatnonzero(found.retained)[-1]) + 1)
+    squares, modes, kept = found.squares[:reached], found.modes[:, :reached], found.retained[:reached]
+    points = np.array(list(train.points.values()))
+    shapes = (points @ modes).T
+    greatest = np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
+    evenly = scales.mean_stiffness * pair.face_width**2 / 12.0
+    finer, firmer = (
+        np.sqrt(lowest_modes(one.in_contact, one.mass, reached + 1, ends[1] ** 2)[0][1:] / squares) - 1.0
+        for one in (train_of(True, tilt_stiffness), train_of(False, tilt_stiffness + evenly))
     )
-    if rayleigh is not None:
-        held = _without_rotation(mass, _diagonal(sides[0].free[:, None], sides[1].free[:, None]))
-        damping = damping + dynamics.rayleigh_damping(held, firm, *rayleigh)
-    elif np.any(firm):
-        damping = damping + dynamics.modal_damping(mass, firm, ratios)
-    g = np.concatenate([sides[0].mesh, -sides[1].mesh])
-    force = np.zeros(len(g))
-    first = len(sides[0].mesh)
-    force[sides[0].torque], force[first + sides[1].torque] = own.mean_force, -own.mean_force
-    k, m, omega = scales.mean_stiffness, scales.equivalent_mass, scales.omega_n
-    oscillator = dynamics.DriveOscillator(
-        mass=mass / m, damping=damping / (m * omega), stiffness=firm / k, direction=g, mesh_stiffness=own.stiffness,
-        mesh_damping=2.0 * own.damping_ratio, mean_force=force, error_amplitude=own.error_amplitude,
-        frequency=own.frequency, half_backlash=own.half_backlash, error_phase=own.error_phase, one_sided=one_sided,
-        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1],
-    )  # fmt: skip
-    names = tuple(f"{name} {what}" for name, side in zip(SIDES, sides, strict=True) for what in side.names)
-    frequencies, shapes, shares = drive_modes(oscillator)
     return PairDrive(
-        oscillator,
-        rigid,
-        names,
-        frequencies * omega / (2.0 * math.pi),
-        shapes,
-        shares,
-        _outputs(sides, scales),
-        (sides[0].shaft, sides[1].shaft),
+        oscillator=oscillator,
+        rigid=rigid,
+        freedoms=tuple(train.points),
+        motion=points @ found.shapes,
+        natural_frequencies=np.sqrt(squares) / (2.0 * math.pi),
+        retained=kept.astype(np.float64),
+        reduction_change=reduced_change(oscillator, squares / scales.omega_n**2, kept),
+        element_error=SECOND_ORDER * np.abs(finer),
+        mode_shapes=shapes / greatest,
+        mesh_share=train.mesh_stiffness * (modes.T @ train.direction) ** 2 / squares,
+        outputs=reduced_outputs(train.outputs, found.shapes, scales),
+        shafts=(train.sides[0].shaft, train.sides[1].shaft),
+        valid_to=None if math.isinf(found.valid_to) else found.valid_to / (2.0 * math.pi),
+        reduction_error=found.error,
+        gyroscopic_change=gyroscopic_change(
+            train, modes, squares, [ends[1] / teeth for teeth in turning], MOST_MODES, ends[1] ** 2
+        ),
+        tilt_change=float(np.max(firmer, initial=0.0)),
+        damping_band=(damping_band[0], damping_band[1]),
+        shaft_damping=damping,
+        cost=Cost(watch.seconds, unknowns=len(train.rotation)),
         message=rigid.message,
-    )
-
-
-def _outputs(sides: Sequence[Side], scales: dynamics.Scaling) -> tuple[DriveOutput, ...]:
-    """What all parts carry, as factors on the oscillator's displacements and speeds."""
-    found, first = [], 0
-    n = sum(len(side.mesh) for side in sides)
-    for which, side in zip(SIDES, sides, strict=True):
-        for name, unit, push, drag in side.carried:
-            rows = np.zeros((2, n))
-            rows[0, first : first + len(push)] = push * scales.length
-            rows[1, first : first + len(drag)] = drag * scales.length * scales.omega_n
-            found.append(DriveOutput(f"{which} {name}", unit, rows[0], rows[1]))
-        first += len(side.mesh)
-    return tuple(found)
-
-
-def drive_modes(oscillator: dynamics.DriveOscillator) -> tuple[Array, Array, Array]:
-    """Undamped modes in contact with the mean mesh stiffness, from the lowest, the free rotation left out.
-
-    Returns
-    -------
-    frequencies : ndarray, shape (modes,)
-    shapes : ndarray, shape (modes, n)
-        The largest entry of each is 1.
-    shares : ndarray, shape (modes,)
-        Part of the elastic energy that is in the mesh.
-    """
-    mass, own, g = map(np.asarray, (oscillator.mass, oscillator.stiffness, oscillator.direction))
-    mean = oscillator.mesh_stiffness.mean
-    whole = own + mean * np.outer(g, g)
-    inverse = np.linalg.inv(np.linalg.cholesky(mass))
-    squares, vectors = np.linalg.eigh(inverse @ whole @ inverse.T)
-    shapes = (inverse.T @ vectors[:, 1:]).T  # one rotation of the whole train is free
-    shapes /= np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
-    energies = np.einsum("ij,jk,ik->i", shapes, whole, shapes)
-    return np.sqrt(squares[1:]), shapes, mean * (shapes @ g) ** 2 / energies
-
-
-def _without_rotation(mass: Array, rotations: Array) -> Array:
-    """Mass matrix of what is left of a motion when the free rotations, in columns, are taken out."""
-    pushed = mass @ rotations
-    return np.asarray(mass - pushed @ np.linalg.solve(rotations.T @ pushed, pushed.T))
-
-
-def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
-    """Masses of the gears [kg], as discs from the bore to the reference circle with the gears' moments of inertia."""
-    first, second = (
-        2.0 * inertia / (tooth.reference_radius**2 + tooth.bore_radius**2)
-        for inertia, tooth in zip(pair.moments_of_inertia, pair.teeth_profiles, strict=True)
-    )
-    return first, second
-
-
-def _diagonal(first: Array, second: Array) -> Array:
-    """Both matrices, one after the other on the diagonal."""
-    right, below = (
-        np.zeros((len(first), second.shape[1])),
-        np.zeros((len(second), first.shape[1])),
-    )
-    return np.block([[first, right], [below, second]])
+    )  # fmt: skip

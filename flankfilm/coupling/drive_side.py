@@ -9,11 +9,35 @@ import numpy as np
 
 import gears
 from base import Array
-from gears.beams import ReducedShaft, reduced
+from gears.beams import ReducedShaft, bending, halved, node_at, reduced, rotary, shaft_nodes, torsion
+
+
+class GearBody(NamedTuple):
+    """Gear as a rigid body.
+
+    Attributes
+    ----------
+    radius : float
+        Of the base circle [m].
+    mass : float
+        [kg]
+    inertia : float
+        About the axis, with what is fixed to it [kg m2].
+    tilting : float
+        About a diameter through the middle of the face [kg m2].
+    half_face : float
+        Half the face width [m]; measures tilts as displacements.
+    """
+
+    radius: float
+    mass: float
+    inertia: float
+    tilting: float
+    half_face: float
 
 
 class Carried(NamedTuple):
-    """What a part of a side carries: factors on displacements [m] and speeds [m/s] along the line of action."""
+    """What a part of a side carries: factors on displacements [m] and speeds [m/s] of its freedoms."""
 
     name: str
     unit: str
@@ -22,31 +46,46 @@ class Carried(NamedTuple):
 
 
 class Side(NamedTuple):
-    """Half of the train, in turns times base radius and the gear's deflection along the line of action."""
+    """Half of the train: turns times base radius, then deflections along the line of action and slopes of the shaft.
 
-    names: tuple[str, ...]
+    Attributes
+    ----------
+    mass, stiffness, damping : ndarray, shape (n, n)
+        Damping is that of the bearings' dampers.
+    mesh, tilt : ndarray, shape (n,)
+        Approach of the gear's flank at mid-face, and tilt of the gear [rad], by the freedoms.
+    free : ndarray, shape (n,)
+        Rotation of the whole side, which nothing but the mesh holds.
+    torque : int
+        Freedom that motor or load acts on.
+    points : dict
+        Names to factors on the freedoms: displacements that modes are shown by.
+    carried : tuple of Carried
+    shaft : ReducedShaft or None
+    spin : ndarray, shape (n, n)
+        Polar inertia of shaft and gear as it meets slopes: gyroscopic moments over the speed of turning.
+    """
+
     mass: Array
     stiffness: Array
     damping: Array
     mesh: Array
+    tilt: Array
+    free: Array
     torque: int
-    shaft: ReducedShaft | None
+    points: dict[str, Array]
     carried: tuple[Carried, ...]
-
-    @property
-    def free(self) -> Array:
-        """The rotation of the whole side, which nothing but the mesh holds."""
-        return np.array([0.0 if name == "deflection" else 1.0 for name in self.names])
+    shaft: ReducedShaft | None
+    spin: Array
 
 
 def drive_side(
     shaft: gears.Shaft | None,
-    radius: float,
-    inertia: float,
-    mass: float,
+    gear: GearBody,
     end: float,
     coupling: float | None,
     way: float,
+    refined: bool = False,
 ) -> Side:
     """Half of a drive train; what bearings, shafts and couplings carry is positive as the driving flanks press.
 
@@ -54,49 +93,70 @@ def drive_side(
     ----------
     shaft : Shaft or None
         None: rigid in rigid bearings.
-    radius : float
-        Of the gear's base circle [m].
-    inertia, mass : float
-        Of the gear [kg m2], [kg].
+    gear : GearBody
     end : float
         Moment of inertia of motor or load [kg m2].
     coupling : float or None
         Stiffness between shaft and motor or load [N m/rad]; None: rigid.
     way : float
         1 of the pinion, -1 of the wheel.
+    refined : bool
+        Whether elements of the shaft are half as long.
     """
+    nodes = np.zeros(0) if shaft is None else shaft_nodes(shaft)
+    nodes = halved(nodes) if refined and shaft is not None else nodes
+    twist, inertia = (np.zeros((1, 1)),) * 2 if shaft is None else torsion(shaft, nodes)
+    bent = (np.zeros((0, 0)),) * 3 if shaft is None else bending(shaft, nodes)
+    at_gear, at_end = (0, 0) if shaft is None else (2 * node_at(nodes, x) for x in _places(shaft))
+    turns = len(twist) + (coupling is not None)
+    n = turns + len(bent[0])
+    k, m, c, spin = (np.zeros((n, n)) for _ in range(4))
+    k[: len(twist), : len(twist)], m[: len(twist), : len(twist)] = twist, inertia
+    m[at_gear, at_gear] += gear.inertia
+    torque = at_end if coupling is None else turns - 1
+    m[torque, torque] += end
+    carried, points = list[Carried](), {"gear": _unit(n, at_gear)}
+    if shaft is not None:
+        first = turns + at_gear
+        for whole, part in zip((k, m, c), bent, strict=True):
+            whole[turns:, turns:] = part
+        m[first, first] += gear.mass
+        m[first + 1, first + 1] += gear.tilting
+        spin[turns:, turns:] = 2.0 * rotary(shaft, nodes)
+        spin[first + 1, first + 1] += gear.inertia
+        for i, bearing in enumerate(shaft.bearings):
+            row = -way * _unit(n, turns + 2 * node_at(nodes, bearing.position))
+            carried.append(Carried(f"bearing {i + 1}", "N", bearing.stiffness * row, bearing.damping * row))
     felt = None if shaft is None else reduced(shaft)
-    twists = felt is not None and not math.isinf(felt.torsion_stiffness)
-    turning = ("gear", *(["end"] if twists else []), *(["machine"] if coupling is not None else []))
-    names = turning if felt is None else (*turning, "deflection")
-    turns, n = len(turning), len(names)
-    m, k, c = (np.zeros((n, n)) for _ in range(3))
-    m[0, 0] = inertia / radius**2
-    m[turns - 1, turns - 1] += end / radius**2
-    carried: list[Carried] = []
-    if felt is not None and shaft is not None:
-        at = 2 if twists else 1
-        m[:at, :at] += felt.inertia[:at, :at] / radius**2
-        m[-1, -1], k[-1, -1], c[-1, -1] = (
-            mass + felt.bending_mass, felt.bending_stiffness, felt.bending_damping
-        )  # fmt: skip
-        for i, (bearing, share) in enumerate(zip(shaft.bearings, felt.bearing_shares.tolist(), strict=True)):
-            push, drag = np.zeros(n), np.zeros(n)
-            push[-1], drag[-1] = -way * bearing.stiffness * share, -way * bearing.damping * share
-            carried.append(Carried(f"bearing {i + 1}", "N", push, drag))
-        if twists:
-            carried.append(_spring("shaft", felt.torsion_stiffness, 0, radius, k, way))
+    springs = {}
+    if felt is not None and not math.isinf(felt.torsion_stiffness):
+        points["end"] = _unit(n, at_end)
+        springs["shaft"] = (felt.torsion_stiffness, at_gear, at_end)
     if coupling is not None:
-        carried.append(_spring("coupling", coupling, turns - 2, radius, k, way))
-    mesh = np.zeros(n)
-    mesh[0] = mesh[-1 if felt is not None else 0] = 1.0
-    return Side(names, m, k, c, mesh, turns - 1, felt, tuple(carried))
+        at = np.array([at_end, torque])
+        k[np.ix_(at, at)] += coupling * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        points["machine"] = _unit(n, torque)
+        springs["coupling"] = (coupling, at_end, torque)
+    for name, (firm, start, stop) in springs.items():
+        row = way * firm / gear.radius * (_unit(n, stop) - _unit(n, start))
+        carried.append(Carried(name, "N m", row, np.zeros(n)))
+    k[:turns, :turns] /= gear.radius**2
+    m[:turns, :turns] /= gear.radius**2
+    mesh, tilt, free = _unit(n, at_gear), np.zeros(n), np.zeros(n)
+    free[:turns] = 1.0
+    if shaft is not None:
+        mesh[first] = tilt[first + 1] = 1.0
+        points["deflection"], points["tilt"] = _unit(n, first), gear.half_face * tilt
+    return Side(m, k, c, mesh, tilt, free, torque, points, tuple(carried), felt, spin)
 
 
-def _spring(name: str, firm: float, first: int, radius: float, stiffness: Array, way: float) -> Carried:
-    """Torsional spring between a turn and the next, put into the stiffness, and the torque that it carries."""
-    at = slice(first, first + 2)
-    stiffness[at, at] += firm / radius**2 * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    twist = np.zeros(len(stiffness))
-    twist[at] = way * firm / radius * np.array([-1.0, 1.0])
-    return Carried(name, "N m", twist, np.zeros(len(stiffness)))
+def _places(shaft: gears.Shaft) -> tuple[float, float]:
+    """Where gear and torque sit."""
+    return shaft.gear_position, shaft.torque_position
+
+
+def _unit(n: int, at: int) -> Array:
+    """Row of n with a one."""
+    row = np.zeros(n)
+    row[at] = 1.0
+    return row

@@ -12,6 +12,7 @@ from base import Array, Cost, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.carried import PARTS, greatest, part_figures
 from flankfilm.coupling.drive import PairDrive
+from flankfilm.coupling.drive_peaks import drive_peaks
 from flankfilm.coupling.motion import frequencies_of
 from flankfilm.coupling.resonance import Vibrations, vibrations
 from flankfilm.coupling.swept_truncation import LEAST_HARMONICS, checked_values, motion_changes
@@ -37,6 +38,17 @@ class DriveSweep:
         "1", "mesh frequency over the natural one of the pair on rigid shafts", "frequency", no_error=EXACT
     )
     speed: Array = quantity("rad/s", "pinion speed", "frequency", shown="rpm", no_error=EXACT)
+    valid_to: float | None = quantity(
+        "Hz",
+        "mesh frequency up to which modes that the train does not retain change no swing of a force by more than its "
+        "tolerance; None where all are retained",
+        no_error="not estimated: by the linear response",
+    )
+    reduction_error: float = quantity(
+        "1",
+        "greatest change of the swing of a force by these modes, of the linear response within the speeds of the train",
+        no_error=ITSELF,
+    )
     labels: Mapping[str, tuple[str, ...]] = quantity("", "motion n-p-q", "frequency")
     force_factor: Mapping[str, Array] = quantity(
         "1", "greatest mesh force over the mean force", "frequency", error="sampling_error"
@@ -61,6 +73,28 @@ class DriveSweep:
     bearing_force: Mapping[str, Array] = quantity(
         "N", "greatest modulus of the force of bearings", "frequency bearing", error="sampling_error"
     )
+    bearing_force_peak: Array = quantity(
+        "N",
+        "greatest modulus of the force of bearings over the range of speed, between its values too",
+        "bearing",
+        error="bearing_force_peak_error",
+    )
+    bearing_force_peak_speed: Array = quantity(
+        "rad/s",
+        "pinion speed of that",
+        "bearing",
+        shown="rpm",
+        no_error="not estimated: a peak is flat at its top",
+    )
+    bearing_force_peak_band: Array = quantity(
+        "N",
+        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "end bearing",
+        no_error=ITSELF,
+    )
+    bearing_force_peak_error: Array = quantity(
+        "1", "relative error of the peak by search, samples and that band", "bearing", no_error=ITSELF
+    )
     shafts: tuple[str, ...] = quantity("", "shafts and couplings, in the order of their torques", "shaft")
     shaft_torque_mean: Mapping[str, Array] = quantity(
         "N m", "mean torque of shafts and couplings", "frequency shaft", error="sampling_error"
@@ -76,6 +110,45 @@ class DriveSweep:
         "greatest modulus of the torque of shafts and couplings",
         "frequency shaft",
         error="sampling_error",
+    )
+    shaft_torque_peak: Array = quantity(
+        "N m",
+        "greatest modulus of the torque of shafts and couplings over the range of speed, between its values too",
+        "shaft",
+        error="shaft_torque_peak_error",
+    )
+    shaft_torque_peak_speed: Array = quantity(
+        "rad/s",
+        "pinion speed of that",
+        "shaft",
+        shown="rpm",
+        no_error="not estimated: a peak is flat at its top",
+    )
+    shaft_torque_peak_band: Array = quantity(
+        "N m",
+        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "end shaft",
+        no_error=ITSELF,
+    )
+    shaft_torque_peak_error: Array = quantity(
+        "1", "relative error of the peak by search, samples and that band", "shaft", no_error=ITSELF
+    )
+    force_peak: float = quantity(
+        "1",
+        "greatest mesh force over the mean force in the range of speed, between its values too",
+        error="force_peak_error",
+    )
+    force_peak_speed: float = quantity(
+        "rad/s", "pinion speed of that", shown="rpm", no_error="not estimated: a peak is flat at its top"
+    )
+    force_peak_band: Array = quantity(
+        "1",
+        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "end",
+        no_error=ITSELF,
+    )
+    force_peak_error: float = quantity(
+        "1", "relative error of the peak by search, samples and that band", no_error=ITSELF
     )
     sampling_error: float = quantity(
         "1", "largest change with half as many samples of a period, over the greatest of its part"
@@ -117,15 +190,25 @@ class DriveSweep:
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = quantity("", "what the sweeps report")
 
-    @described("N", error="sampling_error")
+    @described("N", error="greatest_bearing_error")
     def greatest_bearing_force(self) -> float | None:
-        """Greatest force of a bearing in both sweeps; None without bearings."""
-        return greatest(self.bearing_force)
+        """Greatest force of a bearing over the range of speed; None without bearings."""
+        return greatest(self.bearing_force_peak)
 
-    @described("N m", error="sampling_error")
+    @described("N m", error="greatest_shaft_error")
     def greatest_shaft_torque(self) -> float | None:
-        """Greatest torque of a shaft or coupling in both sweeps; None without one that yields."""
-        return greatest(self.shaft_torque)
+        """Greatest torque of a shaft or coupling over the range of speed; None without one that yields."""
+        return greatest(self.shaft_torque_peak)
+
+    @property
+    def greatest_bearing_error(self) -> float | None:
+        """Relative error of the greatest force of a bearing."""
+        return _at_greatest(self.bearing_force_peak, self.bearing_force_peak_error)
+
+    @property
+    def greatest_shaft_error(self) -> float | None:
+        """Relative error of the greatest torque of a shaft or coupling."""
+        return _at_greatest(self.shaft_torque_peak, self.shaft_torque_peak_error)
 
     @described("1", no_error=ITSELF)
     def truncation(self) -> float | None:
@@ -151,6 +234,11 @@ class DriveSweep:
             self.shaft_torque_swing_change,
         )
         return [one for one in every if one is not None]
+
+
+def _at_greatest(values: Array, errors: Array) -> float | None:
+    """Error of the greatest value; None without any."""
+    return float(errors[int(np.nanargmax(values))]) if np.isfinite(values).any() else None
 
 
 def drive_sweep(
@@ -196,24 +284,47 @@ def drive_sweep(
         for way, result in found.items()
     }
     parts = {way: np.moveaxis(one.parts, 1, 0) for way, one in shaken.items()}
+    peaks = drive_peaks(drive, found, shaken)
+    at_peaks = {
+        "_peak": peaks.height, "_peak_speed": peaks.frequency * drive.scales.speed(1.0), "_peak_band": peaks.band,
+        "_peak_error": peaks.error,
+    }  # fmt: skip
     longer = longer_motion(drive, (float(values.min()), float(values.max())), LEAST_HARMONICS)
     lost = [result.message for result in found.values() if not result.converged]
+    said = [result.message for result in found.values() if result.message]
     return DriveSweep(
         frequency=values,
         speed=speeds,
+        valid_to=drive.valid_to,
+        reduction_error=drive.reduction_error,
         labels={way: result.labels for way, result in found.items()},
         force_factor={way: one.force for way, one in shaken.items()},
         separated={way: one.separated for way, one in shaken.items()},
         **part_figures(
-            outputs, {end: {way: one[k] for way, one in parts.items()} for k, end in enumerate(ENDINGS)}
+            outputs,
+            {end: {way: one[k] for way, one in parts.items()} for k, end in enumerate(ENDINGS)}
+            | {end: one[..., 1:] for end, one in at_peaks.items()},
         ),
+        force_peak=float(peaks.height[0]),
+        force_peak_speed=float(at_peaks["_peak_speed"][0]),
+        force_peak_band=peaks.band[:, 0],
+        force_peak_error=float(peaks.error[0]),
         sampling_error=max(one.change for one in shaken.values()),
         **_beside(drive, longer, found, shaken),
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
         converged=not lost,
-        message="; ".join(lost) or "; ".join(result.message for result in found.values() if result.message),
+        message="; ".join([*_beyond(drive, float(values.max())), *(lost or said)]),
     )
+
+
+def _beyond(drive: PairDrive, highest: float) -> list[str]:
+    """That a mesh frequency is beyond those for which the modes of the train suffice; nothing where it is not."""
+    reached = highest * drive.scales.natural_frequency
+    if drive.valid_to is None or reached <= drive.valid_to * (1.0 + 1e-9):
+        return []
+    remedy = "give pair_drive the speeds"
+    return [f"the mesh reaches {reached:.0f} Hz, forces are valid to {drive.valid_to:.0f} Hz: {remedy}"]
 
 
 ENDINGS = ("_mean", "_swing", "")

@@ -35,16 +35,16 @@ class SpeedRunUp:
         "1",
         "root mean square of the displacement about its mean, over the length scale",
         "block",
-        error="error",
+        error="rms_error",
     )
     peak: Mapping[str, Array] = quantity(
-        "1", "greatest displacement over the length scale", "block", error="error"
+        "1", "greatest displacement over the length scale", "block", error="peak_error"
     )
     force_factor: Mapping[str, Array] = quantity(
-        "1", "greatest force over the mean force", "block", error="error"
+        "1", "greatest force over the mean force", "block", error="peak_error"
     )
     force_rms: Mapping[str, Array] = quantity(
-        "1", "root mean square of the force about its mean, over the mean force", "block", error="error"
+        "1", "root mean square of the force about its mean, over the mean force", "block", error="rms_error"
     )
     separated: Mapping[str, Array] = quantity(
         "1", "part of each block without contact of the driving flanks", "block", shown="%", error="error"
@@ -84,17 +84,28 @@ class SpeedRunUp:
         "change of the frequency in one decay time over the width of a resonance; where it is small the motion follows",
         no_error=EXACT,
     )
-    error: float
+    rms_error: Mapping[str, Array] = quantity(
+        "1", "estimated relative error of each block's root mean squares, by steps of the speed", "block"
+    )
+    peak_error: Mapping[str, Array] = quantity(
+        "1", "estimated relative error of each block's peaks, by steps of the speed and by samples", "block"
+    )
+    greatest_error: float = quantity(
+        "1", "estimated relative error of the greatest displacement, force or torque of a direction"
+    )
+    error: float = quantity(
+        "1", "greatest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
+    )
     cost: Cost
     converged: bool = quantity("1", "whether the motion stayed bounded in both directions", no_error=EXACT)
     message: str
 
-    @described("N", error="error")
+    @described("N", error="greatest_error")
     def greatest_bearing_force(self) -> float | None:
         """Greatest force of a bearing in run-up and coast-down; None without bearings."""
         return greatest(self.bearing_force)
 
-    @described("N m", error="error")
+    @described("N m", error="greatest_error")
     def greatest_shaft_torque(self) -> float | None:
         """Greatest torque of a shaft or coupling in run-up and coast-down; None without one that yields."""
         return greatest(self.shaft_torque)
@@ -185,6 +196,9 @@ def speed_run_up(
         periods=up.periods,
         seconds=None if scales is None else up.periods / per_tau / scales.omega_n,
         rate=max(up.rate, down.rate),
+        rms_error={way: one.rms_error for way, one in each.items()},
+        peak_error={way: one.peak_error for way, one in each.items()},
+        greatest_error=max(up.greatest_error, down.greatest_error),
         error=max(up.error, down.error),
         cost=Cost(watch.seconds, periods=up.cost.periods + down.cost.periods),
         converged=up.converged and down.converged,

@@ -27,33 +27,68 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
         (
             str(row),
             number(float(frequency), 5),
+            percent(float(error)),
             f"{RPM * stage.resonance_speed(float(frequency)):.0f}",
             number(100.0 * float(share)),
             stage.freedoms[int(np.argmax(np.abs(shape)))],
+            "yes" if retained else "no",
         )
-        for row, (frequency, share, shape) in enumerate(
-            zip(stage.natural_frequencies, stage.mesh_share, stage.mode_shapes, strict=True), start=1
+        for row, (frequency, error, share, shape, retained) in enumerate(
+            zip(
+                stage.natural_frequencies,
+                stage.frequency_error,
+                stage.mesh_share,
+                stage.mode_shapes,
+                stage.retained,
+                strict=True,
+            ),
+            start=1,
         )
     )
     heads = (
         "mode",
         "frequency [Hz]",
+        "error",
         "met by the mesh at [rpm]",
         "elastic energy in the mesh [%]",
         "moves most",
+        "retained",
     )
-    known = "unknown" if stage.error is None else percent(stage.error)
-    notes = (said("drive", error=known),)
+    notes = [
+        said(
+            "drive",
+            error="unknown" if stage.error is None else percent(stage.error),
+            gyroscopic=percent(stage.gyroscopic_change),
+            tilt=percent(stage.tilt_change),
+        ),
+        *valid(stage),
+    ]
     drawn = pictures(results, "drive_modes")
-    return Part("drive", "Drive train", figures=drawn, tables=(Table(heads, rows),), notes=notes)
+    return Part("drive", "Drive train", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes))
+
+
+def valid(stage: PairDrive | DriveSweep) -> list[str]:
+    """Up to which mesh frequency forces hold; nothing where all modes are retained."""
+    if stage.valid_to is None:
+        return []
+    return [said("drive_valid", to=f"{stage.valid_to:.0f}", error=percent(stage.reduction_error))]
 
 
 def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
     """Draw what every part carries over the speed, and list the greatest of each and where it is met."""
-    heads = ("part", "mean", "greatest", "at [rpm]", "root mean square about the mean, greatest", "unit")
+    heads = (
+        "part",
+        "mean",
+        "greatest",
+        "error",
+        "at [rpm]",
+        "with damping of shafts at the ends of its band",
+        "root mean square about the mean, greatest",
+        "unit",
+    )
     rows = (*_rows(stage, "bearing", "bearing_force", "N"), *_rows(stage, "shaft", "shaft_torque", "N m"))
     said_of = {"error": percent(stage.sampling_error), "periods": counted(stage.cost.periods, "period")}
-    notes = [said("drive_sweep", flow=f"{stage.error:.0e}", **said_of), *_truncated(stage)]
+    notes = [said("drive_sweep", flow=f"{stage.error:.0e}", **said_of), *valid(stage), *_truncated(stage)]
     notes += [stage.message] if stage.message else []
     drawn = pictures(results, "drive_sweep")
     return Part(
@@ -89,16 +124,21 @@ def _truncated(stage: DriveSweep) -> list[str]:
 def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tuple[str, ...]]:
     """Mean, greatest and swing of every bearing, or of every shaft and coupling, of both sweeps."""
     for column, name in enumerate(getattr(stage, f"{part}s")):
-        mean, swing, most = (_both(stage, f"{figure}{kind}", column) for kind in ("_mean", "_swing", ""))
-        if not np.isfinite(most).any():
-            yield name, "-", "-", "-", "-", unit
+        mean, swing = (_both(stage, f"{figure}{kind}", column) for kind in ("_mean", "_swing"))
+        peak, error, speed = (
+            float(getattr(stage, f"{figure}_peak{kind}")[column]) for kind in ("", "_error", "_speed")
+        )
+        if not np.isfinite(peak):
+            yield name, "-", "-", "-", "-", "-", "-", unit
             continue
-        at = int(np.nanargmax(most)) % len(stage.speed)
-        values = (float(np.nanmean(mean)), float(np.nanmax(most)))
+        band = getattr(stage, f"{figure}_peak_band")[:, column]
         yield (
             name,
-            *map(number, values),
-            f"{RPM * stage.speed[at]:.0f}",
+            number(float(np.nanmean(mean))),
+            number(peak),
+            percent(error),
+            f"{RPM * speed:.0f}",
+            " to ".join(number(float(one)) if np.isfinite(one) else "-" for one in band),
             number(float(np.nanmax(swing))),
             unit,
         )
@@ -148,17 +188,23 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         ("greatest force of a bearing", "bearing", "bearing_force", "N"),
         ("greatest torque of a shaft", "shaft", "shaft_torque", "N m"),
     ):
-        names = getattr(stage, f"{part}s")
-        values = np.concatenate([getattr(stage, figure)[way] for way in ("up", "down")])
+        names, values = getattr(stage, f"{part}s"), getattr(stage, f"{figure}_peak")
         if not names or not np.isfinite(values).any():
             continue
-        row, column = np.unravel_index(int(np.nanargmax(values)), values.shape)
-        rpm = RPM * stage.speed[int(row) % len(stage.speed)]
-        error = f"{plus_minus(stage.sampling_error)} by samples"
+        at = int(np.nanargmax(values))
+        off, rpm = (
+            getattr(stage, f"{figure}_peak_error")[at],
+            RPM * getattr(stage, f"{figure}_peak_speed")[at],
+        )
+        error = (
+            f"{plus_minus(off)} by the band of the damping and the search"
+            if np.isfinite(off)
+            else "error unknown"
+        )
         if stage.carried_error is not None:
             left = stage.carried_error - stage.sampling_error
             known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"
             error += f", {known} by harmonics that the series leaves out"
-        note = f"{names[int(column)]}, at {rpm:.0f} rpm of the speeds swept; {error}"
-        found.append(Headline(what, number(float(values[row, column])), note, unit))
+        note = f"{names[at]}, at {rpm:.0f} rpm; {error}"
+        found.append(Headline(what, number(float(values[at])), note, unit))
     return found

@@ -39,6 +39,7 @@ def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
         seconds=seconds,
         rate=number(stage.rate),
         error=percent(stage.error),
+        greatest=percent(stage.greatest_error),
     )
     carried = _carried_on_the_way(stage)
     drawn = pictures(results, "run_up", "waterfall", *(["drive_run_up"] if carried else []))

@@ -18,6 +18,11 @@ PLACE = Limit(0.0, 1e4, "m", "Count from the left end of the shaft")
 MOST_STEPS = 200
 MOST_BEARINGS = 20
 
+BAND = Limit.above(0.0, 100.0, "", "0.5 and 2: half and twice the damping")
+TOLERANCE = Limit.above(0.0, 1.0, "", "0.05 for forces of the linear response within 5 %")
+DAMPING_BAND = (0.5, 2.0)
+Factor = Annotated[float, within(BAND)]
+Band = Annotated[tuple[Factor, Factor], Field(strict=False)]
 ONE_RATIO = (0.01,)
 RATIO = Limit(0.0, 1.0, "", "0.005 to 0.02 for shafts")
 
@@ -97,13 +102,6 @@ class ShaftSection(Section):
     def rigid(self) -> bool:
         """Whether the shaft neither bends nor twists."""
         return not self.segments
-
-    @property
-    def modes(self) -> int:
-        """Modes of the shaft with what is coupled to it, without the mesh and without its free rotation."""
-        bends = 0 if self.rigid else 1
-        twists = 0 if self.rigid or self.gear_position_mm == self.torque_position_mm else 1
-        return bends + twists + (self.coupling_stiffness_Nm_per_rad is not None)
 
     def shaft(self) -> gears.Shaft | None:
         """Shaft in SI; None for a rigid one."""
@@ -191,9 +189,21 @@ class ShaftsSection(Section):
     )
     damping_ratio: Annotated[tuple[Annotated[float, within(RATIO)], ...], Field(strict=False)] = key(
         "modal damping of shafts, bearings and couplings without the mesh over the critical one: of all modes, or "
-        "a list with one for each mode from the lowest on; dampers of bearings come on top",
+        "a list from the lowest mode on, of which the last holds for all above; dampers of bearings come on top",
         ONE_RATIO,
         such_as=0.01,
+        min_length=1,
+    )
+    damping_band: Band = key(
+        "least and greatest damping of shafts and bearings that is likely, over the given one: counts in the error "
+        "of peaks",
+        DAMPING_BAND,
+    )
+    reduction_tolerance: float = key(
+        "what modes of shafts that are not retained may change of the swing of a force, within the speeds that are "
+        "looked at",
+        0.05,
+        limit=TOLERANCE,
     )
     rayleigh: RayleighSection | None = key(
         "instead of it: damping in proportion to mass and stiffness",
@@ -224,14 +234,13 @@ class ShaftsSection(Section):
             raise refused(
                 "must have [shafts.pinion] or [shafts.wheel]", "Give a shaft, or leave [shafts] out"
             )
-        modes = sum(one.modes for one in self.each if one is not None)
-        if len(self.damping_ratio) not in (1, modes):
-            allowed = f"must be one number, or {modes}: one for each mode of shafts, bearings and couplings"
+        low, high = self.damping_band
+        if not low <= 1.0 <= high:
             raise refused(
-                allowed,
-                "The lowest mode first",
-                where="damping_ratio",
-                value=f"{len(self.damping_ratio)} numbers",
+                "must hold 1, the damping that is given",
+                "Give the least and the greatest, 0.5 and 2",
+                where="damping_band",
+                value=f"{low:g} to {high:g}",
             )
         if self.rayleigh is not None and "damping_ratio" in self.model_fields_set:
             raise refused("must have damping_ratio or rayleigh, not both", "Leave one of them out")

@@ -15,6 +15,7 @@ from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
 from flankfilm.stages.motion import FOURIER, SCALING, of_the_pair
+from flankfilm.stages.ranges import speeds_looked_at
 
 
 @stage(
@@ -29,6 +30,7 @@ from flankfilm.stages.motion import FOURIER, SCALING, of_the_pair
 def DRIVE(run: Engine) -> coupling.PairDrive:
     """The pair with its shafts, bearings, motor and load."""
     speed, given = of_the_pair(run, run[FOURIER])
+    given["speeds"] = speeds_looked_at(run, run[FOURIER], speed)
     return coupling.pair_drive(
         run[PAIR], run[FOURIER], pinion_torque(run.scene), speed, **drive_arguments(run.scene), **given
     )

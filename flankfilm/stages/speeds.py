@@ -103,7 +103,8 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
     speeds = np.linspace(*asked.ends, asked.points) * math.pi / 30.0
     order = run[FOURIER].order
 
-    shafts = None if scene.shafts is None else drive_arguments(scene)
+    ends = float(speeds[0]), float(speeds[-1])
+    shafts = None if scene.shafts is None else drive_arguments(scene) | {"speeds": ends}
 
     def at(torque: float) -> coupling.PairOscillator | coupling.PairDrive:
         cycle = _mesh_at(run, torque)

@@ -78,6 +78,7 @@ def test_a_scene_with_shafts_has_a_diagram():
     ranged = "diagram = { speed_rpm = [9600, 10800], max_period = 1, searches = 1 }"
     text = (
         TRAIN.replace('"sweep"', '"diagram"')
+        .replace("[shafts.pinion]", "[shafts]\nreduction_tolerance = 0.5\n[shafts.pinion]")
         .replace("error_amplitude_um = 4", f"error_amplitude_um = 10\n{ranged}")
         .replace("pinion_torque_Nm = 600", "pinion_torque_Nm = 300")
         .replace("backlash_um = 50", "backlash_um = 40")
@@ -96,16 +97,21 @@ def test_a_scene_with_shafts_has_a_diagram():
 
 @pytest.mark.slow
 def test_both_motions_of_a_train_are_met_though_a_slow_mode_outlives_the_limit():
-    """Starts that come to 1-1-0 were left unsettled, a ninth of all, and no diagram had its branch of them."""
+    """Starts that come to 1-1-0 were left unsettled once, and no diagram had its branch of them."""
     shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
     pair = PAIR.with_backlash(40e-6)
     series = mesh_series(mesh_cycle(pair, 300.0, model="potential-energy"), order=3)
-    ends = {"shafts": (shaft, shaft), "end_inertias": (0.02, 0.05), "error_amplitude": 10e-6}
-    train = pair_drive(pair, series, 300.0, 209.44, **ends).oscillator.with_parameter("frequency", 0.75)
+    ends = {
+        "shafts": (shaft, shaft),
+        "end_inertias": (0.02, 0.05),
+        "error_amplitude": 10e-6,
+        "speeds": (900.0, 1000.0),
+    }
+    train = pair_drive(pair, series, 300.0, 209.44, **ends).oscillator.with_parameter("frequency", 0.7833)
     (x0, x1), (v0, v1) = reach(train)
     found = dynamics.basins(train, (x0, x1, 6), (v0, v1, 6), limit=1000, max_period=8)
     assert found.converged, found.message
-    assert {one.label for one in found.attractors if one.share > 0.0} == {"1-1-1", "1-1-0"}
+    assert {one.label for one in found.attractors if one.share > 0.0} == {"1-0-0", "1-1-0"}
     for one in found.attractors:
         assert one.orbit is not None
         assert one.orbit.stable

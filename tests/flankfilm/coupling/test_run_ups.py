@@ -63,9 +63,16 @@ def test_each_cell_of_the_map_is_the_greatest_force_of_the_sweeps_there():
         greatest = np.fmax(*swept.force_factor.values())
         assert found.factor[k] == pytest.approx(greatest, rel=1e-12)
     assert found.truncation is None
+    assert (found.converged, found.message) == (True, "")
     # a given stiffness does not know the load
     assert found.resonance[0] == pytest.approx(found.resonance[1], rel=1e-12)
     assert found.greatest == found.factor.max()
+
+
+def test_a_map_names_what_is_no_speed_and_no_torque():
+    with pytest.raises(InputError) as told:
+        ff.dynamic_map(motion_at, [], [500.0, math.nan])
+    assert {one.where.partition("[")[0] for one in told.value.faults} == {"speeds", "torques"}
 
 
 @pytest.mark.filterwarnings("ignore:Sainsot")
