@@ -8,6 +8,8 @@ It leaves ``.coverage`` and ``map.log`` in the folder ``out/planted``. Then as m
 
     python -m tests.planted plant --faults 300 --seed 1 --out planted.jsonl
 
+``--among ehl fem/face_share.py`` draws them in these folders and files, ``--since REVISION`` in lines written since.
+
 A fault is seen when a test that passes without it fails, hangs or cannot be loaded. The share counts every fault that
 was planted; those that change no result by more than its tolerance (hints of speed, messages) are told apart by
 reading the list of survivors. After tests have been added: ``--again planted.jsonl --also tests/new.py``, with the same
@@ -28,7 +30,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.planted.covering import Map, make
-from tests.planted.faults import Fault, named, sample
+from tests.planted.faults import Fault, named, sample, written_since
 from tests.planted.forks import COMPILING, PATIENCE, Outcome, load_libraries, run_tests
 
 ROOT = Path(__file__).parents[2]
@@ -206,6 +208,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--faults", type=int, default=100, help="how many")
     add("--seed", type=int, default=None, help="of the drawing; printed")
     add("--among", nargs="+", default=PACKAGES, help="packages, folders or files in which they are planted")
+    add("--since", metavar="REVISION", default=None, help="only in lines written since this one of git")
     add("--seconds", type=float, default=60.0, help="of tests for one fault, as they usually take")
     add(
         "--also", nargs="*", default=(), help="tests that run first for every fault, because the map is older"
@@ -229,7 +232,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         files = [
             f for a in given.among for f in ([ROOT / a] if a.endswith(".py") else (ROOT / a).rglob("*.py"))
         ]
-        faults = sample(ROOT, files, given.faults, seed)
+        lines = None if given.since is None else written_since(ROOT, given.since)
+        faults = sample(ROOT, files, given.faults, seed, lines)
     load_libraries()
     ground = Field(given.work, Map.read(given.map), given.seconds, tuple(given.also))
     ground.lay_out()

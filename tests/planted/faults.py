@@ -6,7 +6,9 @@ import ast
 import copy
 import itertools
 import random
-from collections.abc import Iterable, Iterator
+import re
+import subprocess
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,6 +46,8 @@ TWINS = [
 ]  # fmt: skip
 EXCHANGED = {a: b for pair in TWINS for a, b in (pair, pair[::-1])}
 """Names that stand for one another."""
+CHANGED = re.compile(r"^\+\+\+ b/(.*)$|^@@ -\S+ \+(\d+)(?:,(\d+))? @@", re.MULTILINE)
+"""A file, or lines that are new in it, as git prints changes without the lines around them."""
 
 
 @dataclass(frozen=True)
@@ -104,11 +108,45 @@ def faults_at(path: str, source: bytes, site: Site, every: Iterable[Site]) -> li
     return found
 
 
-def sample(root: Path, files: Iterable[Path], number: int, seed: int) -> list[Fault]:
-    """Draw places at random, all equally likely, and one fault of each."""
+def written_since(root: Path, revision: str) -> dict[str, set[int]]:
+    """Lines, by file, that were written or changed since a revision; a file that only moved has none."""
+    command = [
+        "git",
+        "diff",
+        "--unified=0",
+        "--find-renames",
+        "--no-color",
+        "--no-ext-diff",
+        revision,
+        "--",
+        "*.py",
+    ]
+    changes = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout
+    found: dict[str, set[int]] = {}
+    path = ""
+    for file, first, count in CHANGED.findall(changes):
+        path = file or path
+        if first:
+            found.setdefault(path, set()).update(range(int(first), int(first) + int(count or 1)))
+    return found
+
+
+def sample(
+    root: Path,
+    files: Iterable[Path],
+    number: int,
+    seed: int,
+    lines: Mapping[str, Collection[int]] | None = None,
+) -> list[Fault]:
+    """Draw places at random, all equally likely, and one fault of each; only in `lines` by file if given."""
     rng = random.Random(seed)
     of_file = {file: sites(file.read_bytes()) for file in sorted(files)}
-    every = [(file, site) for file, some in of_file.items() for site in some]
+    every = [
+        (file, site)
+        for file, some in of_file.items()
+        for site in some
+        if lines is None or site[0].lineno in lines.get(file.relative_to(root).as_posix(), ())
+    ]
     drawn: list[Fault] = []
     for file, site in rng.sample(every, len(every)):
         if len(drawn) == number:

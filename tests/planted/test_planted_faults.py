@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.planted.faults import faults_at, named, sample, sites
+from tests.planted.faults import faults_at, named, sample, sites, written_since
 
 ROOT = Path(__file__).parents[2]
 SEED = 11
@@ -47,6 +47,31 @@ def area(radius: float, times: int = 2) -> float:
     (tmp_path / "one.py").write_bytes(b"# a line more\n" + source)
     again = named(tmp_path, [fault.name for fault in drawn])
     assert [(one.name, one.line - 1) for one in again] == [(one.name, one.line) for one in drawn]
+
+
+def test_faults_stand_in_lines_written_since_a_revision(tmp_path: Path):
+    def git(*arguments: str) -> None:
+        who = ("-c", "user.name=A", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
+        subprocess.run(["git", *who, *arguments], cwd=tmp_path, check=True, capture_output=True)
+
+    old = "def half(a):\n    b = a + 1\n    return 0.5 * b\n"
+    (tmp_path / "kept.py").write_text(old)
+    (tmp_path / "moved.py").write_text(old.replace("half", "part"))
+    git("init", "--quiet")
+    git("add", ".")
+    git("commit", "--quiet", "--message", "first")
+    git("mv", "moved.py", "there.py")
+    (tmp_path / "kept.py").write_text(
+        "# one line more\n" + old.replace("0.5 * b", "0.5 * b - a") + "C = 2.0\n"
+    )
+    (tmp_path / "new.py").write_text("A = 3.0 * 2.0\n")
+    git("add", ".")
+    git("commit", "--quiet", "--message", "second")
+    lines = written_since(tmp_path, "HEAD~1")
+    assert lines == {"kept.py": {1, 4, 5}, "new.py": {1}}
+    drawn = sample(tmp_path, tmp_path.rglob("*.py"), 100, SEED, lines)
+    assert {(fault.path, fault.line) for fault in drawn} == {("kept.py", 4), ("kept.py", 5), ("new.py", 1)}
+    assert len(sample(tmp_path, tmp_path.rglob("*.py"), 100, SEED)) > len(drawn)
 
 
 @pytest.mark.slow
